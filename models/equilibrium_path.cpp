@@ -1,0 +1,18 @@
+#include "models/equilibrium_path.hpp"
+
+namespace elastocheck {
+
+const char* name(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::converged: return "converged";
+        case Outcome::singular: return "singular";
+        case Outcome::loaded_idle_mode: return "loaded idle mode";
+        case Outcome::inconsistent_constraints: return "inconsistent constraints";
+        case Outcome::not_finite: return "not finite";
+        case Outcome::iteration_limit: return "iteration limit";
+        case Outcome::branch_lost: return "branch lost";
+    }
+    return "unknown";
+}
+
+}  // namespace elastocheck

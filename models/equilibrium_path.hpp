@@ -1,0 +1,57 @@
+// What every leg returns: the equilibria along one branch, and how the solution ended.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/mechanism.hpp"
+
+namespace elastocheck {
+
+struct Wrench {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();   // [N], ground axes
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N·m], ground axes
+};
+
+struct Equilibrium {
+    double load = 0;                // load factor a of the branch
+    std::vector<Pose> poses;        // one per Model::bodies
+    std::vector<Wrench> reactions;  // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
+    double constraint_error = 0;    // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
+};
+
+enum class Outcome {
+    converged,
+    singular,                  // the linear system lost rank on the way
+    loaded_idle_mode,          // a motion that nothing resists is pushed by a load
+    inconsistent_constraints,  // the joints contradict each other
+    not_finite,                // a NaN or infinity appeared
+    iteration_limit,           // the solver gave up before its own criterion was met
+    branch_lost,               // no equilibrium continues the branch, however small the load step
+};
+const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
+
+// How far a state is from satisfying a leg's own equations: the largest absolute entries. Every leg can judge any state,
+// its own or another's, so nobody has to grade himself.
+struct Residuals {
+    double length = 0;     // constraints that are lengths [m]
+    double direction = 0;  // constraints that are cosines of directions [-]
+    double force = 0;      // balance of forces on a body [N]
+    double moment = 0;     // balance of moments on a body about its origin [N·m]
+};
+
+// Work done, in units that do not depend on the machine.
+struct Counts {
+    long factorisations = 0;
+    long iterations = 0;
+    long evaluations = 0;  // of residual, or of energy with gradient
+};
+
+struct EquilibriumPath {
+    Outcome outcome = Outcome::converged;
+    std::string detail;               // what failed, in words; empty when converged
+    std::vector<Equilibrium> points;  // all requested points, or those reached before the failure
+    Counts counts;
+};
+
+}  // namespace elastocheck

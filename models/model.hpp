@@ -1,0 +1,65 @@
+// A model: the scene as compiled, which is all that a leg ever sees.
+//
+// Two things happen between scene and model, once: joints are lowered to four basic constraints (lowering.hpp), and what
+// cannot influence an asked-for output is left out (compile.cpp).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "models/mechanism.hpp"
+#include "models/scene.hpp"
+
+namespace elastocheck {
+
+// The basic constraints (Nikravesh 1988), as statements. Each leg writes its own equations for them.
+struct CoincidentPoints        { Point i, j; };                       // p_i = p_j                     3 rows
+struct PointInPlane            { Point i, j; Direction normal_j; };   // n_j · (p_i - p_j) = 0         1 row
+struct PerpendicularDirections { Direction i, j; };                   // u_i · u_j = 0                 1 row
+struct DistanceBetween         { Point i, j; double length = 0; };    // |p_i - p_j| = length          1 row
+
+using ConstraintKind = std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections, DistanceBetween>;
+struct Constraint {
+    int joint = 0;  // position in Model::joints
+    ConstraintKind kind;
+};
+
+constexpr int rows(const ConstraintKind& kind) {
+    return std::holds_alternative<CoincidentPoints>(kind) ? 3 : 1;
+}
+
+// What remains of a joint after lowering: its name, and where its reaction wrench is reported.
+struct ModelJoint {
+    std::string name;
+    BodyId i = ground, j = ground;
+    Point at;  // on body i (its origin for joints without a point)
+};
+
+struct Omission {
+    std::string what;  // "body 'antiroll_bar'"
+    std::string why;
+};
+
+struct Model {
+    std::string name;
+    std::vector<Body> bodies;
+    std::vector<ModelJoint> joints;
+    std::vector<Constraint> constraints;  // in the order of `joints`
+    std::vector<Elastic> elastics;
+    std::vector<Load> static_loads;
+    std::vector<Branch> branches;
+    std::optional<Wheel> wheel;
+    std::vector<Probe> probes;
+    std::vector<Omission> left_out;
+};
+
+inline int coordinates(const Model& model) { return 6 * static_cast<int>(model.bodies.size()); }  // 6 nb
+inline int constraint_rows(const Model& model) {                                                  // m
+    int m = 0;
+    for (const auto& constraint : model.constraints) m += rows(constraint.kind);
+    return m;
+}
+
+}  // namespace elastocheck

@@ -1,0 +1,1 @@
+#include "models/scene_file.hpp"
