@@ -1,7 +1,9 @@
 #include "models/compile.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "models/lowering.hpp"
@@ -47,32 +49,38 @@ Eigen::Vector3d position(const std::vector<Body>& bodies, const Point& p) {
 bool is_loaded_at_design(const ElasticKind& elastic, const std::vector<Body>& bodies) {
     if (const auto* spring = std::get_if<AxialSpring>(&elastic)) {
         const double length = (position(bodies, spring->j) - position(bodies, spring->i)).norm();
-        return std::abs(length - spring->free_length) > 1e-12 * length;
+        return !(std::abs(length - spring->free_length) <= 1e-12 * length);
     }
     const auto& b = std::get<Bushing>(elastic);
     const auto axes = [&](const Marker& m) {
         return m.body == ground ? m.A_local : bodies[static_cast<std::size_t>(m.body)].design.p * m.A_local;
     };
-    const double gap = (position(bodies, {b.j.body, b.j.s_local}) - position(bodies, {b.i.body, b.i.s_local})).norm();
-    return !b.preload.isZero(0) || gap > 1e-12 || axes(b.i).angularDistance(axes(b.j)) > 1e-12;
+    const double gap =
+        (position(bodies, {b.j.body, b.j.s_local}) - position(bodies, {b.i.body, b.i.s_local})).norm();
+    return !(b.preload.isZero(0) && gap <= 1e-12 && axes(b.i).angularDistance(axes(b.j)) <= 1e-12);
 }
 
-// Everything that refers to bodies, with the bodies it connects.
+// Which bodies hang together: every joint, and every element that is not zero.
 struct Graph {
     struct Edge {
-        Ends ends;
-        bool loaded;
+        BodyId other;
+        bool loaded;  // holds a force at the design pose
     };
-    std::vector<Edge> edges;
+    std::vector<std::vector<Edge>> edges;  // of each body
     std::set<BodyId> outputs, loaded;
 };
 
 Graph graph_of(const Scene& scene) {
     Graph graph;
-    for (const auto& joint : scene.joints) graph.edges.push_back({ends(joint.kind), false});
+    graph.edges.resize(scene.bodies.size());
+    const auto connect = [&](Ends e, bool loaded) {
+        if (e.i != ground) graph.edges[static_cast<std::size_t>(e.i)].push_back({e.j, loaded});
+        if (e.j != ground) graph.edges[static_cast<std::size_t>(e.j)].push_back({e.i, loaded});
+    };
+    for (const auto& joint : scene.joints) connect(ends(joint.kind), false);
     for (const auto& elastic : scene.elastics)
         if (!is_zero(elastic.kind))
-            graph.edges.push_back({ends(elastic.kind), is_loaded_at_design(elastic.kind, scene.bodies)});
+            connect(ends(elastic.kind), is_loaded_at_design(elastic.kind, scene.bodies));
     if (scene.wheel) graph.outputs.insert(scene.wheel->body);
     for (const auto& probe : scene.probes) graph.outputs.insert(probe.at.body);
     const auto load = [&](const Load& l) {
@@ -84,44 +92,45 @@ Graph graph_of(const Scene& scene) {
 }
 
 // Bodies that some chain of joints and elements, not through ground, connects to an output.
-std::vector<bool> connected_to_output(const Graph& graph, std::size_t bodies) {
-    std::vector<bool> reached(bodies, false);
-    for (const BodyId body : graph.outputs)
-        if (body != ground) reached[static_cast<std::size_t>(body)] = true;
-    for (bool grew = true; grew;) {
-        grew = false;
-        for (const auto& edge : graph.edges) {
-            if (edge.ends.i == ground || edge.ends.j == ground) continue;
-            auto&& i = reached[static_cast<std::size_t>(edge.ends.i)];
-            auto&& j = reached[static_cast<std::size_t>(edge.ends.j)];
-            if (i != j) i = j = grew = true;
-        }
+std::vector<bool> connected_to_output(const Graph& graph) {
+    std::vector<bool> reached(graph.edges.size(), false);
+    std::vector<BodyId> to_visit(graph.outputs.begin(), graph.outputs.end());
+    while (!to_visit.empty()) {
+        const BodyId body = to_visit.back();
+        to_visit.pop_back();
+        if (body == ground || reached[static_cast<std::size_t>(body)]) continue;
+        reached[static_cast<std::size_t>(body)] = true;
+        for (const auto& edge : graph.edges[static_cast<std::size_t>(body)]) to_visit.push_back(edge.other);
     }
     return reached;
 }
 
-// Takes away, one after the other, bodies that hang on a single neighbour and have nothing of their own to say.
-// Returns the bodies taken; `kept` is updated.
+// Whether the body has nothing of its own to say and hangs on at most one of those that are kept. It then
+// moves with that one as if welded to it: no joint is strained and no energy stored.
+bool is_free_follower(const Graph& graph, const std::vector<bool>& kept, BodyId body) {
+    if (graph.outputs.contains(body) || graph.loaded.contains(body)) return false;
+    std::optional<BodyId> neighbour;
+    for (const auto& [other, loaded] : graph.edges[static_cast<std::size_t>(body)]) {
+        if (other != ground && !kept[static_cast<std::size_t>(other)]) continue;
+        if (loaded || other != neighbour.value_or(other)) return false;
+        neighbour = other;
+    }
+    return true;
+}
+
+// Takes free followers away, one after the other, from the loose ends inwards. Returns them; `kept` is
+// updated.
 std::vector<BodyId> drop_free_followers(const Graph& graph, std::vector<bool>& kept) {
     std::vector<BodyId> dropped;
-    for (bool again = true; again;) {
-        again = false;
-        for (BodyId body = 0; body < static_cast<BodyId>(kept.size()); ++body) {
-            if (!kept[static_cast<std::size_t>(body)] || graph.outputs.contains(body) || graph.loaded.contains(body)) continue;
-            std::set<BodyId> neighbours;
-            bool loaded = false;
-            for (const auto& edge : graph.edges) {
-                if (edge.ends.i != body && edge.ends.j != body) continue;
-                const BodyId other = edge.ends.i == body ? edge.ends.j : edge.ends.i;
-                if (other != ground && !kept[static_cast<std::size_t>(other)]) continue;
-                neighbours.insert(other);
-                loaded = loaded || edge.loaded;
-            }
-            if (neighbours.size() > 1 || loaded) continue;
-            kept[static_cast<std::size_t>(body)] = false;
-            dropped.push_back(body);
-            again = true;
-        }
+    std::vector<BodyId> candidates(kept.size());
+    std::iota(candidates.begin(), candidates.end(), 0);
+    for (std::size_t next = 0; next < candidates.size(); ++next) {
+        const BodyId body = candidates[next];
+        if (body == ground || !kept[static_cast<std::size_t>(body)]) continue;
+        if (!is_free_follower(graph, kept, body)) continue;
+        kept[static_cast<std::size_t>(body)] = false;
+        dropped.push_back(body);
+        for (const auto& edge : graph.edges[static_cast<std::size_t>(body)]) candidates.push_back(edge.other);
     }
     return dropped;
 }
@@ -130,8 +139,10 @@ ModelJoint summary(const Joint& joint) {
     const auto [i, j] = ends(joint.kind);
     const Point at = std::visit(
         [i = i](const auto& s) {
-            if constexpr (requires { s.i.s_local; }) return s.i;
-            else return Point{i, Eigen::Vector3d::Zero()};
+            if constexpr (requires { s.i.s_local; })
+                return s.i;
+            else
+                return Point{i, Eigen::Vector3d::Zero()};
         },
         joint.kind);
     return {joint.name, i, j, at};
@@ -144,12 +155,14 @@ Model compile(const Scene& scene) {
     Model model;
     model.name = scene.name;
 
-    auto kept = connected_to_output(graph, scene.bodies.size());
+    auto kept = connected_to_output(graph);
     for (std::size_t b = 0; b < kept.size(); ++b)
-        if (!kept[b]) model.left_out.push_back({"body '" + scene.bodies[b].name + "'", "no output is connected to it"});
+        if (!kept[b])
+            model.left_out.push_back({"body '" + scene.bodies[b].name + "'", "no output is connected to it"});
     for (const BodyId body : drop_free_followers(graph, kept))
-        model.left_out.push_back({"body '" + scene.bodies[static_cast<std::size_t>(body)].name + "'",
-                                  "it hangs on one other body and carries no load, no preload and no output"});
+        model.left_out.push_back(
+            {"body '" + scene.bodies[static_cast<std::size_t>(body)].name + "'",
+             "it hangs on one other body and carries no load, no preload and no output"});
 
     std::vector<BodyId> renumbered(kept.size(), ground);
     for (std::size_t b = 0; b < kept.size(); ++b) {
@@ -206,10 +219,14 @@ Model compile(const Scene& scene) {
             } else if (!is_kept(body_of(load.kind))) {
                 leave_out("load", load.name, ("its body is left out" + where).c_str());
             } else {
-                std::visit([&](auto& l) {
-                    if constexpr (requires { l.at; }) renumber(l.at.body);
-                    else renumber(l.body);
-                }, load.kind);
+                std::visit(
+                    [&](auto& l) {
+                        if constexpr (requires { l.at; })
+                            renumber(l.at.body);
+                        else
+                            renumber(l.body);
+                    },
+                    load.kind);
                 result.push_back(load);
             }
         }
@@ -217,7 +234,8 @@ Model compile(const Scene& scene) {
     };
     model.static_loads = keep_loads(scene.static_loads, "");
     for (const auto& branch : scene.branches)
-        model.branches.push_back({branch.name, keep_loads(branch.loads, " (branch '" + branch.name + "')"), branch.to, branch.steps});
+        model.branches.push_back({branch.name, keep_loads(branch.loads, " (branch '" + branch.name + "')"),
+                                  branch.to, branch.steps});
 
     model.wheel = scene.wheel;
     if (model.wheel) renumber(model.wheel->body);

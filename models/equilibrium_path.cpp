@@ -10,6 +10,7 @@ const char* name(Outcome outcome) {
         case Outcome::inconsistent_constraints: return "inconsistent constraints";
         case Outcome::not_finite: return "not finite";
         case Outcome::iteration_limit: return "iteration limit";
+        case Outcome::diverged: return "diverged";
         case Outcome::branch_lost: return "branch lost";
     }
     return "unknown";

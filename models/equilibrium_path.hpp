@@ -27,6 +27,7 @@ enum class Outcome {
     inconsistent_constraints,  // the joints contradict each other
     not_finite,                // a NaN or infinity appeared
     iteration_limit,           // the solver gave up before its own criterion was met
+    diverged,                  // steps that swing back and forth and grow: the method is unstable here
     branch_lost,               // no equilibrium continues the branch, however small the load step
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...

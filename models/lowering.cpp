@@ -33,18 +33,23 @@ Direction carried(const Direction& u, BodyId to, const std::vector<Body>& bodies
 std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body>& bodies) {
     using List = std::vector<ConstraintKind>;
     using Perp = PerpendicularDirections;
-    const auto cylindrical = [](const Point& i, const Point& j, const Direction& axis_i, const Direction& axis_j) {
+    const auto cylindrical = [](const Point& i, const Point& j, const Direction& axis_i,
+                                const Direction& axis_j) {
         const auto [a, b] = across(axis_j);
         return List{PointInPlane{i, j, a}, PointInPlane{i, j, b}, Perp{axis_i, a}, Perp{axis_i, b}};
     };
     return std::visit(
         overloaded{
-            [](const Spherical& s) { return List{CoincidentPoints{s.i, s.j}}; },
+            [](const Spherical& s) {
+                return List{CoincidentPoints{s.i, s.j}};
+            },
             [](const Revolute& s) {
                 const auto [a, b] = across(s.axis_j);
                 return List{CoincidentPoints{s.i, s.j}, Perp{s.axis_i, a}, Perp{s.axis_i, b}};
             },
-            [](const Universal& s) { return List{CoincidentPoints{s.i, s.j}, Perp{s.axis_i, s.axis_j}}; },
+            [](const Universal& s) {
+                return List{CoincidentPoints{s.i, s.j}, Perp{s.axis_i, s.axis_j}};
+            },
             [&](const Cylindrical& s) { return cylindrical(s.i, s.j, s.axis_i, s.axis_j); },
             [&](const Translational& s) {
                 List list = cylindrical(s.i, s.j, s.axis_i, s.axis_j);
@@ -58,15 +63,22 @@ std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body
             },
             [](const Fixed& s) {
                 const Direction z_j{s.x_j.body, s.x_j.u_local.cross(s.y_j.u_local)};
-                return List{CoincidentPoints{s.i, s.j}, Perp{s.x_i, s.y_j}, Perp{s.x_i, z_j}, Perp{s.y_i, z_j}};
+                return List{CoincidentPoints{s.i, s.j}, Perp{s.x_i, s.y_j}, Perp{s.x_i, z_j},
+                            Perp{s.y_i, z_j}};
             },
-            [](const Distance& s) { return List{DistanceBetween{s.i, s.j, s.length}}; },
-            [](const InPlane& s) { return List{PointInPlane{s.i, s.j, s.normal_j}}; },
+            [](const Distance& s) {
+                return List{DistanceBetween{s.i, s.j, s.length}};
+            },
+            [](const InPlane& s) {
+                return List{PointInPlane{s.i, s.j, s.normal_j}};
+            },
             [](const InLine& s) {
                 const auto [a, b] = across(s.axis_j);
                 return List{PointInPlane{s.i, s.j, a}, PointInPlane{s.i, s.j, b}};
             },
-            [](const Perpendicular& s) { return List{Perp{s.i, s.j}}; },
+            [](const Perpendicular& s) {
+                return List{Perp{s.i, s.j}};
+            },
             [](const Parallel& s) {
                 const auto [a, b] = across(s.j);
                 return List{Perp{s.i, a}, Perp{s.i, b}};

@@ -1,1 +1,164 @@
-int main() { return 0; }
+// The elastocheck command.
+//
+// Exit codes: 0 fine · 1 a gate's limit is broken · 2 bad input · 3 could not judge · 4 a bug in here.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <sstream>
+
+#include "compare/compare.hpp"
+#include "models/compile.hpp"
+#include "models/scene_file.hpp"
+#include "models/scene_words.hpp"
+#include "recursive/diagnosis.hpp"
+#include "reports/csv.hpp"
+#include "reports/document.hpp"
+#include "reports/files.hpp"
+#include "reports/inspection.hpp"
+#include "reports/tables.hpp"
+
+namespace {
+
+using namespace elastocheck;
+
+enum Exit { fine = 0, bad_input = 2, could_not_judge = 3, bug = 4 };
+
+std::string read_text(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+// One line that is written over, on a terminal; nothing in a pipe.
+void progress(std::string_view what) {
+    if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", what);
+}
+
+int inspect(const std::string& file) {
+    const Model model = compile(read_scene(file));
+    fmt::print("{}", reports::inspection(model, recursive::diagnose(model)));
+    return fine;
+}
+
+int solve(const std::string& file, compare::Leg leg, int steps, const std::string& output) {
+    const Model model = compile(read_scene(file));
+    std::string csv = reports::curves_header(compare::channels(model));
+    int code = fine;
+    for (const auto& branch : model.branches) {
+        progress(branch.name);
+        const compare::Run run = compare::run(model, branch, leg, steps);
+        csv += reports::curves_rows(branch.name, run);
+        if (run.path.outcome == Outcome::converged) continue;
+        progress("");
+        fmt::print(stderr, "{}: {}: {}\n", name(leg), name(run.path.outcome), run.path.detail);
+        code = could_not_judge;
+    }
+    progress("");
+    if (output.empty()) fmt::print("{}", csv);
+    else reports::write_whole(output, csv);
+    return code;
+}
+
+int compare_legs(const std::string& file, int steps, const std::string& folder) {
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    compare::Options options;
+    options.steps = steps;
+    options.progress = progress;
+    const compare::Comparison comparison = compare::compare(model, options);
+    progress("");
+    fmt::print("{}", reports::tables(model, comparison));
+    if (!folder.empty()) {
+        const auto result = reports::document(scene, read_text(file), model, recursive::diagnose(model), comparison, reports::provenance());
+        const std::filesystem::path base(folder);
+        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        reports::write_whole(base / "curves.csv", reports::curves_csv(comparison));
+        fmt::print("Written: {0}/result.json, {0}/curves.csv\n", folder);
+    }
+    return comparison.conclusive() ? fine : could_not_judge;
+}
+
+// Says what CLI11 says, and after a word it does not know, the nearest one it does.
+int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+    std::string message = error.what();
+    const CLI::App* scope = &app;
+    std::vector<std::string> known;
+    if (!app.get_subcommands().empty()) scope = app.get_subcommands().front();
+    const bool in_command = scope != &app;
+    if (!in_command)
+        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(command->get_name());
+    for (const auto* option : scope->get_options())
+        if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr || dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+        for (int k = 1; k < argc; ++k) {
+            const std::string word = argv[k];
+            const bool option = word.starts_with("--");
+            if ((scope == &app && k == 1 && !option) || (option && std::ranges::find(known, word.substr(0, word.find('='))) == known.end())) {
+                message = fmt::format("{} {}{}", option ? "unknown option" : "unknown command", reader::quote(word),
+                                      reader::did_you_mean(word, known, "known"));
+                break;
+            }
+        }
+    }
+    fmt::print(stderr, "elastocheck: {}\nelastocheck --help tells more.\n", message);
+    return bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{
+        "Can I trust my suspension solver? One scene, solved three ways that share nothing but the scene:\n"
+        "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy minimisation.",
+        "elastocheck"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", reports::provenance().version);
+    app.footer("Exit codes: 0 fine, 2 bad input, 3 could not judge, 4 internal error.\n"
+               "Scene files are described in models/scenes/README.md.");
+
+    std::string scene, output;
+    int steps = 0;
+    std::string method = name(compare::Leg::recursive);
+    std::vector<std::string> methods;
+    for (const auto leg : compare::legs) methods.emplace_back(name(leg));
+
+    auto* inspect_command = app.add_subcommand("inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
+    auto* solve_command = app.add_subcommand("solve", "Solve a scene one way and print the curves as CSV");
+    auto* compare_command = app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
+    for (auto* command : {inspect_command, solve_command, compare_command})
+        command->add_option("SCENE", scene, "scene file (YAML)")->required();
+    for (auto* command : {solve_command, compare_command})
+        command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")->check(CLI::Range(1, 10'000'000));
+    solve_command->add_option("--method", method, "recursive (default), equilibrium or energy")
+        ->check(CLI::IsMember(methods).description(""));
+    solve_command->add_option("-o,--output", output, "write the CSV to this file instead");
+    compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv");
+
+    try {
+        app.parse(argc, argv);
+        if (*inspect_command) return inspect(scene);
+        if (*solve_command) {
+            const auto leg = static_cast<compare::Leg>(std::ranges::find(methods, method) - methods.begin());
+            return solve(scene, leg, steps, output);
+        }
+        return compare_legs(scene, steps, output);
+    } catch (const CLI::Success& done) {
+        return app.exit(done);
+    } catch (const CLI::ParseError& error) {
+        return explain(app, error, argc, argv);
+    } catch (const SceneError& error) {
+        fmt::print(stderr, "elastocheck: {}\n", error.what());
+        return bad_input;
+    } catch (const reports::FileError& error) {
+        fmt::print(stderr, "elastocheck: {}\n", error.what());
+        return bad_input;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "elastocheck: internal error: {}\n", error.what());
+        return bug;
+    }
+}

@@ -1,1 +1,555 @@
+// What the reader understands: the shipped scenes, the ways to write a thing, and files as such.
+#include "models/scene_file.hpp"
+
 #include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <locale>
+#include <numbers>
+#include <sstream>
+
+#include "tests/models/bench_scene.hpp"
+#include "tests/models/scene_numbers.hpp"
+
+namespace elastocheck {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double per_degree = 180 / std::numbers::pi;  // 1/deg -> 1/rad
+
+Scene shipped(const std::string& name) { return read_scene(fs::path(ELASTOCHECK_SCENES) / (name + ".yaml")); }
+
+Scene parsed(const std::string& text) { return parse_scene(text, "text.yaml"); }
+
+template <class T>
+const T& element(const Scene& scene, const std::string& name) {
+    for (const auto& elastic : scene.elastics)
+        if (elastic.name == name) return std::get<T>(elastic.kind);
+    throw std::out_of_range(name);
+}
+
+template <class T>
+const T& joint(const Scene& scene, const std::string& name) {
+    for (const auto& candidate : scene.joints)
+        if (candidate.name == name) return std::get<T>(candidate.kind);
+    throw std::out_of_range(name);
+}
+
+void expect_near(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected, double tolerance) {
+    const double worst = (actual - expected).cwiseAbs().maxCoeff();
+    EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << actual << "\n instead of\n" << expected;
+}
+
+// Every number of `a` and `b`, to a relative tolerance.
+void expect_same(const Scene& a, const Scene& b, double tolerance) {
+    const auto x = numbers(a), y = numbers(b);
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        ASSERT_EQ(x[k].first, y[k].first);
+        const double difference = std::abs(x[k].second - y[k].second);
+        const double size = std::max(std::abs(x[k].second), std::abs(y[k].second));
+        EXPECT_TRUE(std::isfinite(difference) && difference <= tolerance * size)
+            << x[k].first << ": " << x[k].second << " and " << y[k].second;
+    }
+}
+
+// ---- The shipped scenes.
+
+TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
+    const Scene scene = shipped("mcpherson");
+    ASSERT_EQ(scene.bodies.size(), 3U);
+    ASSERT_EQ(scene.joints.size(), 4U);
+    ASSERT_EQ(scene.elastics.size(), 4U);
+    EXPECT_EQ(scene.bodies[0].name, "arm");
+    expect_near(scene.bodies[0].design.r, Vector3d(-0.02165371, 0.94057703, -0.17402826), 0);
+
+    const auto& tie_rod = joint<Distance>(scene, "tie_rod");
+    EXPECT_EQ(tie_rod.i.body, 1);
+    EXPECT_EQ(tie_rod.j.body, ground);
+    expect_near(tie_rod.i.s_local, Vector3d(-0.2373756 + 0.04, 0.89495045 - 1.10, -0.01605418 + 0.026),
+                1e-16);
+    EXPECT_DOUBLE_EQ(tie_rod.length, Vector3d(0.0626244, 0.37495045, 0.04294582).norm());
+
+    const auto& tube = joint<Cylindrical>(scene, "strut_tube");
+    const Vector3d axis = Vector3d(-0.115 + 0.07402507, 0.785 - 0.8532915, 0.579 - 0.2484536).normalized();
+    expect_near(tube.axis_i.u_local, axis, 1e-15);
+    expect_near(tube.axis_j.u_local, axis, 1e-15);
+
+    const auto& coil = element<AxialSpring>(scene, "K1_coil");
+    EXPECT_EQ(coil.k, 30e3);
+    EXPECT_EQ(coil.i.body, 1);
+    EXPECT_EQ(coil.j.body, 2);
+
+    const auto& front = element<Bushing>(scene, "K3_arm_front");
+    Vector6 rates;
+    rates << 1.5e6, 12e6, 12e6, 3 * per_degree, 10 * per_degree, 10 * per_degree;
+    expect_near(front.K, Matrix6(rates.asDiagonal()), 1e-12);
+    expect_near(front.i.A_local * Vector3d::UnitX(), Vector3d(0.520, 0.013, -0.019).normalized(), 1e-15);
+    EXPECT_EQ(front.preload, Vector6::Zero());
+    EXPECT_EQ(element<Bushing>(scene, "K2_strut_mount").K(2, 2), 2e6);
+
+    ASSERT_EQ(scene.branches.size(), 2U);
+    EXPECT_EQ(scene.branches[0].to, 3000);
+    EXPECT_EQ(scene.branches[1].to, -3000);
+    EXPECT_EQ(scene.branches[0].steps, 300);
+    ASSERT_TRUE(scene.wheel);
+    EXPECT_EQ(scene.wheel->side, +1);
+    EXPECT_EQ(scene.wheel->body, 1);
+    EXPECT_EQ(scene.wheel->spin_axis_local, Vector3d::UnitY());
+    expect_near(scene.wheel->contact_local, Vector3d(0, 0, -0.32), 1e-16);
+}
+
+TEST(ShippedScene, ParallelSpringsIsConvertedFromMillimetres) {
+    const Scene scene = shipped("parallel_springs");
+    const auto& first = element<AxialSpring>(scene, "first");
+    EXPECT_EQ(first.k, 30e3);
+    EXPECT_DOUBLE_EQ(first.free_length, 0.4 + 600 / 30e3);
+    EXPECT_EQ(first.i.s_local, Vector3d(-0.2, 0, 0));
+    EXPECT_EQ(first.j.s_local, Vector3d(-0.2, 0, 0));
+    EXPECT_EQ(element<AxialSpring>(scene, "second").free_length, 0.4);
+    EXPECT_EQ(joint<Translational>(scene, "guide").axis_j.u_local, Vector3d::UnitZ());
+    EXPECT_EQ(std::get<DeadForce>(scene.static_loads.at(0).kind).f, Vector3d(0, 0, -600));
+}
+
+TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
+    const Scene scene = shipped("two_spring_arch");
+    EXPECT_EQ(scene.bodies.at(0).design.r, Vector3d(0, 0, 0.08));
+    const auto& left = element<AxialSpring>(scene, "left");
+    EXPECT_EQ(left.k, 1e5);
+    EXPECT_EQ(left.i.s_local, Vector3d::Zero());
+    EXPECT_EQ(left.j.s_local, Vector3d(-0.3, 0, 0));
+    EXPECT_DOUBLE_EQ(left.free_length, std::hypot(0.3, 0.08));
+}
+
+TEST(ShippedScene, PinnedBarIsConvertedFromMillimetres) {
+    const Scene scene = shipped("pinned_bar");
+    const auto& tip = element<Bushing>(scene, "tip");
+    EXPECT_EQ(tip.K.diagonal(), (Vector6() << 2e4, 2e4, 2e4, 0, 0, 0).finished());
+    EXPECT_EQ(tip.i.s_local, Vector3d(0.5, 0, 0));
+    EXPECT_EQ(joint<Revolute>(scene, "pin").axis_i.u_local, Vector3d::UnitY());
+}
+
+TEST(ShippedScene, BushingScenesKeepTheirRatesAndOrder) {
+    const auto& mount = element<Bushing>(shipped("single_bushing"), "mount");
+    EXPECT_EQ(mount.i.body, ground);
+    EXPECT_EQ(mount.j.body, 0);
+    EXPECT_EQ(mount.i.s_local, Vector3d(0.1, 0.2, 0.3));
+    EXPECT_EQ(mount.j.s_local, Vector3d::Zero());
+    EXPECT_EQ(mount.K.diagonal(), (Vector6() << 2e5, 3e5, 5e5, 400, 500, 700).finished());
+    const auto& pair = element<Bushing>(shipped("bushing_pair"), "front");
+    EXPECT_EQ(pair.j.s_local, Vector3d(0.15, 0, 0));
+    const auto& pivot = element<Bushing>(shipped("pendulum"), "pivot");
+    EXPECT_EQ(pivot.K.diagonal(), (Vector6() << 0, 0, 0, 600, 600, 600).finished());
+    EXPECT_EQ(pivot.i.s_local, Vector3d(-0.32, -0.24, 0));
+}
+
+TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed) {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(ELASTOCHECK_SCENES)) {
+        if (entry.path().extension() != ".yaml") continue;
+        ++count;
+        const Scene scene = read_scene(entry.path());
+        SCOPED_TRACE(scene.source);
+        EXPECT_EQ(scene.source, entry.path().string());
+        for (const auto& body : scene.bodies) EXPECT_EQ(body.design.p.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
+        const auto position = [&](const Point& p) -> Vector3d {
+            return p.body == ground ? p.s_local
+                                    : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r + p.s_local;
+        };
+        for (const auto& [name, kind] : scene.joints)
+            std::visit(
+                [&](const auto& s) {
+                    if constexpr (requires { s.i.s_local; }) {
+                        double length = 0;
+                        if constexpr (requires { s.length; }) length = s.length;
+                        EXPECT_NEAR((position(s.i) - position(s.j)).norm(), length, 1e-15) << name;
+                    }
+                },
+                kind);
+    }
+    EXPECT_GE(count, 7);
+}
+
+TEST(Readme, ItsExampleIsAScene) {
+    std::ifstream file(fs::path(ELASTOCHECK_SCENES) / "README.md");
+    std::string text, line;
+    while (std::getline(file, line) && line != "```yaml") continue;
+    while (std::getline(file, line) && line != "```") text += line + "\n";
+    const Scene scene = parse_scene(text, "README.md");
+    EXPECT_EQ(scene.bodies.size(), 2U);
+    EXPECT_EQ(scene.branches.at(1).loads.size(), 2U);
+}
+
+// ---- Units.
+
+// A scene with something of everything; `L`, `A` stand for what a number in metres or radians is multiplied
+// by.
+std::string scene_in(const std::string& length, const std::string& angle) {
+    const double L = length == "mm" ? 1000 : 1;        // per m
+    const double A = angle == "deg" ? per_degree : 1;  // per rad
+    const auto number = [](double x) { return fmt::format("{:.17g}", x); };
+    const auto vector = [&](double x, double y, double z) {
+        return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z);
+    };
+    std::string text =
+        "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle + ", force: N}\n";
+    text += "points:\n";
+    text += "  a: " + vector(0.011 * L, -0.247 * L, 0.333 * L) + "\n";
+    text += "  b: " + vector(0.5 * L, 0.125 * L, -0.071 * L) + "\n";
+    text += "  c: " + vector(-0.62 * L, 0.9 * L, 0.003 * L) + "\n";
+    text += "bodies: {one: {origin: a}, two: {origin: b}}\n";
+    text += "joints:\n";
+    text += "  rod: {type: distance, bodies: [one, two], from: a, to: c}\n";
+    text += "  tube: {type: cylindrical, bodies: [one, two], at: c, axis: [a, b]}\n";
+    text += "springs:\n";
+    text += "  free: {bodies: [one, two], from: a, to: b, rate: " + number(28e3 / L) +
+            ", free_length: " + number(0.75 * L) + "}\n";
+    text +=
+        "  loaded: {bodies: [one, ground], from: a, to: c, rate: " + number(30e3 / L) + ", preload: 3500}\n";
+    text += "bushings:\n";
+    text += "  rates: {bodies: [one, ground], at: b, frame: {x: [a, b], y: z}, rates: " +
+            vector(1e5 / L, 2e5 / L, 3e5 / L) +
+            ", rotational_rates: " + vector(10 * L / A, 20 * L / A, 30 * L / A) +
+            ", preload: [1, 2, 3], preload_moment: " + vector(4 * L, 5 * L, 6 * L) + "}\n";
+    const double k = 1e6 / L, c = 250 / A, r = 700 * L / A;
+    text += "  full:\n    bodies: [two, ground]\n    at: c\n    stiffness:\n";
+    const double K[6][6] = {{k, 0, 0, 0, c, 0},  {0, 2 * k, 0, -c, 0, 0}, {0, 0, 3 * k, 0, 0, 0},
+                            {0, -c, 0, r, 0, 0}, {c, 0, 0, 0, 2 * r, 0},  {0, 0, 0, 0, 0, 3 * r}};
+    for (const auto& row : K)
+        text += "      - [" + number(row[0]) + ", " + number(row[1]) + ", " + number(row[2]) + ", " +
+                number(row[3]) + ", " + number(row[4]) + ", " + number(row[5]) + "]\n";
+    text += "static_loads:\n";
+    text += "  weight: {on: one, at: b, force: [0, 0, -400]}\n";
+    text += "  torque: {on: two, moment: " + vector(0, 7 * L, 0) + "}\n";
+    text += "loads:\n";
+    text += "  push: {on: one, at: b, force: [0.6, 0, 0.8]}\n";
+    text += "  lever: {on: two, moment: " + vector(0.1 * L, 0, 0.2 * L) + "}\n";
+    text += "  twist: {on: two, moment: [0, 0.6, 0.8]}\n";
+    text += "branches:\n";
+    text += "  force: {load: push, to: 3000, steps: 30}\n";
+    text += "  mixed: {load: [push, lever], to: -2000, steps: 20}\n";
+    text += "  moment: {load: twist, to: " + number(90 * L) + ", steps: 10}\n";
+    text += "wheel: {body: one, centre: b, contact_patch: c, spin_axis: [0.1, -1, 0], side: right}\n";
+    text += "probes: {tip: {on: two, at: c}}\n";
+    return text;
+}
+
+TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
+    const Scene si = parsed(scene_in("m", "rad"));
+    for (const char* length : {"m", "mm"})
+        for (const char* angle : {"rad", "deg"}) {
+            SCOPED_TRACE(fmt::format("{} {}", length, angle));
+            expect_same(si, parsed(scene_in(length, angle)), 1e-15);
+        }
+}
+
+TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
+    const Scene scene = parsed(scene_in("mm", "deg"));
+    EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").k, 28e3);
+    EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").free_length, 0.75);
+    const auto& full = element<Bushing>(scene, "full");
+    EXPECT_DOUBLE_EQ(full.K(0, 0), 1e6);
+    EXPECT_DOUBLE_EQ(full.K(0, 4), 250);
+    EXPECT_DOUBLE_EQ(full.K(4, 0), 250);
+    EXPECT_DOUBLE_EQ(full.K(3, 1), -250);
+    EXPECT_DOUBLE_EQ(full.K(5, 5), 2100);
+    expect_near(element<Bushing>(scene, "rates").preload, (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
+    expect_near(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 7, 0), 1e-15);
+    // The factor of `mixed` is a force: the moment per newton is a length. That of `moment` is a moment.
+    EXPECT_EQ(scene.branches[1].to, -2000);
+    EXPECT_EQ(std::get<DeadForce>(scene.branches[1].loads[0].kind).f, Vector3d(0.6, 0, 0.8));
+    expect_near(std::get<DeadMoment>(scene.branches[1].loads[1].kind).m, Vector3d(0.1, 0, 0.2), 1e-16);
+    EXPECT_DOUBLE_EQ(scene.branches[2].to, 90);
+    EXPECT_EQ(std::get<DeadMoment>(scene.branches[2].loads[0].kind).m, Vector3d(0, 0.6, 0.8));
+}
+
+TEST(Units, OneMomentServesBothKindsOfBranch) {
+    const auto with = [](const std::string& length, double arm, double to) {
+        return parsed(fmt::format(
+            "{{elastocheck: 1, name: n, units: {{length: {}, angle: rad, force: N}}, points: {{o: [0, 0, "
+            "0]}}, "
+            "bodies: {{b: {{origin: o}}}}, joints: {{j: {{type: spherical, bodies: [b, ground], at: o}}}}, "
+            "loads: {{push: {{on: b, at: o, force: [1, 0, 0]}}, turn: {{on: b, moment: [{}, 0, 0]}}}}, "
+            "branches: {{both: {{load: [push, turn], to: 1, steps: 1}}, pure: {{load: turn, to: {}, steps: "
+            "1}}}}, "
+            "probes: {{p: {{on: b, at: o}}}}}}",
+            length, arm, to));
+    };
+    const Scene m = with("m", 0.5, 8), mm = with("mm", 500, 8);
+    const auto moment = [](const Scene& scene, std::size_t branch) {
+        const auto& b = scene.branches[branch];
+        return Vector3d(std::get<DeadMoment>(b.loads.back().kind).m * b.to);
+    };
+    EXPECT_EQ(moment(m, 0), Vector3d(0.5, 0, 0));
+    EXPECT_EQ(moment(mm, 0), Vector3d(0.5, 0, 0));
+    EXPECT_EQ(moment(m, 1), Vector3d(4, 0, 0));
+    EXPECT_EQ(moment(mm, 1), Vector3d(4, 0, 0));
+}
+
+// ---- Ways to write a thing.
+
+TEST(Numbers, AreReadInAllTheirSpellings) {
+    const std::pair<const char*, double> spellings[] = {{"28e3", 28e3},
+                                                        {"1.5e6", 1.5e6},
+                                                        {"-3000", -3000},
+                                                        {".5", 0.5},
+                                                        {"-.5", -0.5},
+                                                        {"5.", 5},
+                                                        {"+7", 7},
+                                                        {"1E+3", 1e3},
+                                                        {"2e-2", 0.02},
+                                                        {"007", 7},
+                                                        {"'3.25'", 3.25},
+                                                        {"\"4\"", 4},
+                                                        {"0", 0},
+                                                        {"-0", 0},
+                                                        {"0.0e0", 0},
+                                                        {"1e30", 1e30},
+                                                        {"-1e-30", -1e-30},
+                                                        {"0.1", 0.1},
+                                                        {"123456789012345678", 123456789012345678.0}};
+    for (const auto& [text, value] : spellings) {
+        const Scene scene =
+            parsed(replaced(replaced(bench_scene, "length: mm", "length: m"), "force: [0, 0, -300]",
+                            std::string("force: [0, 0, ") + text + "]"));
+        EXPECT_EQ(std::get<DeadForce>(scene.static_loads.at(0).kind).f.z(), value) << text;
+    }
+}
+
+struct CommaForPoint : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Numbers, DoNotDependOnTheLocale) {
+    const Scene expected = parsed(bench_scene);
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaForPoint));
+    std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
+    const Scene scene = parsed(bench_scene);
+    std::string message;
+    try {
+        parsed(replaced(bench_scene, "preload: 300", "preload: -4500"));
+    } catch (const SceneError& error) {
+        message = error.what();
+    }
+    std::locale::global(before);
+    std::setlocale(LC_ALL, "C");
+    expect_same(scene, expected, 0);
+    EXPECT_EQ(message,
+              "text.yaml:22: springs.coil.preload: needs a free length of -8.57864 mm; a free length must be "
+              "above zero");
+}
+
+TEST(Direction, AllWaysToWriteOneAgree) {
+    const std::pair<const char*, Vector3d> ways[] = {{"y", {0, 1, 0}},
+                                                     {"-y", {0, -1, 0}},
+                                                     {"z", {0, 0, 1}},
+                                                     {"-z", {0, 0, -1}},
+                                                     {"[0, 2.5, 0]", {0, 1, 0}},
+                                                     {"[0, 0, -1e-20]", {0, 0, -1}},
+                                                     {"[0, 1e30, 0]", {0, 1, 0}},
+                                                     {"[middle, top]", {0, 0, 1}},
+                                                     {"[side, middle]", {0, -1, 0}},
+                                                     {"[0, 3, 4]", {0, 0.6, 0.8}},
+                                                     {"[side, top]", Vector3d(0, -1, 1).normalized()}};
+    for (const auto& [text, u] : ways) {
+        const Scene scene = parsed(replaced(bench_scene, "axis_j: y", std::string("axis_j: ") + text));
+        expect_near(joint<Universal>(scene, "cross").axis_j.u_local, u,
+                    std::numeric_limits<double>::epsilon());
+    }
+}
+
+TEST(Direction, PerpendicularAxesArePerpendicularToTheLastDigit) {
+    for (int n = -10; n <= 10; ++n) {
+        const Scene scene = parsed(
+            replaced(bench_scene, "axis_j: y", fmt::format("axis_j: [{:.17g}, 0.8, 0.6]", n * 0.99e-10)));
+        const auto& cross = joint<Universal>(scene, "cross");
+        EXPECT_LE(std::abs(cross.axis_i.u_local.dot(cross.axis_j.u_local)), 1e-16) << n;
+    }
+}
+
+TEST(Frame, TwoAxesInAnyOrderAreARightHandedFrameThatKeepsTheFirst) {
+    const Vector3d first(1, 2, -2), second(-0.5, 3, 1);
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+            if (a == b) continue;
+            const std::string frame =
+                fmt::format("frame: {{{}: [1, 2, -2], {}: [-0.5, 3, 1]}}", "xyz"[a], "xyz"[b]);
+            const Scene scene = parsed(replaced(bench_scene, "frame: {x: [middle, front]}", frame));
+            const Matrix3d A = element<Bushing>(scene, "mount").i.A_local.toRotationMatrix();
+            SCOPED_TRACE(frame);
+            expect_near(A.col(a), first.normalized(), 1e-15);
+            EXPECT_NEAR(A.col(3 - a - b).dot(second), 0, 1e-15);
+            EXPECT_GT(A.col(b).dot(second), 0);
+            expect_near(A.transpose() * A, Matrix3d::Identity(), 1e-15);
+            EXPECT_NEAR(A.determinant(), 1, 1e-15);
+        }
+}
+
+TEST(Frame, OneAxisInAnyDirectionIsCompletedRightHanded) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (const Vector3d& u :
+             {Vector3d(1, 0, 0), Vector3d(0, -1, 0), Vector3d(0, 0, 1), Vector3d(0.3, -2, 0.7)}) {
+            Vector3d rates(2, 2, 2);
+            rates[axis] = 1;
+            const Scene scene = parsed(replaced(
+                bench_scene, "frame: {x: [middle, front]}, rates: [1, 2, 2], rotational_rates: [3, 4, 4]",
+                fmt::format("frame: {{{}: [{}, {}, {}]}}, rates: [{}, {}, {}]", "xyz"[axis], u.x(), u.y(),
+                            u.z(), rates.x(), rates.y(), rates.z())));
+            const auto& mount = element<Bushing>(scene, "mount");
+            const Matrix3d A = mount.i.A_local.toRotationMatrix();
+            expect_near(A.col(axis), u.normalized(), 1e-15);
+            expect_near(A.transpose() * A, Matrix3d::Identity(), 1e-15);
+            EXPECT_NEAR(A.determinant(), 1, 1e-15);
+            EXPECT_EQ(mount.i.A_local.coeffs(), mount.j.A_local.coeffs());
+        }
+}
+
+TEST(Frame, NoneMeansGroundAxes) {
+    const Scene scene = parsed(replaced(bench_scene, "frame: {x: [middle, front]}, ", ""));
+    EXPECT_EQ(element<Bushing>(scene, "mount").i.A_local.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
+}
+
+TEST(Spring, PreloadIsTheCompressiveForceAtTheDesignPosition) {
+    const double length = 0.1 * std::numbers::sqrt2;  // of the bench's coil [m]
+    for (const double preload : {-4000.0, -1.0, 0.0, 300.0, 1e5}) {
+        const Scene scene =
+            parsed(replaced(bench_scene, "preload: 300", fmt::format("preload: {}", preload)));
+        const auto& coil = element<AxialSpring>(scene, "coil");
+        EXPECT_NEAR(coil.k * (length - coil.free_length), -preload, 1e-11) << preload;
+    }
+    const Scene unloaded = parsed(replaced(bench_scene, ", preload: 300", ""));
+    EXPECT_DOUBLE_EQ(element<AxialSpring>(unloaded, "coil").free_length, length);
+}
+
+TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
+    // Rank one, K = v vᵀ, as a bushing computed elsewhere may be: its five zero eigenvalues come out as
+    // ±1e-16.
+    const double v[6] = {1.0 / 3, 0.1, -7.7, 1e3 / 7, 0, 0.05};
+    std::string rows;
+    for (const double x : v) {
+        rows += "      - [";
+        for (int j = 0; j < 6; ++j) rows += fmt::format("{}{:.17g}", j ? ", " : "", x * v[j]);
+        rows += "]\n";
+    }
+    const auto begin = bench_scene.find("      - [100"), end = bench_scene.find("\nstatic_loads");
+    const std::string text = bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
+    const Scene scene = parsed(text);
+    const auto& K = element<Bushing>(scene, "block").K;
+    EXPECT_EQ(K, K.transpose());
+}
+
+TEST(Wheel, ContactPatchIsTheCentreUnlessGiven) {
+    const Scene scene = parsed(replaced(bench_scene, "contact_patch: side, ", ""));
+    EXPECT_EQ(scene.wheel->contact_local, scene.wheel->centre_local);
+}
+
+TEST(Wheel, RightSideHasItsSpinAxisToTheRight) {
+    const Scene scene =
+        parsed(replaced(bench_scene, "spin_axis: y, side: left", "spin_axis: -y, side: right"));
+    EXPECT_EQ(scene.wheel->side, -1);
+    EXPECT_EQ(scene.wheel->spin_axis_local, Vector3d(0, -1, 0));
+}
+
+TEST(Sections, TheirOrderDoesNotMatter) {
+    std::vector<std::string> sections;
+    std::istringstream lines(bench_scene);
+    for (std::string line; std::getline(lines, line);) {
+        const bool begins = !line.empty() && line[0] != ' ';
+        if (begins) sections.emplace_back();
+        sections.back() += line + "\n";
+    }
+    std::string backwards;
+    for (auto section = sections.rbegin(); section != sections.rend(); ++section) backwards += *section;
+    expect_same(parsed(bench_scene), parsed(backwards), 0);
+}
+
+TEST(Sections, ASectionLeftEmptyHasNoEntries) {
+    const std::string weight = "static_loads:\n  weight: {on: hub, at: front, force: [0, 0, -300]}\n";
+    const Scene scene = parsed(replaced(bench_scene, weight, "static_loads:\n"));
+    EXPECT_TRUE(scene.static_loads.empty());
+}
+
+TEST(Text, LineEndsAndByteOrderMarkMakeNoDifference) {
+    std::string windows = "\xEF\xBB\xBF";
+    for (const char c : bench_scene) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    expect_same(parsed(bench_scene), parsed(windows), 0);
+}
+
+TEST(Text, NamesMayBeOfAnyLanguage) {
+    const Scene scene = parsed(replaced(bench_scene, "  tip:", "  Längslenker 2-a+b.c:"));
+    EXPECT_EQ(scene.probes.at(0).name, "Längslenker 2-a+b.c");
+}
+
+TEST(Text, ThousandsOfBodiesAreFine) {
+    const int count = 4000;
+    std::string text =
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, 0]}\n";
+    text += "bodies:\n";
+    for (int n = 0; n < count; ++n) text += fmt::format("  b{}: {{origin: o}}\n", n);
+    text += "joints:\n  j0: {type: spherical, bodies: [b0, ground], at: o}\n";
+    for (int n = 1; n < count; ++n)
+        text += fmt::format("  j{}: {{type: spherical, bodies: [b{}, b{}], at: o}}\n", n, n, n - 1);
+    text += "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: 1}}\n";
+    text += "probes: {p: {on: b0, at: o}}\n";
+    EXPECT_EQ(parsed(text).bodies.size(), static_cast<std::size_t>(count));
+}
+
+// ---- Files.
+
+std::string complaint_about(const fs::path& file) {
+    try {
+        read_scene(file);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+struct TemporaryFile {
+    fs::path path = fs::path(testing::TempDir()) / "elastocheck_scene_file_test.yaml";
+    explicit TemporaryFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+    ~TemporaryFile() { fs::remove(path); }
+};
+
+TEST(File, ThatCannotBeReadIsNamed) {
+    EXPECT_EQ(complaint_about("no/such/scene.yaml"), "no/such/scene.yaml: no such file");
+    EXPECT_EQ(complaint_about(""), ": no such file");
+    const std::string directory = fs::path(testing::TempDir()).string();
+    EXPECT_EQ(complaint_about(directory), directory + ": a directory; a scene is one file");
+    const std::string too_long(5000, 'a');
+    EXPECT_EQ(complaint_about(too_long), too_long + ": cannot be read");
+}
+
+TEST(File, IsReadLikeItsText) {
+    const TemporaryFile file(bench_scene);
+    const Scene scene = read_scene(file.path);
+    EXPECT_EQ(scene.source, file.path.string());
+    EXPECT_EQ(scene.name, "Bench");
+    expect_same(scene, parsed(bench_scene), 0);
+}
+
+TEST(File, OfOneMebibyteIsReadAndALargerOneIsNot) {
+    std::string text = bench_scene + "# ";
+    text.resize((std::size_t{1} << 20) - 1, '.');
+    text += "\n";
+    EXPECT_EQ(complaint_about(TemporaryFile(text).path), "none");
+    const TemporaryFile larger(text + "\n");
+    EXPECT_EQ(complaint_about(larger.path), larger.path.string() + ": larger than 1 MiB, which no scene is");
+}
+
+TEST(File, WithoutEndIsLargerThanAScene) {
+    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "no /dev/zero here";
+    EXPECT_EQ(complaint_about("/dev/zero"), "/dev/zero: larger than 1 MiB, which no scene is");
+}
+
+}  // namespace
+}  // namespace elastocheck

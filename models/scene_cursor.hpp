@@ -1,0 +1,51 @@
+// A place in a scene file: one value, with the path and the line that messages about it name.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/scene_yaml.hpp"
+
+namespace elastocheck::reader {
+
+// Every function throws SceneError when the value is not what it asks for. The tree and the file's name
+// outlive the cursor.
+struct Cursor {
+    const Value* value;
+    std::string path;  // "joints.ball_joint.type", empty for the whole file
+    const std::string* file;
+
+    [[noreturn]] void fail(const std::string& what) const;
+
+    // ---- of a map
+    void only_keys(const std::vector<std::string>& allowed) const;
+    Cursor require(const std::string& key) const;
+    std::optional<Cursor> optional(const std::string& key) const;
+
+    // The entries of a section, each under a name chosen by the user. A section left empty has none.
+    struct Named;
+    std::vector<Named> entries() const;
+
+    // ---- of a list
+    std::vector<Cursor> list(std::size_t size,
+                             const char* what) const;  // "expected a list of 3 numbers, found ..."
+    bool is_list() const { return value->kind == Value::Kind::list; }
+    std::vector<Cursor> items() const;
+
+    // ---- of a scalar
+    const std::string& text(const char* what) const;  // not empty, without control characters
+    double number() const;                            // 0, or 1e-30 to 1e30 in size; "." whatever the locale
+    int whole_number(int least, int most) const;
+    std::size_t one_of(const char* what,
+                       const std::vector<std::string>& allowed) const;  // position in `allowed`
+
+    std::string found() const;  // "'text'", "a list of 3", "a map", "nothing"
+};
+
+struct Cursor::Named {
+    std::string name;
+    Cursor at;
+};
+
+}  // namespace elastocheck::reader

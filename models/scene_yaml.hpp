@@ -1,0 +1,29 @@
+// YAML text -> a plain tree that remembers its lines. yaml-cpp does the parsing.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reader {
+
+struct Value {
+    enum class Kind { nothing, scalar, list, map };
+    Kind kind = Kind::nothing;
+    std::string text{};               // of a scalar, as written
+    std::vector<Value> items{};       // of a list or a map, in file order
+    std::vector<std::string> keys{};  // of a map: one per item, all different
+    int line = 1;                     // where it begins; where its key stands, if it has one
+};
+
+// Refuses, with the line: what is no YAML, duplicate keys, keys that are not plain text, aliases, tags, a
+// second document, nesting deeper than any scene, control characters and bytes that are not UTF-8, more than
+// 1 MiB. Throws SceneError.
+Value parse_yaml(std::string_view text, const std::string& file);
+
+inline constexpr std::size_t largest_text = 1 << 20;  // [bytes]
+
+// Throws SceneError "file:line: field: what"; without the line (0) or the field (empty) where there is none.
+[[noreturn]] void fail(const std::string& file, int line, const std::string& field, const std::string& what);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,227 @@
+#include "recursive/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <numeric>
+
+#include "recursive/assembly.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double rank_threshold = 1e-9;  // on rows of unit length
+
+// The root mean square lever of everything that is attached to a body: invariant under motions of the ground frame.
+double characteristic_length(const Model& model) {
+    double sum = 0;
+    int count = 0;
+    const auto take = [&](const auto& point) {
+        if constexpr (requires { point.s_local; }) {
+            if (point.body == ground || point.s_local.isZero(0)) return;
+            sum += point.s_local.squaredNorm();
+            ++count;
+        }
+    };
+    const auto both = [&](const auto& e) { take(e.i), take(e.j); };
+    for (const auto& c : model.constraints) std::visit(both, c.kind);
+    for (const auto& e : model.elastics) std::visit(both, e.kind);
+    return count > 0 ? std::sqrt(sum / count) : 1.0;
+}
+
+// Rows to unit length, zero rows left alone.
+void normalise_rows(MatrixXd& rows) {
+    for (Eigen::Index k = 0; k < rows.rows(); ++k)
+        if (const double norm = rows.row(k).norm(); norm > 0) rows.row(k) /= norm;
+}
+
+int rank_of(const MatrixXd& rows) {
+    if (rows.size() == 0) return 0;
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
+    qr.setThreshold(rank_threshold);
+    return static_cast<int>(qr.rank());
+}
+
+// Orthonormal null space of rows of unit length [columns × nullity].
+MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
+    if (rows.rows() == 0) return MatrixXd::Identity(columns, columns);
+    const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullV);
+    const double largest = svd.singularValues()[0];
+    const Eigen::Index rank = (svd.singularValues().array() > rank_threshold * largest).count();
+    return svd.matrixV().rightCols(columns - rank);
+}
+
+// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size count alike.
+MatrixXd elastic_rows(const Model& model, const State<double>& q) {
+    std::vector<VectorXd> rows;
+    for (const auto& elastic : model.elastics) {
+        const auto e = std::visit([&](const auto& kind) { return element_stiffness<double>(kind, q); }, elastic.kind);
+        const Eigen::Matrix<double, 6, 1> s = e.K.diagonal().cwiseMax(0).cwiseSqrt();
+        const Eigen::Matrix<double, 6, 1> inverse = s.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
+        const Matrix6<double> C = inverse.asDiagonal() * e.K * inverse.asDiagonal();
+        const Eigen::SelfAdjointEigenSolver<Matrix6<double>> eigen(C);
+        for (int k = 0; k < 6; ++k) {
+            if (eigen.eigenvalues()[k] <= rank_threshold) continue;
+            const Vector6<double> g = s.asDiagonal() * eigen.eigenvectors().col(k);  // a row of √K_e
+            VectorXd row = VectorXd::Zero(coordinates(model));
+            const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
+                if (b == ground) return;
+                row.segment<3>(6 * b) += sign * g.head<3>();
+                row.segment<3>(6 * b + 3) += sign * (lever.cross(g.head<3>()) + g.tail<3>());
+            };
+            add(e.i, e.s_i, -1);
+            add(e.j, e.s_j, +1);
+            rows.push_back(row);
+        }
+    }
+    MatrixXd stacked(static_cast<Eigen::Index>(rows.size()), coordinates(model));
+    for (std::size_t k = 0; k < rows.size(); ++k) stacked.row(static_cast<Eigen::Index>(k)) = rows[k];
+    return stacked;
+}
+
+// A basis of the idle modes in which each mode moves as few bodies as possible: modes of single bodies first.
+MatrixXd sparse_basis(const MatrixXd& rows, const MatrixXd& all, int bodies) {
+    MatrixXd basis(all.rows(), 0);
+    const auto append = [&](const VectorXd& candidate) {
+        VectorXd rest = candidate - basis * (basis.transpose() * candidate);
+        rest -= basis * (basis.transpose() * rest);
+        if (rest.norm() < 1e-6) return;
+        basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+        basis.col(basis.cols() - 1) = rest.normalized();
+    };
+    for (int b = 0; b < bodies; ++b) {
+        const MatrixXd own = null_space_of(rows.middleCols(6 * b, 6), 6);
+        for (Eigen::Index c = 0; c < own.cols() && basis.cols() < all.cols(); ++c) {
+            VectorXd mode = VectorXd::Zero(all.rows());
+            mode.segment(6 * b, 6) = own.col(c);
+            append(mode);
+        }
+    }
+    for (Eigen::Index c = 0; c < all.cols() && basis.cols() < all.cols(); ++c) append(all.col(c));
+    return basis;
+}
+
+// Without the minus that rounding leaves before a zero.
+Vector3d shown(const Vector3d& u) {
+    return u.unaryExpr([](double v) { return std::abs(v) < 5e-4 ? 0.0 : v; });
+}
+
+// "rotation about ..." or "translation along ..." of the twist (v, w) of a body at r.
+std::string describe(const Model& model, const State<double>& q, BodyId body, const Vector3d& v, const Vector3d& w,
+                     double length) {
+    const std::string& name = model.bodies[static_cast<std::size_t>(body)].name;
+    if (w.norm() * length < 1e-6 * v.norm()) {
+        const Vector3d u = shown(v.normalized());
+        return fmt::format("{}: translation along ({:.3f}, {:.3f}, {:.3f})", name, u.x(), u.y(), u.z());
+    }
+    const Vector3d foot = q[body].r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
+    const Vector3d u = w.normalized();
+    std::vector<std::string> on_axis;
+    const auto look = [&](const std::string& what, const auto& point) {
+        if constexpr (requires { point.s_local; }) {
+            if (point.body != body) return;
+            const Vector3d p = q[body].r + q[body].lever(point.s_local);
+            if ((p - foot).cross(u).norm() < 1e-6 * length && std::ranges::find(on_axis, what) == on_axis.end())
+                on_axis.push_back(what);
+        }
+    };
+    for (const auto& c : model.constraints)
+        std::visit([&](const auto& e) { look(model.joints[static_cast<std::size_t>(c.joint)].name, e.i),
+                                        look(model.joints[static_cast<std::size_t>(c.joint)].name, e.j); }, c.kind);
+    for (const auto& e : model.elastics)
+        std::visit([&](const auto& kind) { look(e.name, kind.i), look(e.name, kind.j); }, e.kind);
+    const double pitch = v.dot(w) / w.squaredNorm();  // [m/rad]
+    const char* motion = std::abs(pitch) < 1e-6 * length ? "rotation" : "screw motion";
+    if (on_axis.size() >= 2)
+        return fmt::format("{}: {} about the line through '{}' and '{}'", name, motion, on_axis.front(), on_axis.back());
+    return fmt::format("{}: {} about the axis ({:.3f}, {:.3f}, {:.3f}) through ({:.4f}, {:.4f}, {:.4f}) m", name, motion,
+                       shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
+}
+
+// κ₂ without the `nullity` smallest singular values.
+double condition_number(const MatrixXd& M, Eigen::Index nullity) {
+    if (M.rows() <= nullity) return 1;
+    const Eigen::JacobiSVD<MatrixXd> svd(M);
+    const auto& s = svd.singularValues();
+    return s[0] / s[s.size() - 1 - nullity];
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Model& model) {
+    const State<double> q = design_state<double>(model);
+    Diagnosis result;
+    const int n = result.coordinates = coordinates(model);
+    const int m = result.rows = constraint_rows(model);
+    const int nb = static_cast<int>(model.bodies.size());
+    const double L = result.length = characteristic_length(model);
+
+    VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
+    for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
+
+    const VectorXd Phi = constraint_values<double>(model, q);
+    result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
+    MatrixXd Phi_q = constraint_jacobian<double>(model, q) * physical.asDiagonal();
+    VectorXd row_norm = Phi_q.rowwise().norm();
+    normalise_rows(Phi_q);
+    result.rank = rank_of(Phi_q);
+
+    int first = 0, rank_before = 0, k = 0;
+    for (int joint = 0; joint < static_cast<int>(model.joints.size()); ++joint) {
+        first = k;
+        for (const auto& c : model.constraints)
+            if (c.joint == joint) k += rows(c.kind);
+        const int rank = rank_of(Phi_q.topRows(k));
+        const int repeated = (k - first) - (rank - rank_before);
+        const bool contradicts = k > first && !(Phi.segment(first, k - first).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, L));
+        if (repeated > 0) result.redundant.push_back({joint, repeated, contradicts});
+        rank_before = rank;
+    }
+
+    MatrixXd elastic = elastic_rows(model, q) * physical.asDiagonal();
+    normalise_rows(elastic);
+    MatrixXd noticed(m + elastic.rows(), n);
+    noticed << Phi_q, elastic;
+    const MatrixXd idle = sparse_basis(noticed, null_space_of(noticed, n), nb);
+    for (Eigen::Index c = 0; c < idle.cols(); ++c) {
+        IdleMode mode;
+        Eigen::Index largest = 0;  // the sign is free: the largest entry counts as positive
+        (void)idle.col(c).cwiseAbs().maxCoeff(&largest);
+        mode.dq = (idle(largest, c) < 0 ? -1 : 1) * (physical.asDiagonal() * idle.col(c));
+        (void)idle.col(c).reshaped(6, nb).colwise().norm().maxCoeff(&largest);
+        mode.body = static_cast<BodyId>(largest);
+        mode.description = describe(model, q, mode.body, mode.dq.segment<3>(6 * largest), mode.dq.segment<3>(6 * largest + 3), L);
+        result.idle.push_back(mode);
+    }
+
+    const MatrixXd redundant = m > 0 ? null_space_of(Phi_q.transpose(), m) : MatrixXd(0, 0);
+    result.null_space.setZero(n + m, idle.cols() + redundant.cols());
+    result.null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
+    if (redundant.cols() > 0)  // λ of the unscaled rows
+        result.null_space.bottomRightCorner(m, redundant.cols()) = row_norm.cwiseInverse().asDiagonal() * redundant;
+
+    MatrixXd M(n + m, n + m);
+    assemble<double>(model, q, M);
+    const VectorXd D = equilibration<double>(M);
+    result.condition_raw = condition_number(M, result.null_space.cols());
+    result.condition = condition_number(D.asDiagonal() * M * D.asDiagonal(), result.null_space.cols());
+
+    // f_ext(0) - f_elast, projected on what the constraints leave free.
+    VectorXd f(n);
+    f.setZero();
+    add_loads<double>(model.static_loads, 1.0, q, f);
+    f -= elastic_force<double>(model, q);
+    const MatrixXd free = null_space_of(Phi_q, n);
+    const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
+    result.imbalance = n > 0 ? left.cwiseAbs().maxCoeff() : 0;
+    return result;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,40 @@
+#include "recursive/assembly.hpp"
+#include "recursive/reactions.hpp"
+#include "recursive/solve.hpp"
+
+namespace elastocheck::recursive {
+
+// f_ext(q, a) - f_elast(q) + (wrenches of the joints) = 0 for every body, and Φ(q) = 0.
+Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state) {
+    const State<double> q = state_of<double>(state.poses);
+    Vector<double> f;
+    external_force<double>(model, branch, state.load, q, f);
+    f -= elastic_force<double>(model, q);
+    for (std::size_t k = 0; k < model.joints.size(); ++k) {
+        const ModelJoint& joint = model.joints[k];
+        const Wrench& wrench = state.reactions[k];
+        const Vector3<double> p = q[joint.i].r + q[joint.i].lever(joint.at.s_local);
+        const auto add = [&](BodyId b, double sign) {
+            if (b == ground) return;
+            f.segment<3>(6 * b) += sign * wrench.force;
+            f.segment<3>(6 * b + 3) += sign * (wrench.moment + (p - q[b].r).cross(wrench.force));
+        };
+        add(joint.i, +1);
+        add(joint.j, -1);
+    }
+    // std::max would drop a NaN; once here, it stays.
+    const auto worse = [](double& worst, double value) {
+        if (!std::isnan(worst) && !(std::abs(value) <= worst)) worst = std::abs(value);
+    };
+    Residuals result;
+    for (BodyId b = 0; b < q.bodies(); ++b) {
+        for (int c = 0; c < 3; ++c) {
+            worse(result.force, f[6 * b + c]);
+            worse(result.moment, f[6 * b + 3 + c]);
+        }
+    }
+    for_each_row<double>(model, q, [&](int, const Row<double>& row) { worse(row.length ? result.length : result.direction, row.Phi); });
+    return result;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,109 @@
+#include "reference/energy/balance.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rank_threshold = 1e-9;  // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
+constexpr double difference = 1e-5;      // of ξ, central
+constexpr double idle_stiffness = 1e-7;  // F would move such a mode by 10⁷ L
+
+}  // namespace
+
+double largest(const Eigen::Ref<const VectorXd>& v) {
+    if (v.size() == 0) return 0;
+    return v.allFinite() ? v.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+}
+
+Balance balance(const Model& model, const Scales& scales, const VectorXd& gradient,
+                const ConstraintValues& values) {
+    const int n = static_cast<int>(gradient.size()), m = static_cast<int>(values.Phi.size());
+    const VectorXd S = scales.coordinates(n), D = scales.rows(model);
+    const VectorXd g = S.cwiseProduct(gradient) / scales.energy();
+    Balance at{.lambda = VectorXd::Zero(m),
+               .left = g,
+               .Phi = D.cwiseProduct(values.Phi),
+               .J_t = S.asDiagonal() * values.Phi_q.transpose() * D.asDiagonal(),
+               .across = MatrixXd(n, 0),
+               .along = MatrixXd::Identity(n, n),
+               .independent = {}};
+    if (m == 0 || n == 0 || !at.J_t.allFinite() || !g.allFinite()) return at;
+
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
+    qr.setThreshold(rank_threshold);
+    qr.compute(at.J_t);
+    const int rank = static_cast<int>(qr.rank());
+    const MatrixXd Q = qr.householderQ();
+    at.lambda = qr.solve(-g);
+    at.left = g + at.J_t * at.lambda;
+    at.across = Q.leftCols(rank);
+    at.along = Q.rightCols(n - rank);
+    for (int i = 0; i < rank; ++i) at.independent.push_back(qr.colsPermutation().indices()[i]);
+    return at;
+}
+
+Balance balance(const Model& model, const Loading& loading, const Scales& scales, const Chart& chart) {
+    return balance(model, scales, potential(model, loading, chart).gradient, constraints(model, chart));
+}
+
+MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scales,
+                 const std::vector<Pose>& centre, const VectorXd& lambda) {
+    const int n = coordinates(model);
+    const VectorXd S = scales.coordinates(n);
+    const VectorXd lambda_D = scales.rows(model).cwiseProduct(lambda) * scales.energy();  // SI
+    Chart chart = chart_about(centre);
+    const auto gradient_at = [&](int i, double xi) -> VectorXd {
+        VectorXd x = VectorXd::Zero(n);
+        x[i] = S[i] * xi;
+        move_to(chart, x);
+        return gradient_at_centre_stress(model, loading, chart) +
+               constraints(model, chart).Phi_q.transpose() * lambda_D;
+    };
+    MatrixXd geometric(n, n);
+    for (int i = 0; i < n; ++i)
+        geometric.col(i) =
+            (gradient_at(i, difference) - gradient_at(i, -difference)) / (2 * difference * S[i]);
+    move_to(chart, VectorXd::Zero(n));
+    const MatrixXd H = stiffness(model, chart) + 0.5 * (geometric + geometric.transpose());
+    return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
+}
+
+Modes modes_of(const Balance& at, const MatrixXd& H) {
+    Modes modes;
+    if (at.along.cols() == 0) return {at.along, VectorXd(0), 0};
+    const MatrixXd reduced = at.along.transpose() * H * at.along;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
+    modes.Z = at.along * eigen.eigenvectors();
+    modes.stiffness = eigen.eigenvalues();
+    const double roundoff = 50 * std::numeric_limits<double>::epsilon();
+    modes.idle_limit = idle_stiffness + roundoff * modes.stiffness.cwiseAbs().maxCoeff();
+    return modes;
+}
+
+MatrixXd Modes::idle_motions() const {
+    std::vector<int> which;
+    for (int i = 0; i < count(); ++i)
+        if (idle(i)) which.push_back(i);
+    return Z(Eigen::all, which);
+}
+
+double excess(const VectorXd& left, const VectorXd& Phi, const Modes& modes, const Scales& scales,
+              double tolerance) {
+    if (!left.allFinite() || !Phi.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    double worst = largest(Phi);
+    const VectorXd g = modes.Z.transpose() * left;
+    for (int i = 0; i < modes.count(); ++i) {
+        const double allowed = 1 + 8 * scales.roundoff * std::abs(modes.stiffness[i]) / tolerance;
+        worst = std::max(worst, std::abs(g[i]) / allowed);
+    }
+    return worst;
+}
+
+}  // namespace elastocheck::reference::energy

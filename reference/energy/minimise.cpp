@@ -1,0 +1,198 @@
+// What makes SLSQP reach the last digits here, where it otherwise stops at 1e-6 of the gradient:
+//
+// 1. Coordinates y, ξ = T y, in which the problem is round: T = [N B] with
+//      B = Z |W|^-½                         the modes along the constraints, each with unit stiffness
+//      N = (1 - Z W⁻¹ Zᵀ H) Y, scaled       the directions across them, conjugate to the modes
+//    so that SLSQP's first Hessian, the unit matrix, is the right one and its first steps are Newton steps.
+// 2. The function is V + λᵀΦ with λ fixed at the best multipliers of the centre: the same as V wherever Φ =
+// 0, hence with
+//    the same constrained minima, but its gradient is small and its multipliers are almost zero. The line
+//    search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of stiff constraints under load
+//    spoils them (Maratos).
+// 3. All values are changes since the centre, summed without cancellation (potential.hpp, constraints.hpp):
+// the
+//    function-value test has its floor at the roundoff of the change, not of V.
+// 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not change along
+// them, so
+//    this picks one of many equal minima, where it vanishes; without it, what little of their stiffness
+//    appears away from equilibrium would send them anywhere. If V did change along them, the measure, which
+//    knows nothing of this, would say so. Modes that turn up idle at the centre itself are left out of T.
+// 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them. They stay in
+// the measure.
+#include "reference/energy/minimise.hpp"
+
+#include <nlopt.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double aim = 0.01;       // of the tolerance: where to stop at once
+constexpr double holding = 1;      // stiffness given to idle motions, in units of F·L
+constexpr int patience = 5;        // evaluations without improvement, within the tolerance
+constexpr int long_patience = 20;  // and before that: a chart of large steps ends at the roundoff of these
+
+MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& modes) {
+    std::vector<int> resisting;
+    for (int i = 0; i < modes.count(); ++i)
+        if (!modes.idle(i)) resisting.push_back(i);
+    const MatrixXd Z = modes.Z(Eigen::all, resisting);
+    const VectorXd W = modes.stiffness(resisting);
+    const int rank = static_cast<int>(at.across.cols());
+    MatrixXd T(H.rows(), rank + Z.cols());
+    T.leftCols(rank) = at.across - Z * (W.cwiseInverse().asDiagonal() * (Z.transpose() * (H * at.across)));
+    for (int i = 0; i < rank; ++i) {
+        const double stiffness = std::abs(T.col(i).dot(H * T.col(i)));
+        T.col(i) /= std::sqrt(std::max(stiffness, 1.0));
+    }
+    T.rightCols(Z.cols()) = Z * W.cwiseAbs().cwiseSqrt().cwiseInverse().asDiagonal();
+    return T;
+}
+
+struct Problem {
+    const Model& model;
+    const Loading& loading;
+    const Scales& scales;
+    const Balance& at;
+    double tolerance;
+    int evaluation_limit;
+    const Modes& modes;
+    const MatrixXd& idle;
+    MatrixXd ST;         // x = S T y
+    VectorXd lambda, D;  // multipliers of D Φ
+    VectorXd row_scale;  // makes the rows of ∂c/∂y unit vectors at the centre
+    Chart chart;
+    nlopt_opt opt = nullptr;
+
+    // the last point evaluated
+    VectorXd y{}, c{};
+    double f = 0;
+    VectorXd f_y{};
+    MatrixXd c_y_t{};  // (∂c/∂y)ᵀ [6nb × rank]
+
+    Minimisation best;
+    int since_best = 0;
+};
+
+double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorXd& Phi) {
+    VectorXd left = g;
+    if (J_t.cols() > 0) {
+        const Eigen::HouseholderQR<MatrixXd> qr(J_t);
+        left.applyOnTheLeft(qr.householderQ().adjoint());
+        left.head(J_t.cols()).setZero();
+        left.applyOnTheLeft(qr.householderQ());
+    }
+    return excess(left, Phi, p.modes, p.scales, p.tolerance);
+}
+
+// All of f, c and their derivatives at y, and whether to go on.
+void evaluate(Problem& p, const VectorXd& y) {
+    if (p.y.size() == y.size() && p.y == y) return;
+    p.y = y;
+    move_to(p.chart, p.ST * y);
+    const Potential V = potential(p.model, p.loading, p.chart);
+    const ConstraintValues Phi = constraints(p.model, p.chart);
+    const int n = coordinates(p.model), rank = static_cast<int>(p.at.independent.size());
+    const double energy = p.scales.energy();
+    const VectorXd S = p.scales.coordinates(n), DPhi = p.D.cwiseProduct(Phi.Phi);
+    const MatrixXd J_t = S.asDiagonal() * Phi.Phi_q.transpose() * p.D.asDiagonal();  // (∂DΦ/∂ξ)ᵀ [6nb × m]
+    const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
+
+    MatrixXd selected(n, rank);
+    p.c.resize(rank);
+    for (int i = 0; i < rank; ++i) {
+        selected.col(i) = J_t.col(p.at.independent[static_cast<std::size_t>(i)]);
+        p.c[i] = p.row_scale[i] * DPhi[p.at.independent[static_cast<std::size_t>(i)]];
+    }
+    const VectorXd idle = p.idle.transpose() * (p.ST * y).cwiseQuotient(S);
+    p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) + 0.5 * holding * idle.squaredNorm();
+    const MatrixXd T_t = p.ST.transpose() * S.cwiseInverse().asDiagonal();
+    p.f_y = T_t * (g + holding * p.idle * idle);
+    p.c_y_t = T_t * selected * p.row_scale.asDiagonal();
+
+    ++p.best.evaluations;
+    const double e = measure(p, g, selected, DPhi);
+    if (!std::isfinite(e) || !std::isfinite(p.f)) p.f = HUGE_VAL;  // SLSQP then shortens its step
+    if (std::isfinite(e) && !(p.best.excess <= e)) {
+        p.best.excess = e;
+        p.best.poses = poses(p.chart);
+        p.since_best = 0;
+    } else {
+        ++p.since_best;
+    }
+    const bool good = p.best.excess <= p.tolerance;
+    if (p.best.excess <= aim * p.tolerance || p.since_best >= (good ? patience : long_patience) ||
+        p.best.evaluations >= p.evaluation_limit || !std::isfinite(p.best.excess))
+        if (p.opt) nlopt_force_stop(p.opt);
+}
+
+double objective(unsigned n, const double* y, double* gradient, void* data) {
+    Problem& p = *static_cast<Problem*>(data);
+    evaluate(p, Eigen::Map<const VectorXd>(y, n));
+    if (gradient) Eigen::Map<VectorXd>(gradient, n) = p.f_y;
+    return p.f;
+}
+
+void constraint_vector(unsigned m, double* result, unsigned n, const double* y, double* gradient,
+                       void* data) {
+    Problem& p = *static_cast<Problem*>(data);
+    evaluate(p, Eigen::Map<const VectorXd>(y, n));
+    Eigen::Map<VectorXd>(result, m) = p.c;
+    if (gradient)
+        Eigen::Map<MatrixXd>(gradient, n, m) = p.c_y_t;  // row-major [m × n] is column-major [n × m]
+}
+
+}  // namespace
+
+Minimisation minimise(const Model& model, const Loading& loading, const Scales& scales,
+                      const std::vector<Pose>& centre, const Balance& at, const MatrixXd& H,
+                      const MatrixXd& idle, double tolerance, int evaluation_limit) {
+    const int rank = static_cast<int>(at.independent.size());
+    const MatrixXd H_held = H + holding * idle * idle.transpose();
+    const Modes modes = modes_of(at, H_held);
+    const MatrixXd T = round_coordinates(at, H_held, modes);
+    const VectorXd S = scales.coordinates(coordinates(model));
+    const int n = static_cast<int>(T.cols());
+    Problem p{.model = model,
+              .loading = loading,
+              .scales = scales,
+              .at = at,
+              .tolerance = tolerance,
+              .evaluation_limit = evaluation_limit,
+              .modes = modes,
+              .idle = idle,
+              .ST = S.asDiagonal() * T,
+              .lambda = at.lambda,
+              .D = scales.rows(model),
+              .row_scale = VectorXd::Ones(rank),
+              .chart = chart_about(centre),
+              .best = {centre, std::numeric_limits<double>::quiet_NaN(), 0}};
+    if (n == 0) {
+        evaluate(p, VectorXd(0));
+        return p.best;
+    }
+
+    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
+        nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(n)), nlopt_destroy);
+    p.opt = opt.get();
+    for (int i = 0; i < rank; ++i)
+        p.row_scale[i] = 1 / (T.transpose() * at.J_t.col(at.independent[static_cast<std::size_t>(i)])).norm();
+    nlopt_set_min_objective(opt.get(), objective, &p);
+    const std::vector<double> no_tolerance(static_cast<std::size_t>(rank), 0.0);
+    if (rank > 0)
+        nlopt_add_equality_mconstraint(opt.get(), static_cast<unsigned>(rank), constraint_vector, &p,
+                                       no_tolerance.data());
+    VectorXd y = VectorXd::Zero(n);
+    double f = 0;
+    nlopt_optimize(opt.get(), y.data(), &f);
+    return p.best;
+}
+
+}  // namespace elastocheck::reference::energy

@@ -1,0 +1,275 @@
+// The physics of this leg: what joints, elements and loads do to free bodies, written once for double and for Ceres' Jets.
+//
+// Free-body diagrams. Whatever connects two bodies acts on body i with a force and a moment, and on body j with the
+// opposite force on the same line of action and the opposite moment. So one `Interaction` says it all:
+//
+//   on body i:   force  F      moment about r_i   M + (x - r_i) × F
+//   on body j:   force -F      moment about r_j  -M - (x - r_j) × F        x: any point of the line of action
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "models/mechanism.hpp"
+#include "models/model.hpp"
+
+namespace elastocheck::reference::equilibrium {
+
+template <class T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+
+// Where a body is: its origin, and the unit quaternion that turns body axes into ground axes.
+template <class T>
+struct Frame {
+    Vec3<T> r;
+    Eigen::Quaternion<T> p;
+};
+
+template <class T>
+struct Interaction {
+    Vec3<T> force = Vec3<T>::Constant(T(0.0));   // F on body i [N]
+    Vec3<T> moment = Vec3<T>::Constant(T(0.0));  // M on body i [N·m]
+    Vec3<T> at = Vec3<T>::Constant(T(0.0));      // x [m]
+};
+
+// ---- Rotations
+
+// A(p) v = v + w u + p⃗ × u with u = 2 p⃗ × v, p = (w, p⃗) a unit quaternion; S is T or double.
+template <class T, class S>
+Vec3<T> turned(const Eigen::Quaternion<T>& p, const Vec3<S>& v) {
+    const T &w = p.w(), &a = p.x(), &b = p.y(), &c = p.z();
+    const T ux = (b * v[2] - c * v[1]) * 2.0, uy = (c * v[0] - a * v[2]) * 2.0, uz = (a * v[1] - b * v[0]) * 2.0;
+    return {w * ux + (b * uz - c * uy) + v[0], w * uy + (c * ux - a * uz) + v[1], w * uz + (a * uy - b * ux) + v[2]};
+}
+
+template <class T>
+Eigen::Quaternion<T> conjugate(const Eigen::Quaternion<T>& p) {
+    return {p.w(), -p.x(), -p.y(), -p.z()};
+}
+
+// The Hamilton product p q: A(p q) = A(p) A(q); S is T or double.
+template <class T, class S>
+Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& p, const Eigen::Quaternion<S>& q) {
+    return {p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
+            p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
+            p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
+            p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
+}
+
+// θ = log A and the coefficient c of the inverse left Jacobian of SO(3),
+//
+//   J⁻¹(θ) = I - ½ θ̃ + c θ̃²,   c = (1 - (θ/2) cot(θ/2)) / θ².
+//
+// With the quaternion of A as (w, v), w ≥ 0: |v| = sin(θ/2), w = cos(θ/2), so θ = 2 v atan2(|v|, w) / |v| and
+// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, which have derivatives there too:
+// atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!).
+// The logarithm is not unique at half a turn: there, and 1e-6 rad before, everything is NaN rather than quietly one of two.
+template <class T>
+struct Logarithm {
+    Vec3<T> theta;
+    T c;
+};
+
+template <class T>
+Logarithm<T> logarithm(Eigen::Quaternion<T> q) {
+    using std::atan2;
+    using std::sqrt;
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+    const T w = q.w(), sin2 = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+    if (!(w > 0.5e-6)) {
+        const T nan(std::numeric_limits<double>::quiet_NaN());
+        return {Vec3<T>::Constant(nan), nan};
+    }
+    T angle_by_sin, c;  // (θ/2)/sin(θ/2), c
+    const T t2 = sin2 / (w * w);
+    if (t2 < 2.5e-3) {
+        angle_by_sin = T(1.0 / 13);
+        for (int n = 11; n >= 1; n -= 2) angle_by_sin = 1.0 / n - t2 * angle_by_sin;
+        angle_by_sin /= w;
+        const T x = 4.0 * sin2 * angle_by_sin * angle_by_sin;  // θ²
+        constexpr double b[] = {1. / 12, 1. / 720, 1. / 30240, 1. / 1209600, 1. / 47900160, 691. / 1307674368000.};
+        c = T(b[5]);
+        for (int n = 4; n >= 0; --n) c = b[n] + x * c;
+    } else {
+        const T s = sqrt(sin2);
+        angle_by_sin = atan2(s, w) / s;
+        c = (1.0 - angle_by_sin * w) / (4.0 * sin2 * angle_by_sin * angle_by_sin);
+    }
+    const T k = 2.0 * angle_by_sin;
+    return {{k * q.x(), k * q.y(), k * q.z()}, c};
+}
+
+template <class T>
+Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+template <class T>
+T dot(const Vec3<T>& a, const Vec3<T>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// ---- Points and directions of a body
+
+template <class T>
+Vec3<T> position(const Frame<T>& body, const Eigen::Vector3d& s_local) {
+    return body.r + turned(body.p, s_local);
+}
+
+template <class T>
+Vec3<T> direction(const Frame<T>& body, const Eigen::Vector3d& u_local) {
+    return turned(body.p, u_local);
+}
+
+// ---- Elastic elements
+
+// A spring pulls its ends together with N = k (ℓ - ℓ₀) along e = (p_j - p_i) / ℓ.
+template <class T>
+Interaction<T> interaction(const AxialSpring& spring, const Frame<T>& i, const Frame<T>& j) {
+    using std::sqrt;
+    const Vec3<T> p_i = position(i, spring.i.s_local), p_j = position(j, spring.j.s_local);
+    const Vec3<T> along = p_j - p_i;
+    const T length = sqrt(dot(along, along));
+    const T pull = spring.k * (length - spring.free_length) / length;
+    Interaction<T> on_i;
+    on_i.force = {pull * along[0], pull * along[1], pull * along[2]};
+    on_i.at = p_i;
+    return on_i;
+}
+
+// Whether a bushing cares how its markers are turned against each other; if not, half a turn is no obstacle.
+inline bool resists_rotation(const Bushing& bushing) {
+    return !(bushing.K.bottomRows<3>().isZero(0) && bushing.K.topRightCorner<3, 3>().isZero(0) &&
+             bushing.preload.tail<3>().isZero(0));
+}
+
+// (f, g) = K e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, all in the axes of marker i.
+// Let the bodies move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_i f.
+//
+//   δd = A_iᵀ (δp_j - δp_i - δπ_i × D)      so  f · δd = F · (δp_j - δp_i) - δπ_i · (D × F)
+//   δθ = J⁻¹(θ) A_iᵀ (δπ_j - δπ_i)          so  g · δθ = (A_i m) · (δπ_j - δπ_i),  m = J⁻ᵀ g = g + ½ θ × g + c θ × (θ × g)
+//
+// (R = A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) R, whence the left Jacobian.) The body feels -∂U: on j the force -F at
+// p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the moment A_i m.
+template <class T>
+Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Frame<T>& j) {
+    const Vec3<T> p_i = position(i, bushing.i.s_local), p_j = position(j, bushing.j.s_local);
+    const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local), axes_j = product(j.p, bushing.j.A_local);
+    const Eigen::Quaternion<T> to_i = conjugate(axes_i);
+
+    Eigen::Matrix<T, 6, 1> e;
+    Logarithm<T> log{Vec3<T>::Constant(T(0.0)), T(0.0)};
+    const bool rotational = resists_rotation(bushing);
+    if (rotational) log = logarithm(product(to_i, axes_j));
+    e << turned(to_i, Vec3<T>(p_j - p_i)), log.theta;
+
+    Eigen::Matrix<T, 6, 1> fg;
+    for (int row = 0; row < 6; ++row) {
+        fg[row] = T(bushing.preload[row]);
+        for (int col = 0; col < 6; ++col)
+            if (bushing.K(row, col) != 0) fg[row] += bushing.K(row, col) * e[col];
+    }
+    Interaction<T> on_i;
+    on_i.force = turned(axes_i, Vec3<T>(fg.template head<3>()));
+    on_i.at = p_j;
+    if (rotational) {
+        const Vec3<T> g = fg.template tail<3>(), theta_g = cross(log.theta, g), theta2_g = cross(log.theta, theta_g);
+        Vec3<T> m;
+        for (int k = 0; k < 3; ++k) m[k] = g[k] + 0.5 * theta_g[k] + log.c * theta2_g[k];
+        on_i.moment = turned(axes_i, m);
+    }
+    return on_i;
+}
+
+// ---- Constraints
+
+// The rows of a constraint, and the interaction its reactions R [N, or N·m for directions] make. Without friction a joint
+// pushes only where it holds: along the normal, along the bar, about the common perpendicular of the two directions.
+template <class T>
+struct Holding {
+    Vec3<T> Phi;  // the first rows(kind) count; [m] or [-]
+    Interaction<T> reaction;
+};
+
+template <class T>
+Holding<T> holding(const CoincidentPoints& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+    const Vec3<T> p_i = position(i, c.i.s_local);
+    Holding<T> h;
+    h.Phi = p_i - position(j, c.j.s_local);
+    h.reaction.force = {R[0], R[1], R[2]};
+    h.reaction.at = p_i;
+    return h;
+}
+
+// The normal belongs to body j, the point that is held to body i: the contact is at that point.
+template <class T>
+Holding<T> holding(const PointInPlane& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+    const Vec3<T> p_i = position(i, c.i.s_local), n = direction(j, c.normal_j.u_local);
+    Holding<T> h;
+    h.Phi[0] = dot(n, Vec3<T>(p_i - position(j, c.j.s_local)));
+    h.reaction.force = {n[0] * R[0], n[1] * R[0], n[2] * R[0]};
+    h.reaction.at = p_i;
+    return h;
+}
+
+template <class T>
+Holding<T> holding(const PerpendicularDirections& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+    const Vec3<T> u_i = direction(i, c.i.u_local), u_j = direction(j, c.j.u_local), about = cross(u_i, u_j);
+    Holding<T> h;
+    h.Phi[0] = dot(u_i, u_j);
+    h.reaction.moment = {about[0] * R[0], about[1] * R[0], about[2] * R[0]};
+    h.reaction.at = i.r;
+    return h;
+}
+
+// A bar that pushes its ends apart with R.
+template <class T>
+Holding<T> holding(const DistanceBetween& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+    using std::sqrt;
+    const Vec3<T> p_i = position(i, c.i.s_local), bar = p_i - position(j, c.j.s_local);
+    const T length = sqrt(dot(bar, bar)), push = R[0] / length;
+    Holding<T> h;
+    h.Phi[0] = length - c.length;
+    h.reaction.force = {bar[0] * push, bar[1] * push, bar[2] * push};
+    h.reaction.at = p_i;
+    return h;
+}
+
+inline bool is_direction(const ConstraintKind& kind) { return std::holds_alternative<PerpendicularDirections>(kind); }
+
+// ---- Loads
+
+// What a dead load of unit factor does to its body: force, and moment about the body's origin.
+template <class T>
+Interaction<T> on_body(const DeadForce& load, const Frame<T>& body) {
+    Interaction<T> on;
+    on.force = load.f.cast<T>();
+    on.at = position(body, load.at.s_local);
+    return on;
+}
+
+template <class T>
+Interaction<T> on_body(const DeadMoment& load, const Frame<T>& body) {
+    Interaction<T> on;
+    on.moment = load.m.cast<T>();
+    on.at = body.r;
+    return on;
+}
+
+// ---- Which bodies are meant
+
+struct Pair {
+    BodyId i, j;
+};
+
+template <class Kind>
+Pair bodies_of(const Kind& kind) {
+    return std::visit([](const auto& k) { return Pair{k.i.body, k.j.body}; }, kind);
+}
+
+inline BodyId body_of(const LoadKind& load) {
+    if (const auto* force = std::get_if<DeadForce>(&load)) return force->at.body;
+    return std::get<DeadMoment>(load).body;
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,185 @@
+#include "reference/equilibrium/newton.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/jet.h>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// A part of the system depends on two bodies and at most three reactions: 7 + 7 + 3 derivatives, scattered afterwards.
+constexpr int first_reaction = 14;
+using Jet = ceres::Jet<double, 17>;
+
+// The first column of a body's or a row's unknowns.
+int column(BodyId body) { return 7 * body; }
+int column(const System& system, int row) { return 7 * system.bodies + row; }
+
+struct Seeds {
+    const System& system;
+    const VectorXd& x;
+
+    Frame<Jet> frame(const Part& part, int which) const {
+        const BodyId body = which == 0 ? part.i : part.j;
+        if (body == ground) {
+            const auto at = ground_frame(system);
+            return {at.r.cast<Jet>(), {Jet(1.0), Jet(0.0), Jet(0.0), Jet(0.0)}};
+        }
+        const auto seed = [&](int k) { return Jet(x[column(body) + k], 7 * which + k); };
+        return {{system.length * seed(0), system.length * seed(1), system.length * seed(2)},
+                {seed(6), seed(3), seed(4), seed(5)}};
+    }
+    Jet reaction(const Part& part, int k) const {
+        return Jet(x[column(system, part.row) + k], first_reaction + k);
+    }
+};
+
+struct Scatter {
+    const System& system;
+    VectorXd E;
+    RowMajor dE;  // [n × (7 nb + m)]
+
+    void add(const Part& part, int row, const Jet& term) {
+        E[row] += term.a;
+        if (part.i != ground) dE.row(row).segment<7>(column(part.i)) += term.v.segment<7>(0).transpose();
+        if (part.j != ground) dE.row(row).segment<7>(column(part.j)) += term.v.segment<7>(7).transpose();
+        for (int k = 0; k < part.rows; ++k) dE(row, column(system, part.row) + k) += term.v[first_reaction + k];
+    }
+    void balance(const Part& part, BodyId body, const Vec3<Jet>& force, const Vec3<Jet>& moment) {
+        for (int k = 0; k < 3; ++k) add(part, 6 * body + k, force[k]);
+        for (int k = 0; k < 3; ++k) add(part, 6 * body + 3 + k, moment[k]);
+    }
+    void constraint(const Part& part, int k, const Jet& Phi) { add(part, 6 * system.bodies + part.row + k, Phi); }
+};
+
+Scatter differentiated(const System& system, double load_factor, const VectorXd& x) {
+    Scatter sum{system, VectorXd::Zero(system.equations()), RowMajor::Zero(system.equations(), system.unknowns())};
+    assemble<Jet>(system, load_factor, Seeds{system, x}, sum);
+    return sum;
+}
+
+// The whole system is one residual block: a balance gathers from every element that touches the body.
+class SystemCost final : public ceres::CostFunction {
+  public:
+    SystemCost(const System& system, const Loading& loading) : system_(system), loading_(loading), x_(system.unknowns()) {
+        set_num_residuals(system.equations());
+        mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(system.bodies), 7);
+        if (system.constraint_rows > 0) mutable_parameter_block_sizes()->push_back(system.constraint_rows);
+    }
+
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        const auto& sizes = parameter_block_sizes();
+        for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
+            std::copy_n(parameters[b], sizes[b], x_.data() + at);
+        Eigen::Map<VectorXd> E(residuals, system_.equations());
+        if (jacobians == nullptr) {
+            E = residual(system_, loading_, x_);
+            return E.allFinite();
+        }
+        const auto sum = differentiated(system_, loading_.factor, x_);
+        E = sum.E - loading_.held * system_.at_design;
+        for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
+            if (jacobians[b] != nullptr)
+                Eigen::Map<RowMajor>(jacobians[b], system_.equations(), sizes[b]) =
+                    sum.dE.middleCols(static_cast<Eigen::Index>(at), sizes[b]);
+        return E.allFinite() && sum.dE.allFinite();
+    }
+
+  private:
+    const System& system_;
+    Loading loading_;
+    mutable VectorXd x_;  // room for the unknowns in one piece; a problem is solved by one thread
+};
+
+// Goes on until the residual is small and the corrections have died out: the step after a correction of 1e-8 would be
+// of its square.
+struct StopAtFloor final : ceres::IterationCallback {
+    explicit StopAtFloor(double limit) : tolerance(limit) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
+        if (now.iteration == 0) return ceres::SOLVER_CONTINUE;
+        const bool done = std::sqrt(2 * now.cost) <= tolerance && now.step_norm <= 1e-8;
+        return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    }
+    double tolerance;
+};
+
+ceres::Solver::Options solver_options(const Options& options) {
+    ceres::Solver::Options o;
+    o.linear_solver_type = ceres::DENSE_QR;  // not of the normal equations: they square the condition number
+    o.max_num_iterations = options.iteration_limit;
+    // Newton's method as nearly as can be; what damping is left turns idle modes and redundant rows into minimum-norm steps.
+    o.initial_trust_region_radius = o.max_trust_region_radius = 1e16;
+    o.min_lm_diagonal = 1;
+    o.jacobi_scaling = false;
+    // Tolerances are ours (StopAtFloor), except for a standstill.
+    o.function_tolerance = 1e-4;
+    o.gradient_tolerance = 0;
+    o.parameter_tolerance = 0;
+    o.num_threads = 1;
+    o.logging_type = ceres::SILENT;
+    return o;
+}
+
+}  // namespace
+
+Attempt newton(const System& system, const Loading& loading, const VectorXd& start, const Options& options,
+               Counts& counts) {
+    Attempt attempt{start, 0, false};
+    VectorXd& x = attempt.x;
+    ++counts.evaluations;
+    attempt.residual = largest(residual(system, loading, start));
+    if (!std::isfinite(attempt.residual)) return attempt;  // Ceres would complain aloud
+
+    SystemCost cost(system, loading);
+    ceres::ProductManifold<ceres::EuclideanManifold<3>, ceres::EigenQuaternionManifold> rigid_body;
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.disable_all_safety_checks = true;
+    ceres::Problem problem(ownership);
+    std::vector<double*> blocks;
+    for (int body = 0; body < system.bodies; ++body) {
+        blocks.push_back(x.data() + column(body));
+        problem.AddParameterBlock(blocks.back(), 7, &rigid_body);
+    }
+    if (system.constraint_rows > 0) blocks.push_back(x.data() + column(system, 0));
+    problem.AddResidualBlock(&cost, nullptr, blocks);
+
+    StopAtFloor stop(options.tolerance);
+    ceres::Solver::Options solver = solver_options(options);
+    solver.callbacks.push_back(&stop);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+
+    counts.factorisations += summary.num_linear_solves;
+    counts.iterations += std::max<long>(0, static_cast<long>(summary.iterations.size()) - 1);
+    counts.evaluations += summary.num_residual_evaluations + 1;
+    for (int body = 0; body < system.bodies; ++body) x.segment<4>(column(body) + 3).normalize();
+    attempt.residual = largest(residual(system, loading, x));
+    attempt.out_of_time = static_cast<int>(summary.iterations.size()) > options.iteration_limit;
+    return attempt;
+}
+
+// A turn by δπ changes the quaternion by ½ (δπ, 0) p:  δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
+MatrixXd jacobian(const System& system, double load_factor, const VectorXd& x, Counts& counts) {
+    const auto sum = differentiated(system, load_factor, x);
+    ++counts.evaluations;
+    MatrixXd J(system.equations(), system.equations());
+    for (int body = 0; body < system.bodies; ++body) {
+        const double a = x[7 * body + 3], b = x[7 * body + 4], c = x[7 * body + 5], w = x[7 * body + 6];
+        Eigen::Matrix<double, 4, 3> turn;
+        turn << w, c, -b,  //
+            -c, w, a,      //
+            b, -a, w,      //
+            -a, -b, -c;
+        J.middleCols<3>(6 * body) = sum.dE.middleCols<3>(7 * body);
+        J.middleCols<3>(6 * body + 3) = sum.dE.middleCols<4>(7 * body + 3) * (turn / 2);
+    }
+    J.rightCols(system.constraint_rows) = sum.dE.rightCols(system.constraint_rows);
+    return J;
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,29 @@
+// Which code, built how, on what, made a result.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reports {
+
+struct Library {
+    std::string name, version;
+};
+
+struct Provenance {
+    std::string version;   // of elastocheck
+    std::string commit;    // full hash, "unknown" outside a git checkout
+    bool dirty = false;    // uncommitted changes in the checkout it was built from
+    std::string compiler;  // "GNU 12.2.0"
+    std::string flags;     // "-O3 -DNDEBUG -ffp-contract=off"
+    std::string cpu;       // model name, "unknown" where the system does not tell
+    std::vector<Library> libraries;
+};
+
+Provenance provenance();
+
+// FNV-1a, 64 bit, in hex: tells one input from another, not a proof against forgery.
+std::string input_hash(std::string_view content);
+
+}  // namespace elastocheck::reports

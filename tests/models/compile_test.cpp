@@ -1,0 +1,520 @@
+// What a model keeps of a scene, what it leaves out and why.
+#include "models/compile.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <random>
+
+#include "models/lowering.hpp"
+#include "models/scene_file.hpp"
+
+namespace elastocheck {
+namespace {
+
+using Eigen::Vector3d;
+
+// ---- Scenes in a few words. Bodies a, b, c, ... stand one metre apart along x; a is the output.
+
+Scene bodies(int count) {
+    Scene scene;
+    for (int n = 0; n < count; ++n)
+        scene.bodies.push_back({std::string(1, static_cast<char>('a' + n % 26)), {.r = Vector3d(n, 0, 0)}});
+    scene.probes.push_back({"output", {.body = 0}});
+    return scene;
+}
+
+Vector3d origin(const Scene& scene, BodyId body) {
+    return body == ground ? Vector3d(Vector3d::Zero())
+                          : scene.bodies[static_cast<std::size_t>(body)].design.r;
+}
+
+// A point of each body at the origin of i.
+std::pair<Point, Point> at_origin_of_i(const Scene& scene, BodyId i, BodyId j) {
+    return {{i, Vector3d::Zero()}, {j, origin(scene, i) - origin(scene, j)}};
+}
+
+void ball(Scene& scene, const std::string& name, BodyId i, BodyId j) {
+    const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
+    scene.joints.push_back({name, Spherical{p_i, p_j}});
+}
+
+void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k, double preload = 0) {
+    const double length = 0.5;
+    const Point p_i{i, Vector3d::Zero()},
+        p_j{j, origin(scene, i) - origin(scene, j) + Vector3d(0, 0, length)};
+    scene.elastics.push_back({name, AxialSpring{p_i, p_j, k, k > 0 ? length + preload / k : length}});
+}
+
+Bushing& bushing(Scene& scene, const std::string& name, BodyId i, BodyId j, double k) {
+    const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
+    Bushing b{.i = {i, p_i.s_local}, .j = {j, p_j.s_local}};
+    b.K.diagonal().setConstant(k);
+    scene.elastics.push_back({name, b});
+    return std::get<Bushing>(scene.elastics.back().kind);
+}
+
+Load push(const std::string& name, BodyId on, double f = 1) {
+    return {name, DeadForce{{on, Vector3d::Zero()}, Vector3d(0, 0, f)}};
+}
+Load twist(const std::string& name, BodyId on, double m = 1) {
+    return {name, DeadMoment{on, Vector3d(m, 0, 0)}};
+}
+
+// a, b, c, ... one hung on the next, the first on ground.
+Scene chain(int count) {
+    Scene scene = bodies(count);
+    ball(scene, "root", 0, ground);
+    for (BodyId n = 1; n < count; ++n) ball(scene, fmt::format("joint_{}", n), n, n - 1);
+    return scene;
+}
+
+std::string kept(const Model& model) {
+    std::string names;
+    for (const Body& body : model.bodies) names += body.name;
+    return names;
+}
+
+std::map<std::string, std::string> left_out(const Model& model) {
+    std::map<std::string, std::string> reasons;
+    for (const auto& [what, why] : model.left_out)
+        EXPECT_TRUE(reasons.emplace(what, why).second) << what << " twice";
+    return reasons;
+}
+
+const std::string unconnected = "no output is connected to it";
+const std::string follower = "it hangs on one other body and carries no load, no preload and no output";
+const std::string with_its_body = "a body it connects is left out";
+
+// ---- What is left out.
+
+TEST(Compile, LeavesOutNothingOfTheShippedScenes) {
+    for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
+        if (entry.path().extension() != ".yaml") continue;
+        const Scene scene = read_scene(entry.path());
+        const Model model = compile(scene);
+        EXPECT_TRUE(model.left_out.empty()) << entry.path() << ": " << model.left_out.front().what;
+        EXPECT_EQ(model.bodies.size(), scene.bodies.size());
+        EXPECT_EQ(model.joints.size(), scene.joints.size());
+        EXPECT_EQ(model.elastics.size(), scene.elastics.size());
+        EXPECT_EQ(model.branches.size(), scene.branches.size());
+        EXPECT_EQ(model.name, scene.name);
+    }
+}
+
+TEST(Compile, FindsThePapersTwentySevenUnknowns) {
+    const Model model = compile(read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "mcpherson.yaml"));
+    EXPECT_EQ(coordinates(model), 18);
+    EXPECT_EQ(constraint_rows(model), 9);
+}
+
+TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
+    Scene scene = bodies(4);
+    ball(scene, "ab", 1, 0);
+    spring(scene, "b_ground", 1, ground, 1e3, 50);
+    ball(scene, "cd", 3, 2);
+    spring(scene, "d_ground", 3, ground, 1e3, 50);  // preloaded, but far from any output
+    scene.static_loads = {push("weight", 3)};
+    scene.branches = {{"up", {push("load", 1), push("elsewhere", 2)}, 1, 1}};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "ab");
+    EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{
+                                   {"body 'c'", unconnected},
+                                   {"body 'd'", unconnected},
+                                   {"joint 'cd'", with_its_body},
+                                   {"element 'd_ground'", with_its_body},
+                                   {"load 'weight'", "its body is left out"},
+                                   {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
+    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+}
+
+TEST(Compile, DoesNotConnectThroughGround) {
+    Scene scene = bodies(2);
+    ball(scene, "a_ground", 0, ground);
+    ball(scene, "b_ground", 1, ground);
+    EXPECT_EQ(kept(compile(scene)), "a");
+}
+
+TEST(Compile, DoesNotConnectThroughAZeroElement) {
+    Scene scene = bodies(3);
+    spring(scene, "ab", 0, 1, 0);
+    bushing(scene, "ac", 0, 2, 0);
+    spring(scene, "b_ground", 1, ground, 1e3);
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "a");
+    EXPECT_EQ(left_out(model),
+              (std::map<std::string, std::string>{{"body 'b'", unconnected},
+                                                  {"body 'c'", unconnected},
+                                                  {"element 'ab'", "its rates and preload are zero"},
+                                                  {"element 'ac'", "its rates and preload are zero"},
+                                                  {"element 'b_ground'", with_its_body}}));
+}
+
+TEST(Compile, LeavesOutAFreeChainFromItsLooseEndInwards) {
+    for (int count = 2; count <= 26; ++count) {
+        const Model model = compile(chain(count));
+        EXPECT_EQ(kept(model), "a");
+        const auto reasons = left_out(model);
+        EXPECT_EQ(reasons.size(), 2U * static_cast<std::size_t>(count - 1));
+        for (const auto& [what, why] : reasons)
+            EXPECT_EQ(why, what.starts_with("body") ? follower : with_its_body);
+    }
+}
+
+TEST(Compile, LeavesOutAFollowerHeldInSeveralWaysByOneBody) {
+    Scene scene = chain(2);
+    spring(scene, "helper", 1, 0, 1e3);
+    bushing(scene, "mount", 1, 0, 1e3);
+    EXPECT_EQ(kept(compile(scene)), "a");
+}
+
+// A chain a-b-c-d with something on c that matters: d still goes, c and what leads to it stay.
+struct Reason {
+    const char* name;
+    void (*give)(Scene&);
+};
+
+TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
+    const Reason reasons[] = {
+        {"a load",
+         [](Scene& s) {
+             s.branches = {{"up", {push("p", 2)}, 1, 1}};
+         }},
+        {"a moment",
+         [](Scene& s) {
+             s.branches = {{"up", {twist("t", 2)}, 1, 1}};
+         }},
+        {"a load in the second branch",
+         [](Scene& s) {
+             s.branches = {{"one", {push("q", 0)}, 1, 1}, {"two", {push("p", 2)}, 1, 1}};
+         }},
+        {"a static load", [](Scene& s) { s.static_loads = {push("p", 2)}; }},
+        {"a static moment", [](Scene& s) { s.static_loads = {twist("t", 2)}; }},
+        {"a probe",
+         [](Scene& s) {
+             s.probes.push_back({"p", {.body = 2}});
+         }},
+        {"the wheel", [](Scene& s) { s.wheel = Wheel{.body = 2}; }},
+        {"a joint to ground", [](Scene& s) { ball(s, "held", 2, ground); }},
+        {"a spring to ground", [](Scene& s) { spring(s, "held", 2, ground, 1e3); }},
+        {"a joint to another body", [](Scene& s) { ball(s, "loop", 2, 0); }},
+        {"a preloaded spring", [](Scene& s) { spring(s, "coil", 2, 1, 1e3, 1e-3); }},
+        {"a spring in tension", [](Scene& s) { spring(s, "coil", 1, 2, 1e3, -1e-3); }},
+        {"a bushing with a preload", [](Scene& s) { bushing(s, "rubber", 2, 1, 1e3).preload[4] = 1e-9; }},
+        {"a bushing of nothing but preload", [](Scene& s) { bushing(s, "rubber", 2, 1, 0).preload[0] = 1; }},
+        {"a bushing between points apart",
+         [](Scene& s) { bushing(s, "rubber", 1, 2, 1e3).j.s_local.y() += 1e-9; }},
+        {"a bushing between frames apart",
+         [](Scene& s) {
+             bushing(s, "rubber", 1, 2, 1e3).j.A_local = Eigen::AngleAxisd(1e-9, Vector3d::UnitX());
+         }},
+        {"a spring of no number", [](Scene& s) { spring(s, "coil", 2, 1, 1e3, std::nan("")); }},
+    };
+    for (const auto& [name, give] : reasons) {
+        Scene scene = chain(4);
+        give(scene);
+        const Model model = compile(scene);
+        EXPECT_EQ(kept(model), "abc") << "for " << name;
+        EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{{"body 'd'", follower},
+                                                                       {"joint 'joint_3'", with_its_body}}))
+            << "for " << name;
+    }
+}
+
+TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
+    Scene scene = chain(2);
+    scene.static_loads = {push("nothing", 1, 0)};
+    scene.branches = {{"up", {push("load", 0), twist("none", 1, 0)}, 1, 1}};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "a");
+    const auto reasons = left_out(model);
+    EXPECT_EQ(reasons.at("load 'nothing'"), "it is zero");
+    EXPECT_EQ(reasons.at("load 'none'"), "it is zero (branch 'up')");
+    EXPECT_EQ(model.static_loads.size(), 0U);
+    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+}
+
+TEST(Compile, KeepsAPreloadWithoutRate) {
+    Scene scene = bodies(1);
+    bushing(scene, "pull", 0, ground, 0).preload[2] = 7;
+    const Model model = compile(scene);
+    ASSERT_EQ(model.elastics.size(), 1U);
+    EXPECT_EQ(std::get<Bushing>(model.elastics[0].kind).preload[2], 7);
+}
+
+TEST(Compile, KeepsAnOutputOnAnUnloadedLooseEnd) {
+    Scene scene = chain(5);
+    scene.probes.push_back({"tip", {.body = 4}});
+    EXPECT_EQ(kept(compile(scene)), "abcde");
+}
+
+TEST(Compile, IsQuickForThousandsOfBodies) {
+    const int count = 20'000;
+    Scene forwards = chain(count), backwards = bodies(count), star = bodies(count);
+    ball(backwards, "root", 0, ground);
+    ball(backwards, "last", count - 1, 0);
+    for (BodyId n = 1; n < count - 1; ++n) ball(backwards, "link", n, n + 1);
+    for (BodyId n = 1; n < count; ++n) ball(star, "arm", n, 0);
+    for (const Scene* scene : {&forwards, &backwards, &star}) {
+        const auto begin = std::chrono::steady_clock::now();
+        EXPECT_EQ(kept(compile(*scene)), "a");
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+        EXPECT_LT(time.count(), 2.0);
+    }
+}
+
+// ---- What is kept, is kept whole: in random scenes everything still refers to the bodies it referred to.
+
+struct RandomScene {
+    std::mt19937 random;
+    int below(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
+    bool one_in(int n) { return below(n) == 0; }
+    Vector3d vector() { return {below(100) / 100.0, below(100) / 100.0, 1 + below(100) / 100.0}; }
+    Direction direction(BodyId body) { return {body, vector().normalized()}; }
+    Point point(BodyId body) { return {body, vector()}; }
+
+    JointKind joint(BodyId i, BodyId j) {
+        const Direction a = direction(i), b = direction(j);
+        switch (below(7)) {
+            case 0:
+                return Spherical{point(i), point(j)};
+            case 1:
+                return Revolute{point(i), point(j), a, b};
+            case 2:
+                return Cylindrical{point(i), point(j), a, b};
+            case 3:
+                return Distance{point(i), point(j), 1};
+            case 4:
+                return InPlane{point(i), point(j), b};
+            case 5:
+                return Translational{point(i), point(j), a, b};
+            default:
+                return Parallel{a, b};
+        }
+    }
+
+    Scene scene() {
+        Scene scene;
+        const int count = 2 + below(9);
+        for (int n = 0; n < count; ++n) scene.bodies.push_back({fmt::format("body_{}", n), {.r = vector()}});
+        const auto any = [&] { return below(count + 1) - 1; };  // or ground
+        for (int n = 0; n < count + below(4); ++n) {
+            const BodyId i = any(), j = any();
+            if (i == j) continue;
+            if (one_in(2)) {
+                scene.joints.push_back({fmt::format("joint_{}", n), joint(i, j)});
+            } else if (one_in(2)) {
+                const double k = one_in(4) ? 0 : 1e3;
+                scene.elastics.push_back(
+                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), k, 0.3}});
+            } else {
+                // Both markers at the origin of ground: unloaded unless preloaded.
+                Bushing b{.i = {i, -origin(scene, i)}, .j = {j, -origin(scene, j)}};
+                if (!one_in(4)) b.K.diagonal().setConstant(1e3);
+                if (one_in(4)) b.preload[0] = 1;
+                scene.elastics.push_back({fmt::format("bushing_{}", n), b});
+            }
+        }
+        const auto load = [&](const std::string& name) {
+            return one_in(2) ? push(name, below(count), below(3)) : twist(name, below(count), below(3));
+        };
+        if (one_in(2)) scene.static_loads.push_back(load("static"));
+        for (int n = 0; n <= below(3); ++n)
+            scene.branches.push_back(
+                {fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1});
+        if (one_in(2)) scene.wheel = Wheel{.body = below(count), .centre_local = vector()};
+        if (!scene.wheel || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
+        return scene;
+    }
+};
+
+template <class Owner>
+std::string body_name(const Owner& owner, BodyId body) {
+    return body == ground ? "ground" : owner.bodies.at(static_cast<std::size_t>(body)).name;
+}
+
+template <class Owner, class Part>
+std::string ends(const Owner& owner, const Part& part) {
+    return std::visit(
+        [&](const auto& s) { return body_name(owner, s.i.body) + "-" + body_name(owner, s.j.body); }, part);
+}
+
+template <class Owner>
+std::string target(const Owner& owner, const Load& load) {
+    if (const auto* force = std::get_if<DeadForce>(&load.kind)) return body_name(owner, force->at.body);
+    return body_name(owner, std::get<DeadMoment>(load.kind).body);
+}
+
+template <class List>
+const auto* find(const List& list, const std::string& name) {
+    for (const auto& item : list)
+        if (item.name == name) return &item;
+    return static_cast<decltype(&list.front())>(nullptr);
+}
+
+constexpr int scenes = 3000;
+
+TEST(Compile, RefersToTheSameBodiesAsTheScene) {
+    RandomScene random{std::mt19937(42)};
+    for (int n = 0; n < scenes; ++n) {
+        const Scene scene = random.scene();
+        const Model model = compile(scene);
+        for (const Body& body : model.bodies) {
+            const Body* original = find(scene.bodies, body.name);
+            ASSERT_TRUE(original);
+            EXPECT_EQ(original->design.r, body.design.r);
+        }
+        for (const ModelJoint& joint : model.joints) {
+            const Joint* original = find(scene.joints, joint.name);
+            ASSERT_TRUE(original);
+            EXPECT_EQ(ends(scene, original->kind),
+                      body_name(model, joint.i) + "-" + body_name(model, joint.j));
+            EXPECT_EQ(joint.at.body, joint.i);
+        }
+        int joint = 0;
+        for (const Constraint& constraint : model.constraints) {
+            EXPECT_GE(constraint.joint, joint);
+            joint = constraint.joint;
+            const ModelJoint& owner = model.joints.at(static_cast<std::size_t>(joint));
+            std::visit(
+                [&](const auto& c) {
+                    EXPECT_EQ(c.i.body, owner.i);
+                    EXPECT_EQ(c.j.body, owner.j);
+                    if constexpr (requires { c.normal_j; }) EXPECT_EQ(c.normal_j.body, owner.j);
+                },
+                constraint.kind);
+        }
+        for (const Elastic& elastic : model.elastics)
+            EXPECT_EQ(ends(scene, find(scene.elastics, elastic.name)->kind), ends(model, elastic.kind));
+        for (const Load& load : model.static_loads)
+            EXPECT_EQ(target(scene, *find(scene.static_loads, load.name)), target(model, load));
+        ASSERT_EQ(model.branches.size(), scene.branches.size());
+        for (std::size_t b = 0; b < model.branches.size(); ++b) {
+            EXPECT_EQ(model.branches[b].to, scene.branches[b].to);
+            EXPECT_EQ(model.branches[b].steps, scene.branches[b].steps);
+            for (const Load& load : model.branches[b].loads)
+                EXPECT_EQ(target(scene, *find(scene.branches[b].loads, load.name)), target(model, load));
+        }
+        ASSERT_EQ(model.wheel.has_value(), scene.wheel.has_value());
+        if (model.wheel) EXPECT_EQ(body_name(model, model.wheel->body), body_name(scene, scene.wheel->body));
+        ASSERT_EQ(model.probes.size(), scene.probes.size());
+        for (std::size_t k = 0; k < model.probes.size(); ++k)
+            EXPECT_EQ(body_name(model, model.probes[k].at.body), body_name(scene, scene.probes[k].at.body));
+    }
+}
+
+TEST(Compile, AccountsForEveryPartOfTheScene) {
+    RandomScene random{std::mt19937(43)};
+    for (int n = 0; n < scenes; ++n) {
+        const Scene scene = random.scene();
+        const Model model = compile(scene);
+        std::size_t loads = scene.static_loads.size(), kept_loads = model.static_loads.size(), joint_rows = 0;
+        for (const auto& branch : scene.branches) loads += branch.loads.size();
+        for (const auto& branch : model.branches) kept_loads += branch.loads.size();
+        const auto parts = scene.bodies.size() + scene.joints.size() + scene.elastics.size() + loads;
+        const auto kept_parts =
+            model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
+        EXPECT_EQ(parts, kept_parts + model.left_out.size());
+        for (const ModelJoint& joint : model.joints)
+            for (const auto& constraint : lower(find(scene.joints, joint.name)->kind, scene.bodies))
+                joint_rows += static_cast<std::size_t>(rows(constraint));
+        EXPECT_EQ(joint_rows, static_cast<std::size_t>(constraint_rows(model)));
+        for (const auto& omission : model.left_out)
+            EXPECT_FALSE(omission.what.empty() || omission.why.empty());
+    }
+}
+
+// What the rule says, word for word and without thought for speed: bodies are taken away one at a time as
+// long as one can.
+std::string kept_by_the_rule(const Scene& scene) {
+    struct Edge {
+        BodyId i, j;
+        bool loaded;
+    };
+    std::vector<Edge> edges;
+    const auto connect = [&](const auto& kind, bool loaded) {
+        std::visit([&](const auto& s) { edges.push_back({s.i.body, s.j.body, loaded}); }, kind);
+    };
+    for (const auto& joint : scene.joints) connect(joint.kind, false);
+    for (const auto& elastic : scene.elastics) {
+        if (const auto* s = std::get_if<AxialSpring>(&elastic.kind)) {
+            if (s->k > 0) connect(elastic.kind, true);  // no random spring has its free length
+        } else {
+            const auto& b = std::get<Bushing>(elastic.kind);
+            if (!b.preload.isZero() || !b.K.isZero()) connect(elastic.kind, !b.preload.isZero());
+        }
+    }
+    std::vector<bool> is_output(scene.bodies.size()), is_loaded(scene.bodies.size());
+    if (scene.wheel) is_output[static_cast<std::size_t>(scene.wheel->body)] = true;
+    for (const auto& probe : scene.probes) is_output[static_cast<std::size_t>(probe.at.body)] = true;
+    const auto mark = [&](const Load& load) {
+        if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
+            if (force->f.norm() > 0) is_loaded[static_cast<std::size_t>(force->at.body)] = true;
+        } else if (const auto& moment = std::get<DeadMoment>(load.kind); moment.m.norm() > 0) {
+            is_loaded[static_cast<std::size_t>(moment.body)] = true;
+        }
+    };
+    for (const auto& load : scene.static_loads) mark(load);
+    for (const auto& branch : scene.branches)
+        for (const auto& load : branch.loads) mark(load);
+
+    std::vector<bool> in = is_output;
+    for (std::size_t pass = 0; pass < in.size(); ++pass)
+        for (const Edge& e : edges)
+            if (e.i != ground && e.j != ground &&
+                (in[static_cast<std::size_t>(e.i)] || in[static_cast<std::size_t>(e.j)]))
+                in[static_cast<std::size_t>(e.i)] = in[static_cast<std::size_t>(e.j)] = true;
+    for (std::size_t pass = 0; pass < in.size(); ++pass)
+        for (std::size_t b = 0; b < in.size(); ++b) {
+            if (!in[b] || is_output[b] || is_loaded[b]) continue;
+            std::map<BodyId, int> neighbours;
+            bool loaded = false;
+            for (const Edge& e : edges) {
+                if (e.i != static_cast<BodyId>(b) && e.j != static_cast<BodyId>(b)) continue;
+                const BodyId other = e.i == static_cast<BodyId>(b) ? e.j : e.i;
+                if (other != ground && !in[static_cast<std::size_t>(other)]) continue;
+                ++neighbours[other];
+                loaded = loaded || e.loaded;
+            }
+            if (neighbours.size() <= 1 && !loaded) in[b] = false;
+        }
+    std::string names;
+    for (std::size_t b = 0; b < in.size(); ++b)
+        if (in[b]) names += scene.bodies[b].name;
+    return names;
+}
+
+TEST(Compile, KeepsWhatTheRuleKeeps) {
+    RandomScene random{std::mt19937(44)};
+    std::size_t left_out_bodies = 0;
+    for (int n = 0; n < scenes; ++n) {
+        const Scene scene = random.scene();
+        const Model model = compile(scene);
+        EXPECT_EQ(kept(model), kept_by_the_rule(scene)) << "scene " << n;
+        left_out_bodies += scene.bodies.size() - model.bodies.size();
+    }
+    EXPECT_GT(left_out_bodies, static_cast<std::size_t>(scenes));  // the sweep reaches both sides
+}
+
+// ---- Reactions.
+
+TEST(ModelJoint, ReportsAtItsPointOrAtTheOriginOfItsFirstBody) {
+    Scene scene = bodies(2);
+    scene.joints = {{"rod", Distance{{0, Vector3d(1, 2, 3)}, {1, Vector3d(4, 5, 6)}, 1}},
+                    {"square", Perpendicular{{1, Vector3d::UnitX()}, {0, Vector3d::UnitY()}}},
+                    {"ground_first", Spherical{{ground, Vector3d(7, 8, 9)}, {0, Vector3d::Zero()}}}};
+    const Model model = compile(scene);
+    ASSERT_EQ(model.joints.size(), 2U + 1U);
+    EXPECT_EQ(model.joints[0].at.s_local, Vector3d(1, 2, 3));
+    EXPECT_EQ(model.joints[1].at.body, 1);
+    EXPECT_EQ(model.joints[1].at.s_local, Vector3d::Zero());
+    EXPECT_EQ(model.joints[2].at.body, ground);
+    EXPECT_EQ(model.joints[2].at.s_local, Vector3d(7, 8, 9));
+}
+
+}  // namespace
+}  // namespace elastocheck

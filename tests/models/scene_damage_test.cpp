@@ -1,0 +1,153 @@
+// Whatever happens to the text of a scene, the reader returns a scene of finite numbers or throws SceneError.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
+
+#include "models/compile.hpp"
+#include "models/scene_file.hpp"
+#include "tests/models/bench_scene.hpp"
+#include "tests/models/scene_numbers.hpp"
+
+namespace elastocheck {
+namespace {
+
+std::vector<std::string> sound_texts() {
+    std::vector<std::string> texts{bench_scene};
+    for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
+        if (entry.path().extension() != ".yaml") continue;
+        std::ifstream file(entry.path(), std::ios::binary);
+        texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
+    return texts;
+}
+
+struct Tally {
+    int scenes = 0, errors = 0;
+    double slowest = 0;  // [s]
+};
+
+// Reads a damaged text and compiles what comes out; the slowest reading is kept.
+void read_damaged(const std::string& text, Tally& tally) {
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        const Scene scene = parse_scene(text, "damaged.yaml");
+        ++tally.scenes;
+        for (const auto& [what, x] : numbers(scene)) ASSERT_TRUE(std::isfinite(x)) << what << " of\n" << text;
+        compile(scene);
+    } catch (const SceneError& error) {
+        ++tally.errors;
+        ASSERT_TRUE(std::string(error.what()).starts_with("damaged.yaml:")) << error.what();
+    } catch (const std::exception& error) {
+        FAIL() << "not a SceneError: " << error.what() << "\n" << text;
+    }
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    tally.slowest = std::max(tally.slowest, time.count());
+}
+
+void report(const Tally& tally) {
+    EXPECT_GT(tally.errors, 0);
+    EXPECT_LT(tally.slowest, 1.0) << "the slowest text took " << tally.slowest << " s";
+    testing::Test::RecordProperty("scenes", tally.scenes);
+    testing::Test::RecordProperty("errors", tally.errors);
+}
+
+TEST(DamagedScene, WithoutAnyOneLine) {
+    Tally tally;
+    for (const std::string& text : sound_texts())
+        for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+            end = std::min(text.find('\n', begin), text.size());
+            read_damaged(text.substr(0, begin) + text.substr(std::min(end + 1, text.size())), tally);
+        }
+    report(tally);
+}
+
+TEST(DamagedScene, WithAnyOneLineTwice) {
+    Tally tally;
+    for (const std::string& text : sound_texts())
+        for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+            end = std::min(text.find('\n', begin), text.size());
+            read_damaged(text.substr(0, end) + "\n" + text.substr(begin), tally);
+        }
+    report(tally);
+}
+
+TEST(DamagedScene, CutAtAnyByte) {
+    Tally tally;
+    for (const std::string& text : sound_texts())
+        for (std::size_t end = 0; end < text.size(); ++end) read_damaged(text.substr(0, end), tally);
+    report(tally);
+}
+
+TEST(DamagedScene, WithoutAnyOneByte) {
+    Tally tally;
+    for (const std::string& text : sound_texts())
+        for (std::size_t at = 0; at < text.size(); ++at)
+            read_damaged(text.substr(0, at) + text.substr(at + 1), tally);
+    report(tally);
+}
+
+TEST(DamagedScene, WithBytesOverwritten) {
+    Tally tally;
+    std::mt19937 random(20040301);
+    for (const std::string& text : sound_texts())
+        for (int n = 0; n < 1500; ++n) {
+            std::string damaged = text;
+            for (unsigned k = 0; k <= random() % 3; ++k)
+                damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+            read_damaged(damaged, tally);
+        }
+    report(tally);
+}
+
+// What has a meaning in YAML or in a scene does more damage than any byte.
+TEST(DamagedScene, WithTokensPutAnywhere) {
+    const char* const tokens[] = {
+        "{",    "}",    "[",     "]",    ",",   ":",    ": ",       "- ",          "? ", "#",     "&a ",
+        "*a",   "!!x ", "|",     ">",    "\"",  "'",    "\n",       "\n  ",        "\t", "---\n", "...\n",
+        "<<: ", "nan",  "-",     "1e30", "e30", "e-30", "0",        "999",         "~",  "null",  "ground",
+        "x",    "\\",   "%YAML", "\r",   "@",   "`",    "\xC3\xA4", "\xEF\xBB\xBF"};
+    Tally tally;
+    std::mt19937 random(31415);
+    for (const std::string& text : sound_texts())
+        for (int n = 0; n < 1500; ++n) {
+            std::string damaged = text;
+            for (unsigned k = 0; k <= random() % 3; ++k)
+                damaged.insert(random() % damaged.size(), tokens[random() % std::size(tokens)]);
+            read_damaged(damaged, tally);
+        }
+    report(tally);
+}
+
+TEST(DamagedScene, OfNothingButOneToken) {
+    Tally tally;
+    for (const char* token :
+         {"[", "{", "- ", "? ",   "a: ",     "[a, ", "{a: ",  "&a [*a, ", "\"", "'",  "|",     "!",
+          "*", "&", "%",  "x: [", "- {a: [", "a\n",  "- a\n", "\n",       "#",  "\r", "---\n", ": "}) {
+        std::string text;
+        while (text.size() < 100'000) text += token;
+        read_damaged(text, tally);
+    }
+    report(tally);
+}
+
+// Ten references to ten references to ...: two gigabytes if they were followed.
+TEST(DamagedScene, WithABillionLaughs) {
+    std::string text = "a0: &a0 ha\n";
+    for (int n = 1; n < 10; ++n) {
+        text += fmt::format("a{}: &a{} [", n, n);
+        for (int k = 0; k < 10; ++k) text += fmt::format("{}*a{}", k ? ", " : "", n - 1);
+        text += "]\n";
+    }
+    Tally tally;
+    read_damaged(text, tally);
+    report(tally);
+}
+
+}  // namespace
+}  // namespace elastocheck

@@ -1,0 +1,109 @@
+// All that a scene says, as labelled numbers: to compare two scenes, and to see that every number is finite.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "models/scene.hpp"
+
+namespace elastocheck {
+
+struct SceneNumbers {
+    std::vector<std::pair<std::string, double>> all;  // in the order of the scene
+    std::string where;
+
+    void add(const std::string& what, double x) { all.emplace_back(where + "." + what, x); }
+    template <class Derived>
+    void add(const std::string& what, const Eigen::MatrixBase<Derived>& M) {
+        for (Eigen::Index i = 0; i < M.rows(); ++i)
+            for (Eigen::Index j = 0; j < M.cols(); ++j) add(fmt::format("{}({},{})", what, i, j), M(i, j));
+    }
+    void add(const std::string& what, const Point& p) {
+        add(what + ".body", p.body);
+        add(what + ".s_local", p.s_local);
+    }
+    void add(const std::string& what, const Direction& u) {
+        add(what + ".body", u.body);
+        add(what + ".u_local", u.u_local);
+    }
+    void add(const std::string& what, const Marker& m) {
+        add(what + ".body", m.body);
+        add(what + ".s_local", m.s_local);
+        add(what + ".A_local", m.A_local.toRotationMatrix());
+    }
+};
+
+inline void add_load(SceneNumbers& n, const Load& load) {
+    if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
+        n.add(load.name + ".at", force->at);
+        n.add(load.name + ".f", force->f);
+    } else {
+        const auto& moment = std::get<DeadMoment>(load.kind);
+        n.add(load.name + ".body", moment.body);
+        n.add(load.name + ".m", moment.m);
+    }
+}
+
+inline void add_elastic(SceneNumbers& n, const ElasticKind& kind) {
+    if (const auto* spring = std::get_if<AxialSpring>(&kind)) {
+        n.add("i", spring->i), n.add("j", spring->j);
+        n.add("k", spring->k), n.add("free_length", spring->free_length);
+    } else {
+        const auto& bushing = std::get<Bushing>(kind);
+        n.add("i", bushing.i), n.add("j", bushing.j);
+        n.add("K", bushing.K), n.add("preload", bushing.preload);
+    }
+}
+
+inline void add_joint(SceneNumbers& n, const JointKind& kind) {
+    n.add("kind", static_cast<double>(kind.index()));
+    std::visit(
+        [&](const auto& s) {
+            n.add("i", s.i), n.add("j", s.j);
+            if constexpr (requires { s.axis_i; }) n.add("axis_i", s.axis_i);
+            if constexpr (requires { s.axis_j; }) n.add("axis_j", s.axis_j);
+            if constexpr (requires { s.normal_i; }) n.add("normal_i", s.normal_i);
+            if constexpr (requires { s.normal_j; }) n.add("normal_j", s.normal_j);
+            if constexpr (requires { s.length; }) n.add("length", s.length);
+            if constexpr (requires { s.x_i; })
+                n.add("x_i", s.x_i), n.add("y_i", s.y_i), n.add("x_j", s.x_j), n.add("y_j", s.y_j);
+        },
+        kind);
+}
+
+inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
+    SceneNumbers n;
+    for (const auto& body : scene.bodies) {
+        n.where = "body " + body.name;
+        n.add("r", body.design.r);
+        n.add("p", body.design.p.coeffs());
+    }
+    for (const auto& joint : scene.joints) n.where = "joint " + joint.name, add_joint(n, joint.kind);
+    for (const auto& elastic : scene.elastics)
+        n.where = "element " + elastic.name, add_elastic(n, elastic.kind);
+    n.where = "static loads";
+    for (const auto& load : scene.static_loads) add_load(n, load);
+    for (const auto& branch : scene.branches) {
+        n.where = "branch " + branch.name;
+        for (const auto& load : branch.loads) add_load(n, load);
+        n.add("to", branch.to);
+        n.add("steps", branch.steps);
+    }
+    if (scene.wheel) {
+        n.where = "wheel";
+        n.add("body", scene.wheel->body);
+        n.add("centre", scene.wheel->centre_local);
+        n.add("contact", scene.wheel->contact_local);
+        n.add("spin_axis", scene.wheel->spin_axis_local);
+        n.add("side", scene.wheel->side);
+    }
+    for (const auto& probe : scene.probes) n.where = "probe " + probe.name, n.add("at", probe.at);
+    return n.all;
+}
+
+}  // namespace elastocheck

@@ -1,0 +1,203 @@
+// Stiffness, eqs. (8)-(20), and the law behind it (design.md 3.5).
+#include "recursive/elastic.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "tests/recursive/random.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::Vector3d;
+
+Marker marker(BodyId body, Random& r) { return {body, r.vector(), r.rotation()}; }
+
+Bushing random_bushing(BodyId i, BodyId j, Random& r, bool coupled = true) {
+    Bushing bushing{marker(i, r), marker(j, r), Matrix6<double>::Zero(), Vector6<double>::Zero()};
+    if (coupled) {
+        bushing.K = r.stiffness();
+        for (int k = 0; k < 6; ++k) bushing.preload[k] = r(-500, 500);
+    } else {
+        bushing.K.diagonal() << r(1e5, 1e6), r(1e5, 1e6), r(1e5, 1e6), r(100, 900), r(100, 900), r(100, 900);
+    }
+    return bushing;
+}
+
+Model model_of(const ElasticKind& element, int bodies) {
+    Model model;
+    model.bodies.resize(static_cast<std::size_t>(bodies));
+    model.elastics.push_back({"element", element});
+    return model;
+}
+
+// The configuration in which the element's markers coincide, at a random place.
+State<double> assembled(const Bushing& b, Random& random) {
+    const Pose i = b.i.body == ground ? Pose{} : random.pose();
+    const Eigen::Quaterniond A_j = i.p * b.i.A_local * b.j.A_local.conjugate();
+    const Pose j{i.r + i.p * b.i.s_local - A_j * b.j.s_local, A_j};
+    if (b.i.body == ground) return state_of<double>({j});
+    return state_of<double>({i, j});
+}
+
+// The energies of design.md 3.5, written anew.
+double energy(const ElasticKind& kind, const State<double>& q) {
+    const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
+    if (const auto* e = std::get_if<AxialSpring>(&kind)) {
+        const double stretch = (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() - e->free_length;
+        return e->k * stretch * stretch / 2;
+    }
+    const auto& b = std::get<Bushing>(kind);
+    const Eigen::Quaterniond A_i = q[b.i.body].p * b.i.A_local, A_j = q[b.j.body].p * b.j.A_local;
+    const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
+    Vector6<double> e;
+    e << A_i.conjugate() * (place(b.j.body, b.j.s_local) - place(b.i.body, b.i.s_local)), turn.angle() * turn.axis();
+    return e.dot(b.K * e) / 2 + b.preload.dot(e);
+}
+
+TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
+    Random random;
+    for (int trial = 0; trial < 50; ++trial) {
+        const std::vector<ElasticKind> kinds{random_bushing(0, 1, random), random_bushing(0, 1, random, false),
+                                             AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+        for (const auto& kind : kinds) {
+            const auto K = stiffness<double>(model_of(kind, 2), random.state(2));
+            EXPECT_LE((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
+            const Eigen::SelfAdjointEigenSolver<Matrix<double>> eigen(K);
+            EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff());
+        }
+    }
+}
+
+TEST(Stiffness, RigidMotionGivesNoForce) {
+    Random random;
+    for (int trial = 0; trial < 50; ++trial) {
+        const Bushing bushing = random_bushing(0, 1, random);
+        const AxialSpring spring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3};
+        const State<double> together = assembled(bushing, random), anywhere = random.state(2);
+        for (const auto& [kind, q] : {std::pair<ElasticKind, State<double>>{bushing, together}, {spring, anywhere}}) {
+            const Vector3d turn = random.unit(), centre = random.vector();
+            Vector<double> dq(12);
+            for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r - centre), turn;
+            const auto K = stiffness<double>(model_of(kind, 2), q);
+            EXPECT_LE((K * dq).cwiseAbs().maxCoeff(), 1e-13 * K.cwiseAbs().maxCoeff());
+        }
+    }
+}
+
+// The matrix as printed in the paper, with its sign turned.
+Matrix<double> printed_equation_19(const ElementStiffness<double>& e) {
+    const Matrix3<double> K_T = e.K.topLeftCorner<3, 3>(), K_R = e.K.bottomRightCorner<3, 3>();
+    const Matrix3<double> si = tilde<double>(e.s_i), sj = tilde<double>(e.s_j);
+    Matrix<double> K(12, 12);
+    K << -K_T, K_T * si, K_T, -K_T * sj,                                        //
+        -si * K_T, si * K_T * si - K_R, sj * K_T, -sj * K_T * sj + K_R,         //
+        K_T, -K_T * si, -K_T, K_T * sj,                                         //
+        sj * K_T, -sj * K_T * si + K_R, -sj * K_T, sj * K_T * sj - K_R;
+    return -K;
+}
+
+TEST(Stiffness, PrintedEquation19IsNeitherSymmetricNorFreeOfForceUnderRigidMotion) {
+    Random random;
+    const Bushing bushing = random_bushing(0, 1, random, false);
+    const State<double> q = assembled(bushing, random);
+    const auto printed = printed_equation_19(element_stiffness<double>(bushing, q));
+    const auto K = stiffness<double>(model_of(bushing, 2), q);
+    Vector<double> dq(12);
+    const Vector3d turn = random.unit();
+    for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r), turn;
+    EXPECT_GT((printed - printed.transpose()).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
+    EXPECT_GT((printed * dq).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
+    // They differ where design.md 3.1 (b) says and nowhere else: block row 2, columns 3 and 4.
+    Matrix<double> difference = K - printed;
+    difference.block<3, 6>(3, 6).setZero();
+    EXPECT_LE(difference.cwiseAbs().maxCoeff(), 1e-15 * K.cwiseAbs().maxCoeff());
+}
+
+TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
+    Random random;
+    for (int trial = 0; trial < 20; ++trial) {
+        for (const BodyId first : {BodyId{0}, ground}) {
+            Bushing bushing = random_bushing(first, first + 1, random);
+            bushing.preload.setZero();
+            const State<double> q = assembled(bushing, random);
+            const Model model = model_of(bushing, first + 2);
+            const auto K = stiffness<double>(model, q);
+            for (int c = 0; c < K.cols(); ++c) {
+                constexpr double h = 1e-6;
+                Vector<double> dq = Vector<double>::Zero(K.cols());
+                dq[c] = h;
+                State<double> plus = q, minus = q;
+                advance(plus, dq);
+                advance(minus, (-dq).eval());
+                const Vector<double> difference =
+                    (elastic_force<double>(model, plus) - elastic_force<double>(model, minus)) / (2 * h);
+                EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(), 1e-7 * K.cwiseAbs().maxCoeff());
+            }
+        }
+    }
+}
+
+TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
+    Random random;
+    for (int trial = 0; trial < 30; ++trial) {
+        const std::vector<ElasticKind> kinds{random_bushing(0, 1, random), random_bushing(ground, 1, random),
+                                             random_bushing(0, ground, random),
+                                             AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+        for (const auto& kind : kinds) {
+            // Markers within 2.5 rad of each other: the law ends at π.
+            State<double> q = random.state(2);
+            if (const auto* b = std::get_if<Bushing>(&kind)) {
+                const Eigen::Quaterniond target = random.rotation(2.5);
+                const BodyId free = b->j.body != ground ? b->j.body : b->i.body;
+                const bool j_free = free == b->j.body;
+                const Eigen::Quaterniond A_other = j_free ? q[b->i.body].p * b->i.A_local : q[b->j.body].p * b->j.A_local;
+                const Eigen::Quaterniond A_free = j_free ? A_other * target : A_other * target.conjugate();
+                q[free].p = (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
+                q[free].A = q[free].p.toRotationMatrix();
+            }
+            const auto f = elastic_force<double>(model_of(kind, 2), q);
+            for (int c = 0; c < 12; ++c) {
+                constexpr double h = 1e-5;
+                Vector<double> dq = Vector<double>::Zero(12);
+                dq[c] = h;
+                State<double> plus = q, minus = q;
+                advance(plus, dq);
+                advance(minus, (-dq).eval());
+                const double difference = (energy(kind, plus) - energy(kind, minus)) / (2 * h);
+                EXPECT_NEAR(difference, f[c], 1e-6 * f.cwiseAbs().maxCoeff()) << "kind " << kind.index() << " coordinate " << c;
+            }
+        }
+    }
+}
+
+TEST(ElasticForce, IsRegularWhereTheRotationVanishes) {
+    Random random;
+    Bushing bushing = random_bushing(0, 1, random);
+    const State<double> together = assembled(bushing, random);
+    const auto f0 = elastic_force<double>(model_of(bushing, 2), together);
+    for (const double angle : {0.0, 1e-320, 1e-200, 1e-17, 1e-9}) {
+        State<double> q = together;
+        Vector<double> dq = Vector<double>::Zero(12);
+        dq.tail<3>() = angle * random.unit();
+        advance(q, dq);
+        const auto f = elastic_force<double>(model_of(bushing, 2), q);
+        EXPECT_TRUE(f.allFinite());
+        EXPECT_LE((f - f0).cwiseAbs().maxCoeff(), 1e-9 + 1e7 * angle) << angle;
+    }
+    // On both sides of where the series takes over.
+    for (const double t : {0.99 * std::sqrt(1e-3), 1.01 * std::sqrt(1e-3)}) {
+        const Vector3d theta = t * random.unit();
+        const Matrix3<double> inverse = inverse_left_jacobian<double>(theta);
+        Matrix3<double> J = Matrix3<double>::Identity(), power = Matrix3<double>::Identity();
+        for (int k = 1; k < 12; ++k) {
+            power = power * tilde<double>(theta) / (k + 1);
+            J += power;
+        }
+        EXPECT_LE((inverse * J - Matrix3<double>::Identity()).cwiseAbs().maxCoeff(), 1e-15);
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive

@@ -1,0 +1,364 @@
+// The recursion, eqs. (25)-(29): what it converges to, how fast, and how it fails.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "models/compile.hpp"
+#include "models/scene_file.hpp"
+#include "recursive/assembly.hpp"
+#include "recursive/diagnosis.hpp"
+#include "recursive/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d place(const Equilibrium& state, const Point& p) {
+    const Pose& pose = state.poses[static_cast<std::size_t>(p.body)];
+    return pose.r + pose.p * p.s_local;
+}
+
+Vector3d leading_point(const Model& model, const Equilibrium& state) {
+    if (model.wheel) return place(state, {model.wheel->body, model.wheel->centre_local});
+    return place(state, model.probes.front().at);
+}
+
+// Solution x of increasing f(x) = 0 in [low, high].
+template <class F>
+double root(F&& f, double low, double high) {
+    for (int k = 0; k < 200; ++k) {
+        const double middle = (low + high) / 2;
+        (f(middle) < 0 ? low : high) = middle;
+    }
+    return low;
+}
+
+// ---- What the published recursion converges to, derived by hand. With N → ∞ the sum of K(qⁿ)Δqⁿ becomes an integral, taken
+// in ground axes along the path; the stored force is never turned. For one rotation θ that is a sum of torques K_θθ dθ.
+
+struct OwnLimit {
+    const char* scene;
+    double load;
+    Vector3d point;  // the first probe at full load [m]
+};
+
+std::vector<OwnLimit> own_limits() {
+    std::vector<OwnLimit> limits;
+    {  // k L² θ = F L cos θ, where the truth is k L² sin θ = F L cos θ
+        const double t = root([](double x) { return 20e3 * 0.5 * x - 5000 * std::cos(x); }, 0, 1.5);
+        limits.push_back({"pinned_bar", 5000, {0.5 * std::cos(t), 0, 0.5 * std::sin(t)}});
+    }
+    {  // (2 k a² + 2 k_R) θ = F e cos θ, where the truth is 2 k a² sin θ + 2 k_R θ
+        const double t = root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0, 1.5);
+        limits.push_back({"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
+    }
+    {  // k_R θ = F L cos θ: the truth, nothing is stored with a lever
+        const double t = root([](double x) { return 600 * x - 1500 * 0.4 * std::cos(x); }, 0, 1.5);
+        limits.push_back({"pendulum", 1500, {0.32 * std::cos(t), 0.24 * std::cos(t), 0.4 * std::sin(t)}});
+    }
+    {  // F = ∫ 2k ζ²/(b²+ζ²) dζ from h to z, where the truth is 2k (ℓ - ℓ₀) z / ℓ
+        const auto F = [](double z) {
+            return 2e5 * (z - 0.08 - 0.3 * (std::atan(z / 0.3) - std::atan(0.08 / 0.3)));
+        };
+        limits.push_back({"two_spring_arch", -200, {0, 0, root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
+        limits.push_back({"two_spring_arch", 2000, {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
+    }
+    limits.push_back({"single_bushing", 4000, Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)});
+    limits.push_back({"parallel_springs", 3000, {0, 0, 0.4 + 3000 / 75e3}});
+    return limits;
+}
+
+TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
+    for (const auto& limit : own_limits()) {
+        const Model model = compile(support::scene(limit.scene));
+        const auto branch = std::ranges::find(model.branches, limit.load, &Branch::to);
+        ASSERT_NE(branch, model.branches.end()) << limit.scene;
+        const auto error = [&](int steps) {
+            const auto path = solve(model, *branch, {steps});
+            EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+            return Vector3d(leading_point(model, path.points.back()) - limit.point);
+        };
+        const Vector3d coarse = error(400), fine = error(800);
+        if (coarse.norm() < 1e-10) continue;  // linear scenes: exact with any number of steps
+        EXPECT_NEAR(std::log2(coarse.norm() / fine.norm()), 1, 0.02) << limit.scene;
+        EXPECT_LE((2 * fine - coarse).norm(), 1e-2 * fine.norm()) << limit.scene;  // Richardson's limit is the closed form
+    }
+}
+
+TEST(Recursion, LinearScenesAreExactWithOneStep) {
+    for (const char* name : {"single_bushing", "parallel_springs"}) {
+        const Model model = compile(support::scene(name));
+        const auto one = solve(model, model.branches[0], {1}), many = solve(model, model.branches[0], {1000});
+        EXPECT_LE((leading_point(model, one.points.back()) - leading_point(model, many.points.back())).norm(), 1e-12) << name;
+    }
+}
+
+TEST(Recursion, ConstraintErrorOfEquation31FallsAtFirstOrder) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const auto& branch : model.branches) {
+        // Slope of log |Φ| over log N by least squares.
+        double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+        for (const int steps : {75, 150, 300, 600, 1200, 2400}) {
+            const auto path = solve(model, branch, {steps});
+            ASSERT_EQ(path.outcome, Outcome::converged);
+            ASSERT_EQ(path.points.size(), static_cast<std::size_t>(steps) + 1);
+            const double u = std::log(steps), v = std::log(path.points.back().constraint_error);
+            n += 1, x += u, y += v, xx += u * u, xy += u * v;
+        }
+        const double order = -(n * xy - x * y) / (n * xx - x * x);
+        EXPECT_NEAR(order, 1, 0.05) << branch.name;
+    }
+}
+
+// Eq. (28) as it stands: the sum of all K(qᵏ)Δqᵏ is kept, and the whole load applied.
+std::vector<State<double>> equation_28(const Model& model, const Branch& branch, int N) {
+    State<double> q = design_state<double>(model);
+    const int n = coordinates(model), m = constraint_rows(model);
+    Vector<double> stored = elastic_force<double>(model, q), f(n);
+    std::vector<State<double>> path{q};
+    for (int k = 0; k < N; ++k) {
+        Matrix<double> M(n + m, n + m);
+        assemble<double>(model, q, M);
+        external_force<double>(model, branch, branch.to * (k + 1) / N, q, f);
+        Vector<double> rhs = Vector<double>::Zero(n + m);
+        rhs.head(n) = f - stored;
+        const Vector<double> x = M.fullPivLu().solve(rhs);
+        stored += M.topLeftCorner(n, n) * x.head(n);
+        advance(q, x.head(n));
+        path.push_back(q);
+    }
+    return path;
+}
+
+TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
+    for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch", "single_bushing", "parallel_springs"}) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const auto path = solve(model, branch, {25});
+            const auto expected = equation_28(model, branch, 25);
+            double worst = 0;
+            for (std::size_t k = 0; k < expected.size(); ++k)
+                worst = std::max({worst, (path.points[k].poses[0].r - expected[k][0].r).norm(),
+                                  path.points[k].poses[0].p.angularDistance(expected[k][0].p)});
+            EXPECT_LE(worst, 1e-9) << name << " " << branch.name;
+        }
+    }
+}
+
+TEST(Recursion, SixHundredStepsMeanThreeHundredOfTenNewtonEachWay) {
+    const Model model = compile(support::scene("mcpherson"));
+    ASSERT_EQ(model.branches.size(), 2u);
+    for (const auto& branch : model.branches) {
+        EXPECT_EQ(branch.steps, 300);
+        EXPECT_EQ(std::abs(branch.to) / branch.steps, 10);
+        const auto path = solve(model, branch);
+        EXPECT_EQ(path.counts.factorisations, 300);  // one a step, none to start: λ⁻¹ = 0
+    }
+}
+
+TEST(Recursion, StaticLoadAndPreloadStartFromTheirReactionsNotFromZero) {
+    // The guide carries nothing, the spring's preload carries the weight: no motion at load factor 0.
+    Scene scene = support::scene("parallel_springs");
+    const Model model = compile(scene);
+    const auto path = solve(model, model.branches[0], {10});
+    EXPECT_LE((leading_point(model, path.points.front()) - Vector3d(0, 0, 0.4)).norm(), 1e-12);
+    // A sideways weight goes into the guide's reaction and must still be there at full load.
+    std::get<DeadForce>(scene.static_loads[0].kind).f.x() = 250;
+    const Model loaded = compile(scene);
+    const auto sideways = solve(loaded, loaded.branches[0], {10});
+    for (const auto& point : sideways.points) {
+        EXPECT_NEAR(point.reactions[0].force.x(), -250, 1e-9);
+        EXPECT_LE(residuals(loaded, loaded.branches[0], point).force, 1e-9);
+    }
+}
+
+TEST(Recursion, UnbalancedDesignPositionSettlesAtLoadFactorZero) {
+    Scene scene = support::scene("parallel_springs");
+    std::get<DeadForce>(scene.static_loads[0].kind).f.z() -= 75;  // 1 mm on 75 N/mm
+    const Model model = compile(scene);
+    const auto path = solve(model, model.branches[0], {10});
+    EXPECT_NEAR(leading_point(model, path.points.front()).z(), 0.399, 1e-12);
+    EXPECT_EQ(path.counts.factorisations, 11);
+}
+
+// ---- Reactions
+
+TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
+    // A bar hinged at a about y, propped at b by a vertical distance rod, loaded at c by 90 N up: with arms 1 and 3 the rod
+    // pulls down with 270 and the hinge pushes up with 180.
+    const std::string text =
+        "elastocheck: 1\nname: lever\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [3, 0, 0], foot: [1, 0, -2]}\n"
+        "bodies: {bar: {origin: c}}\n"
+        "joints:\n  hinge: {type: revolute, bodies: [BODIES], at: a, axis: y}\n"
+        "  rod: {type: distance, bodies: [bar, ground], from: b, to: foot}\n"
+        "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: up, to: 90, steps: 3}}\nprobes: {tip: {on: bar, at: c}}\n";
+    for (const auto& [bodies, sign] : {std::pair{"bar, ground", 1.0}, std::pair{"ground, bar", -1.0}}) {
+        std::string scene = text;
+        scene.replace(scene.find("BODIES"), 6, bodies);
+        const Model model = compile(parse_scene(scene, "lever"));
+        const auto path = solve(model, model.branches[0]);
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        const auto& end = path.points.back();
+        EXPECT_LE((end.reactions[0].force - sign * Vector3d(0, 0, 180)).norm(), 1e-9);
+        EXPECT_LE(end.reactions[0].moment.norm(), 1e-9);
+        EXPECT_LE((end.reactions[1].force - Vector3d(0, 0, -270)).norm(), 1e-9);
+        const auto left = residuals(model, model.branches[0], end);
+        EXPECT_LE(std::max(left.force, left.moment), 1e-9);
+    }
+}
+
+// ---- What must not matter
+
+TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
+    const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
+    const Eigen::Quaterniond Q(Eigen::AngleAxisd(-1, Vector3d(0.2, 1, 3).normalized()));
+    const Vector3d t(3, -2, 1);
+    const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
+    for (const auto& name : support::scene_names()) {
+        const Scene scene = support::scene(name);
+        const Model model = compile(scene);
+        const Model moved = compile(support::moved(scene, R, t)), axes = compile(support::with_body_axes(scene, {R, Q})),
+                    mirrored = compile(support::mirrored(scene)), reversed = compile(support::reversed(scene));
+        for (std::size_t b = 0; b < model.branches.size(); ++b) {
+            const auto point = [&](const Model& m) {
+                const auto path = solve(m, m.branches[b], {50});
+                EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
+                return leading_point(m, path.points.back());
+            };
+            const Vector3d p = point(model);
+            const double bound = 1e-9 * (p - leading_point(model, solve(model, model.branches[b], {1}).points[0])).norm();
+            EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
+            EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
+            EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";
+            EXPECT_LE((point(reversed) - p).norm(), bound) << name << ": reversed";
+        }
+    }
+}
+
+TEST(Invariance, TheSameRunGivesTheSameBits) {
+    const Model model = compile(support::scene("mcpherson"));
+    const auto a = solve(model, model.branches[0]), b = solve(model, model.branches[0]);
+    for (std::size_t k = 0; k < a.points.size(); ++k)
+        for (std::size_t body = 0; body < 3; ++body) {
+            EXPECT_EQ(a.points[k].poses[body].r, b.points[k].poses[body].r);
+            EXPECT_EQ(a.points[k].poses[body].p.coeffs(), b.points[k].poses[body].p.coeffs());
+        }
+}
+
+// ---- Every outcome
+
+// A bar from a to b with two more points; joints, elements and loads to be added.
+Model bar(const std::string& rest) {
+    return compile(parse_scene("elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
+                               "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0], d: [1, 0, 1]}\n"
+                               "branches: {out: {load: load, to: 100, steps: 10}}\n"
+                               "probes: {tip: {on: bar, at: b}}\n" + rest, "bar"));
+}
+
+TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
+    const Model model = bar("bodies: {bar: {origin: a}}\n"
+                            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
+                            "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
+                            "loads: {load: {on: bar, at: c, force: [1, 0, 0.001]}}\n");
+    const auto path = solve(model, model.branches[0]);
+    EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode);
+    EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos) << path.detail;
+    EXPECT_EQ(path.points.size(), 1u);
+}
+
+TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
+    const std::string rest = "bodies: {bar: {origin: a}}\n"
+                             "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
+                             "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n";
+    const Model idle = bar("joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
+    const Model held = bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
+    const auto a = solve(idle, idle.branches[0]), b = solve(held, held.branches[0]);
+    ASSERT_EQ(a.outcome, Outcome::converged) << a.detail;
+    EXPECT_LE((a.points.back().poses[0].r - b.points.back().poses[0].r).norm(), 1e-14);
+    EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-14);
+}
+
+TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
+    // A block on a free slide, tied by a spring across the slide to a cart. While the cart drives off along the slide the
+    // spring would take the block along; at the design position nothing does.
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: dead centre\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {block: [0, 0, 0], cart: [0, 0, 1], end: [-1, 0, 1]}\n"
+        "bodies: {block: {origin: block}, cart: {origin: cart}}\n"
+        "joints:\n  slide: {type: translational, bodies: [block, ground], at: block, axis: x}\n"
+        "  rail: {type: translational, bodies: [cart, ground], at: cart, axis: x}\n"
+        "springs:\n  tie: {bodies: [block, cart], from: block, to: cart, rate: 1000}\n"
+        "  drive: {bodies: [cart, ground], from: cart, to: end, rate: 1000}\n"
+        "loads: {pull: {on: cart, at: cart, force: [1, 0, 0]}}\n"
+        "branches: {out: {load: pull, to: 500, steps: 50}}\nprobes: {block: {on: block, at: block}}\n", "dead centre"));
+    ASSERT_EQ(diagnose(model).idle.size(), 1u);
+    const auto path = solve(model, model.branches[0]);
+    EXPECT_EQ(path.outcome, Outcome::singular);
+    EXPECT_NE(path.detail.find("no longer is"), std::string::npos) << path.detail;
+}
+
+TEST(Outcome, RedundantButConsistentConstraintsGiveTheRightMotion) {
+    const std::string rest = "bodies: {bar: {origin: a}}\n"
+                             "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+                             "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n";
+    const std::string hinge_1 = "joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n";
+    const Model once = bar(hinge_1 + rest);
+    const Model twice = bar(hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
+    const auto a = solve(once, once.branches[0]), b = solve(twice, twice.branches[0]);
+    ASSERT_EQ(b.outcome, Outcome::converged) << b.detail;
+    EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-13);
+    EXPECT_GT(a.points.back().poses[0].p.angularDistance(Eigen::Quaterniond::Identity()), 1e-3);
+}
+
+TEST(Outcome, JointsThatAreNotClosedAreInconsistent) {
+    Scene scene = support::scene("mcpherson");
+    for (auto& joint : scene.joints)
+        if (auto* rod = std::get_if<Distance>(&joint.kind)) rod->length += 1e-6;
+    const Model model = compile(scene);
+    const auto path = solve(model, model.branches[0]);
+    EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints);
+    EXPECT_TRUE(path.points.empty());
+}
+
+TEST(Outcome, NaNInTheModelIsNeverConverged) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Scene scene = support::scene("mcpherson");
+    std::get<DeadForce>(scene.branches[0].loads[0].kind).f.y() = nan;
+    EXPECT_NE(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::converged);
+    scene = support::scene("mcpherson");
+    std::get<Bushing>(scene.elastics[1].kind).K(2, 2) = nan;
+    EXPECT_NE(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::converged);
+    scene = support::scene("mcpherson");
+    scene.branches[0].to = nan;
+    EXPECT_EQ(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::not_finite);
+}
+
+TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
+    // The pendulum beyond F = 1979 N, where F L sin θ > k_R: a perfectly stable equilibrium, which no step count reaches.
+    Scene scene = support::scene("pendulum");
+    for (auto& branch : scene.branches) branch.to *= 2;
+    const Model model = compile(scene);
+    for (const auto& branch : model.branches)
+        for (const int steps : {300, 600, 2400}) {
+            const auto path = solve(model, branch, {steps});
+            EXPECT_EQ(path.outcome, Outcome::diverged) << steps;
+            EXPECT_GT(std::abs(path.points.back().load), 1979);
+        }
+}
+
+TEST(Outcome, NamesAreDistinct) {
+    std::vector<std::string> names;
+    for (const auto outcome : {Outcome::converged, Outcome::singular, Outcome::loaded_idle_mode, Outcome::inconsistent_constraints,
+                               Outcome::not_finite, Outcome::iteration_limit, Outcome::diverged, Outcome::branch_lost})
+        names.emplace_back(name(outcome));
+    std::ranges::sort(names);
+    EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive

@@ -1,0 +1,27 @@
+// The shipped scenes, and the same scene told differently: what must not matter to any solver.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/scene.hpp"
+
+namespace elastocheck::support {
+
+// models/scenes/NAME.yaml
+Scene scene(const std::string& name);
+std::vector<std::string> scene_names();
+
+// Everything turned by R and moved by t: ground frame, bodies, loads.
+Scene moved(const Scene& scene, const Eigen::Quaterniond& R, const Eigen::Vector3d& t);
+
+// The same bodies described in other body axes: body b's axes are turned by turns[b % size].
+Scene with_body_axes(const Scene& scene, const std::vector<Eigen::Quaterniond>& turns);
+
+// y → -y: the other side of the vehicle.
+Scene mirrored(const Scene& scene);
+
+// Bodies, joints and elements in reverse order.
+Scene reversed(const Scene& scene);
+
+}  // namespace elastocheck::support
