@@ -86,12 +86,12 @@ bool Comparison::conclusive() const {
     return compared > 0;
 }
 
-Run run(const Model& model, const Branch& branch, Leg leg, int steps) {
+LegRun run(const Model& model, const Branch& branch, Leg leg, int steps) {
     const int N = steps > 0 ? steps : branch.steps;
     std::vector<double> loads;
     for (int k = 0; k <= N; ++k) loads.push_back(branch.to * k / N);
 
-    Run run{leg, {}, {}, 0, {}};
+    LegRun run{leg, {}, {}, 0, {}};
     const auto start = std::chrono::steady_clock::now();
     switch (leg) {
         case Leg::recursive: run.path = recursive::solve(model, branch, {N}); break;

@@ -19,7 +19,7 @@ inline constexpr std::array legs{Leg::recursive, Leg::equilibrium, Leg::energy};
 const char* name(Leg leg);
 
 // One leg along one branch.
-struct Run {
+struct LegRun {
     Leg leg = Leg::recursive;
     EquilibriumPath path;
     Curve curve;
@@ -28,7 +28,7 @@ struct Run {
 };
 
 // The recursion steps as the branch says (or `steps`); the references visit the same load factors.
-Run run(const Model& model, const Branch& branch, Leg leg, int steps = 0);
+LegRun run(const Model& model, const Branch& branch, Leg leg, int steps = 0);
 
 // Deviation of b from a.
 struct Pair {
@@ -38,7 +38,7 @@ struct Pair {
 
 struct BranchComparison {
     std::string branch;
-    std::vector<Run> runs;                 // in the order of `legs`
+    std::vector<LegRun> runs;                 // in the order of `legs`
     Pair deviation;                        // the recursion against the equilibrium leg
     Pair cross_check;                      // the recursion against the energy leg
     Pair uncertainty;                      // the energy leg against the equilibrium leg

@@ -23,7 +23,7 @@ std::string curves_header(const std::vector<compare::Channel>& channels) {
     return line + "\n";
 }
 
-std::string curves_rows(const std::string& branch, const compare::Run& run) {
+std::string curves_rows(const std::string& branch, const compare::LegRun& run) {
     std::string rows;
     for (std::size_t k = 0; k < run.curve.load.size(); ++k) {
         rows += fmt::format("{},{},{:.17g},", quoted(branch), name(run.leg), run.curve.load[k]);

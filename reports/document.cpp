@@ -43,7 +43,7 @@ json residuals_json(const Residuals& r) {
     return {{"constraint_mm", 1e3 * r.length}, {"constraint_direction", r.direction}, {"force_N", r.force}, {"moment_Nm", r.moment}};
 }
 
-json run_json(const compare::Run& run, const std::vector<compare::Channel>& channels) {
+json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& channels) {
     json judged = json::object();
     for (const Leg by : compare::legs) judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
     json constraint_error = json::array();

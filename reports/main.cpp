@@ -51,7 +51,7 @@ int solve(const std::string& file, compare::Leg leg, int steps, const std::strin
     int code = fine;
     for (const auto& branch : model.branches) {
         progress(branch.name);
-        const compare::Run run = compare::run(model, branch, leg, steps);
+        const compare::LegRun run = compare::run(model, branch, leg, steps);
         csv += reports::curves_rows(branch.name, run);
         if (run.path.outcome == Outcome::converged) continue;
         progress("");
@@ -96,9 +96,9 @@ int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
         if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr || dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
         for (int k = 1; k < argc; ++k) {
-            const std::string word = argv[k];
+            const std::string argument = argv[k], word = argument.substr(0, argument.find('='));
             const bool option = word.starts_with("--");
-            if ((scope == &app && k == 1 && !option) || (option && std::ranges::find(known, word.substr(0, word.find('='))) == known.end())) {
+            if ((!in_command && k == 1 && !option) || (option && std::ranges::find(known, word) == known.end())) {
                 message = fmt::format("{} {}{}", option ? "unknown option" : "unknown command", reader::quote(word),
                                       reader::did_you_mean(word, known, "known"));
                 break;

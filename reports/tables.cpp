@@ -14,9 +14,14 @@ using compare::Leg;
 // A share of the channel's range; none where the channel does not move.
 std::string share(double value, double range) {
     if (!(range > 1e-9)) return "-";
+    if (value < 1e-9) return "0";
     const double percent = 100 * value / range;
     return percent < 0.001 ? "<0.001 %" : fmt::format("{:.3g} %", percent);
 }
+
+// A deviation with its sign; below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's.
+std::string signed_value(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3g}", value); }
+std::string value_or_zero(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:.2g}", value); }
 
 // The channels worth a line: every main one, and of each joint the force and the moment component that deviates most.
 std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Reading& reading) {
@@ -52,14 +57,15 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
                    fmt::format("at {}", load_unit), "rms", "share", "max", "at mm", "rms", "share", "uncertainty");
     for (const std::size_t c : shown(all, load)) {
         const auto& d = load.channels[c];
-        fmt::format_to(out, "  {:<24}{:>11.5g}   {:>+9.3g}{:>9.4g}{:>9.2g}{:>9}   ",
-                       fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range, d.signed_max, d.at,
-                       d.rms, share(d.max, d.range));
+        fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
+                       fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range,
+                       signed_value(d.signed_max), d.at, value_or_zero(d.rms), share(d.max, d.range));
         if (travel.channels.empty()) {
             fmt::format_to(out, "{:<36}", "-");
         } else {
             const auto& t = travel.channels[c];
-            fmt::format_to(out, "{:>+9.3g}{:>9.4g}{:>9.2g}{:>9}", t.signed_max, t.at, t.rms, share(t.max, t.range));
+            fmt::format_to(out, "{:>9}{:>9.4g}{:>9}{:>9}", signed_value(t.signed_max), t.at, value_or_zero(t.rms),
+                           share(t.max, t.range));
         }
         fmt::format_to(out, "   {:>11.1e}\n", doubt.channels[c].max);
     }

@@ -1,12 +1,13 @@
 // The branch is one curve of minima. A minimiser left alone would snap through at a limit point and report
-// the far side; so a step counts only if it ends where it was expected to:
+// the far side. So a step counts only if both the way it went and the tangent where it arrived are as
+// expected, in scaled ξ:
 //
-//   |ξ - ξ_expected| ≤ ½ |ξ_expected - ξ_start|      (largest entry; small steps below `negligible` are
-//   always fine)
+//   |Δξ - Δξ_e| ≤ ½ |Δξ_e|,   |dξ/da Δa - Δξ_e| ≤ ½ |Δξ_e|      (largest entry; what is negligible always
+//   passes)
 //
-// with ξ_expected from the step before (secant), or for the first step from the tangent -Z W⁻¹ Zᵀ ∂²V/∂ξ∂a.
-// The new pose must be a minimum (no mode of negative stiffness) and no bushing may have gone through half a
-// turn, where its law ends. If any of this fails the step is halved.
+// with Δξ_e from the step before (secant), or for the first step from the tangent -Z W⁻¹ Zᵀ ∂²V/∂ξ∂a. The new
+// pose must be a minimum (no mode of negative stiffness) and no bushing may have gone through half a turn,
+// where its law ends. If any of this fails the step is halved.
 #include "reference/energy/branch.hpp"
 
 #include <cmath>
@@ -23,7 +24,7 @@ using Eigen::VectorXd;
 
 constexpr int halvings = 12;           // of a step, one after the other
 constexpr int internal_points = 2000;  // on the way from one load to the next
-constexpr double largest_step = 0.2;   // expected, of L or 1 rad
+constexpr double largest_step = 0.1;   // expected, of L or 1 rad
 constexpr double negligible = 1e-4;    // of L or 1 rad
 constexpr const char* not_finite = "a number stopped being finite";
 constexpr double half_turn = std::numbers::pi - 1e-3;  // [rad]
@@ -43,18 +44,31 @@ VectorXd newton_increment(const Path& path, const State& state, const VectorXd& 
     return -Z * K.partialPivLu().solve(Z.transpose() * b);
 }
 
-// Where the branch is expected at load factor a, in ξ.
-VectorXd expected_increment(const Path& path, const State& from, double a) {
-    if (from.velocity) return *from.velocity * (a - from.a);
-    const Chart chart = chart_about(from.poses);
-    const VectorXd db = potential(path.model, path.loading(a), chart).gradient -
-                        potential(path.model, path.loading(from.a), chart).gradient;
-    return newton_increment(
-        path, from, path.scales.coordinates(coordinates(path.model)).cwiseProduct(db) / path.scales.energy());
+// What a change of the load factor does at this pose, to first order, in ξ.
+VectorXd tangent_increment(const Path& path, const State& state, double a_from, double a_to) {
+    const Chart chart = chart_about(state.poses);
+    const VectorXd S = path.scales.coordinates(coordinates(path.model));
+    const VectorXd db = potential(path.model, path.loading(a_to), chart).gradient -
+                        potential(path.model, path.loading(a_from), chart).gradient;
+    return newton_increment(path, state, S.cwiseProduct(db) / path.scales.energy());
 }
 
+VectorXd expected_increment(const Path& path, const State& from, double a) {
+    return from.velocity ? *from.velocity * (a - from.a) : tangent_increment(path, from, from.a, a);
+}
+
+// Whether an increment is the expected one, give or take half of it.
+bool is_commensurate(const VectorXd& increment, const VectorXd& expected) {
+    return largest(increment - expected) <= std::max(0.5 * largest(expected), negligible);
+}
+
+// The increment from one state to the next, in ξ, less what idle motions contribute: that is nobody's
+// business.
 VectorXd scaled_increment(const Path& path, const State& from, const State& to) {
-    return increment(from.poses, to.poses).cwiseQuotient(path.scales.coordinates(coordinates(path.model)));
+    const VectorXd xi =
+        increment(from.poses, to.poses).cwiseQuotient(path.scales.coordinates(coordinates(path.model)));
+    const MatrixXd idle = to.modes.idle_motions();
+    return xi - idle * (idle.transpose() * xi);
 }
 
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const VectorXd& xi) {
@@ -87,7 +101,8 @@ Attempt step(const Path& path, const State& from, double a, const VectorXd& expe
     Attempt attempt = minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = scaled_increment(path, from, attempt.state);
-    if (!(largest(actual - expected) <= std::max(0.5 * largest(expected), negligible)))
+    if (!is_commensurate(actual, expected) ||
+        (!attempt.failure && !is_commensurate(tangent_increment(path, attempt.state, from.a, a), expected)))
         attempt.failure = {Outcome::branch_lost, "the nearest minimum is not a continuation of the branch"};
     else if (!attempt.failure && !bushings_within_half_turn(path, from, attempt.state))
         attempt.failure = {Outcome::branch_lost, "a bushing has turned by half a turn, where its law ends"};

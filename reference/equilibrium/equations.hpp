@@ -1,7 +1,9 @@
-// The physics of this leg: what joints, elements and loads do to free bodies, written once for double and for Ceres' Jets.
+// The physics of this leg: what joints, elements and loads do to free bodies, written once for double and for
+// Ceres' Jets.
 //
-// Free-body diagrams. Whatever connects two bodies acts on body i with a force and a moment, and on body j with the
-// opposite force on the same line of action and the opposite moment. So one `Interaction` says it all:
+// Free-body diagrams. Whatever connects two bodies acts on body i with a force and a moment, and on body j
+// with the opposite force on the same line of action and the opposite moment. So one `Interaction` says it
+// all:
 //
 //   on body i:   force  F      moment about r_i   M + (x - r_i) × F
 //   on body j:   force -F      moment about r_j  -M - (x - r_j) × F        x: any point of the line of action
@@ -38,8 +40,10 @@ struct Interaction {
 template <class T, class S>
 Vec3<T> turned(const Eigen::Quaternion<T>& p, const Vec3<S>& v) {
     const T &w = p.w(), &a = p.x(), &b = p.y(), &c = p.z();
-    const T ux = (b * v[2] - c * v[1]) * 2.0, uy = (c * v[0] - a * v[2]) * 2.0, uz = (a * v[1] - b * v[0]) * 2.0;
-    return {w * ux + (b * uz - c * uy) + v[0], w * uy + (c * ux - a * uz) + v[1], w * uz + (a * uy - b * ux) + v[2]};
+    const T ux = (b * v[2] - c * v[1]) * 2.0, uy = (c * v[0] - a * v[2]) * 2.0,
+            uz = (a * v[1] - b * v[0]) * 2.0;
+    return {w * ux + (b * uz - c * uy) + v[0], w * uy + (c * ux - a * uz) + v[1],
+            w * uz + (a * uy - b * ux) + v[2]};
 }
 
 template <class T>
@@ -61,9 +65,10 @@ Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& p, const Eigen::Quatern
 //   J⁻¹(θ) = I - ½ θ̃ + c θ̃²,   c = (1 - (θ/2) cot(θ/2)) / θ².
 //
 // With the quaternion of A as (w, v), w ≥ 0: |v| = sin(θ/2), w = cos(θ/2), so θ = 2 v atan2(|v|, w) / |v| and
-// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, which have derivatives there too:
-// atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!).
-// The logarithm is not unique at half a turn: there, and 1e-6 rad before, everything is NaN rather than quietly one of two.
+// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, which have derivatives there
+// too: atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!). The
+// logarithm is not unique at half a turn: there, and 1e-6 rad before, everything is NaN rather than quietly
+// one of two.
 template <class T>
 struct Logarithm {
     Vec3<T> theta;
@@ -87,7 +92,8 @@ Logarithm<T> logarithm(Eigen::Quaternion<T> q) {
         for (int n = 11; n >= 1; n -= 2) angle_by_sin = 1.0 / n - t2 * angle_by_sin;
         angle_by_sin /= w;
         const T x = 4.0 * sin2 * angle_by_sin * angle_by_sin;  // θ²
-        constexpr double b[] = {1. / 12, 1. / 720, 1. / 30240, 1. / 1209600, 1. / 47900160, 691. / 1307674368000.};
+        constexpr double b[] = {1. / 12,      1. / 720,      1. / 30240,
+                                1. / 1209600, 1. / 47900160, 691. / 1307674368000.};
         c = T(b[5]);
         for (int n = 4; n >= 0; --n) c = b[n] + x * c;
     } else {
@@ -143,18 +149,21 @@ inline bool resists_rotation(const Bushing& bushing) {
              bushing.preload.tail<3>().isZero(0));
 }
 
-// (f, g) = K e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, all in the axes of marker i.
-// Let the bodies move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_i f.
+// (f, g) = K e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, all in the axes of
+// marker i. Let the bodies move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_i f.
 //
 //   δd = A_iᵀ (δp_j - δp_i - δπ_i × D)      so  f · δd = F · (δp_j - δp_i) - δπ_i · (D × F)
-//   δθ = J⁻¹(θ) A_iᵀ (δπ_j - δπ_i)          so  g · δθ = (A_i m) · (δπ_j - δπ_i),  m = J⁻ᵀ g = g + ½ θ × g + c θ × (θ × g)
+//   δθ = J⁻¹(θ) A_iᵀ (δπ_j - δπ_i)          so  g · δθ = (A_i m) · (δπ_j - δπ_i),  m = J⁻ᵀ g = g + ½ θ × g +
+//   c θ × (θ × g)
 //
-// (R = A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) R, whence the left Jacobian.) The body feels -∂U: on j the force -F at
-// p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the moment A_i m.
+// (R = A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) R, whence the left Jacobian.) The body feels -∂U: on j the
+// force -F at p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the
+// moment A_i m.
 template <class T>
 Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Frame<T>& j) {
     const Vec3<T> p_i = position(i, bushing.i.s_local), p_j = position(j, bushing.j.s_local);
-    const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local), axes_j = product(j.p, bushing.j.A_local);
+    const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local),
+                               axes_j = product(j.p, bushing.j.A_local);
     const Eigen::Quaternion<T> to_i = conjugate(axes_i);
 
     Eigen::Matrix<T, 6, 1> e;
@@ -173,7 +182,8 @@ Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Fram
     on_i.force = turned(axes_i, Vec3<T>(fg.template head<3>()));
     on_i.at = p_j;
     if (rotational) {
-        const Vec3<T> g = fg.template tail<3>(), theta_g = cross(log.theta, g), theta2_g = cross(log.theta, theta_g);
+        const Vec3<T> g = fg.template tail<3>(), theta_g = cross(log.theta, g),
+                      theta2_g = cross(log.theta, theta_g);
         Vec3<T> m;
         for (int k = 0; k < 3; ++k) m[k] = g[k] + 0.5 * theta_g[k] + log.c * theta2_g[k];
         on_i.moment = turned(axes_i, m);
@@ -183,8 +193,9 @@ Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Fram
 
 // ---- Constraints
 
-// The rows of a constraint, and the interaction its reactions R [N, or N·m for directions] make. Without friction a joint
-// pushes only where it holds: along the normal, along the bar, about the common perpendicular of the two directions.
+// The rows of a constraint, and the interaction its reactions R [N, or N·m for directions] make. Without
+// friction a joint pushes only where it holds: along the normal, along the bar, about the common
+// perpendicular of the two directions.
 template <class T>
 struct Holding {
     Vec3<T> Phi;  // the first rows(kind) count; [m] or [-]
@@ -235,7 +246,9 @@ Holding<T> holding(const DistanceBetween& c, const Frame<T>& i, const Frame<T>& 
     return h;
 }
 
-inline bool is_direction(const ConstraintKind& kind) { return std::holds_alternative<PerpendicularDirections>(kind); }
+inline bool is_direction(const ConstraintKind& kind) {
+    return std::holds_alternative<PerpendicularDirections>(kind);
+}
 
 // ---- Loads
 

@@ -20,8 +20,9 @@ MatrixXd orthonormal(const MatrixXd& columns) {
     return Q;
 }
 
-// Rank is judged on the equilibrated matrix D_r J D_c (Ruiz: rows and columns of size one), because stiff and soft elements
-// side by side are no sign of singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
+// Rank is judged on the equilibrated matrix D_r J D_c (Ruiz: rows and columns of size one), because stiff and
+// soft elements side by side are no sign of singularity. Its null vectors v, u are mapped back: V ~ D_c v, U
+// ~ D_r u.
 NullSpaces null_spaces(const MatrixXd& J) {
     VectorXd D_r = VectorXd::Ones(J.rows()), D_c = VectorXd::Ones(J.cols());
     MatrixXd A = J;
@@ -51,19 +52,19 @@ void border(Linearisation& at) {
     at.bordered.compute(B);
     const auto diagonal = at.bordered.matrixLU().diagonal();
     at.orientation = static_cast<int>(at.bordered.permutationP().determinant());
-    for (Index i = 0; i < n + k; ++i)
-        at.orientation *= diagonal[i] > 0 ? 1 : diagonal[i] < 0 ? -1 : 0;
+    for (Index i = 0; i < n + k; ++i) at.orientation *= diagonal[i] > 0 ? 1 : diagonal[i] < 0 ? -1 : 0;
 }
 
-// With the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here, turned as little as possible, as long as μ,
-// the stiffness they have got, is nothing but round-off.
+// With the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here, turned as little as possible, as
+// long as μ, the stiffness they have got, is nothing but round-off.
 bool track(Linearisation& at) {
     const Index n = at.J.rows(), k = at.modes.count();
     MatrixXd ones = MatrixXd::Zero(n + k, k);
     ones.bottomRows(k).setIdentity();
     const MatrixXd right = at.bordered.solve(ones), left = at.bordered.transpose().solve(ones);
     const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
-    if (!right.allFinite() || !left.allFinite() || !(stiffness <= 1e-10 * at.J.cwiseAbs().maxCoeff())) return false;
+    if (!right.allFinite() || !left.allFinite() || !(stiffness <= 1e-10 * at.J.cwiseAbs().maxCoeff()))
+        return false;
     at.modes = {orthonormal(right.topRows(n)), orthonormal(left.topRows(n))};
     return true;
 }
@@ -90,7 +91,8 @@ Linearisation linearise(MatrixXd J, const Linearisation* before, Counts& counts)
 Rate answer(const Linearisation& at, const VectorXd& E_rate) {
     const Index n = at.J.rows(), k = at.modes.count();
     if (n == 0) return {};
-    if (at.orientation == 0) return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()), VectorXd::Zero(k)};
+    if (at.orientation == 0)
+        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()), VectorXd::Zero(k)};
     VectorXd right = VectorXd::Zero(n + k);
     right.head(n) = -E_rate;
     const VectorXd solution = at.bordered.solve(right);

@@ -7,9 +7,9 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// Null spaces of J = ∂E/∂(step), orthonormal columns [n × k]. A right null vector is an idle mode (a motion that nothing
-// resists) or a self-stress of redundant joints; a left null vector is what must not be asked of it: a load on the idle
-// mode, a contradiction between the joints.
+// Null spaces of J = ∂E/∂(step), orthonormal columns [n × k]. A right null vector is an idle mode (a motion
+// that nothing resists) or a self-stress of redundant joints; a left null vector is what must not be asked of
+// it: a load on the idle mode, a contradiction between the joints.
 struct NullSpaces {
     Eigen::MatrixXd right, left;
     Eigen::Index count() const { return right.cols(); }
@@ -22,14 +22,15 @@ struct NullSpaces {
 //
 // is regular where J is singular: dx is free of idle motion, and μ is the part of E' that J cannot answer.
 struct Linearisation {
-    Eigen::MatrixXd J;                          // [n × n]
-    NullSpaces modes;                           // U = left, V = right
+    Eigen::MatrixXd J;  // [n × n]
+    NullSpaces modes;   // U = left, V = right
     Eigen::PartialPivLU<Eigen::MatrixXd> bordered;
-    int orientation = 0;                        // sign of the bordered determinant
-    bool modes_are_new = true;                  // then `orientation` says nothing about the point before
+    int orientation = 0;        // sign of the bordered determinant
+    bool modes_are_new = true;  // then `orientation` says nothing about the point before
 };
 
-// `before` is the linearisation at the point before on the branch, from which the modes are tracked; nullptr at the first.
+// `before` is the linearisation at the point before on the branch, from which the modes are tracked; nullptr
+// at the first.
 Linearisation linearise(Eigen::MatrixXd J, const Linearisation* before, Counts& counts);
 
 struct Rate {

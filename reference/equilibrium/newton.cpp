@@ -10,7 +10,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A part of the system depends on two bodies and at most three reactions: 7 + 7 + 3 derivatives, scattered afterwards.
+// A part of the system depends on two bodies and at most three reactions: 7 + 7 + 3 derivatives, scattered
+// afterwards.
 constexpr int first_reaction = 14;
 using Jet = ceres::Jet<double, 17>;
 
@@ -46,17 +47,21 @@ struct Scatter {
         E[row] += term.a;
         if (part.i != ground) dE.row(row).segment<7>(column(part.i)) += term.v.segment<7>(0).transpose();
         if (part.j != ground) dE.row(row).segment<7>(column(part.j)) += term.v.segment<7>(7).transpose();
-        for (int k = 0; k < part.rows; ++k) dE(row, column(system, part.row) + k) += term.v[first_reaction + k];
+        for (int k = 0; k < part.rows; ++k)
+            dE(row, column(system, part.row) + k) += term.v[first_reaction + k];
     }
     void balance(const Part& part, BodyId body, const Vec3<Jet>& force, const Vec3<Jet>& moment) {
         for (int k = 0; k < 3; ++k) add(part, 6 * body + k, force[k]);
         for (int k = 0; k < 3; ++k) add(part, 6 * body + 3 + k, moment[k]);
     }
-    void constraint(const Part& part, int k, const Jet& Phi) { add(part, 6 * system.bodies + part.row + k, Phi); }
+    void constraint(const Part& part, int k, const Jet& Phi) {
+        add(part, 6 * system.bodies + part.row + k, Phi);
+    }
 };
 
 Scatter differentiated(const System& system, double load_factor, const VectorXd& x) {
-    Scatter sum{system, VectorXd::Zero(system.equations()), RowMajor::Zero(system.equations(), system.unknowns())};
+    Scatter sum{system, VectorXd::Zero(system.equations()),
+                RowMajor::Zero(system.equations(), system.unknowns())};
     assemble<Jet>(system, load_factor, Seeds{system, x}, sum);
     return sum;
 }
@@ -64,7 +69,8 @@ Scatter differentiated(const System& system, double load_factor, const VectorXd&
 // The whole system is one residual block: a balance gathers from every element that touches the body.
 class SystemCost final : public ceres::CostFunction {
   public:
-    SystemCost(const System& system, const Loading& loading) : system_(system), loading_(loading), x_(system.unknowns()) {
+    SystemCost(const System& system, const Loading& loading)
+        : system_(system), loading_(loading), x_(system.unknowns()) {
         set_num_residuals(system.equations());
         mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(system.bodies), 7);
         if (system.constraint_rows > 0) mutable_parameter_block_sizes()->push_back(system.constraint_rows);
@@ -94,8 +100,8 @@ class SystemCost final : public ceres::CostFunction {
     mutable VectorXd x_;  // room for the unknowns in one piece; a problem is solved by one thread
 };
 
-// Goes on until the residual is small and the corrections have died out: the step after a correction of 1e-8 would be
-// of its square.
+// Goes on until the residual is small and the corrections have died out: the step after a correction of 1e-8
+// would be of its square.
 struct StopAtFloor final : ceres::IterationCallback {
     explicit StopAtFloor(double limit) : tolerance(limit) {}
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
@@ -110,7 +116,8 @@ ceres::Solver::Options solver_options(const Options& options) {
     ceres::Solver::Options o;
     o.linear_solver_type = ceres::DENSE_QR;  // not of the normal equations: they square the condition number
     o.max_num_iterations = options.iteration_limit;
-    // Newton's method as nearly as can be; what damping is left turns idle modes and redundant rows into minimum-norm steps.
+    // Newton's method as nearly as can be; what damping is left turns idle modes and redundant rows into
+    // minimum-norm steps.
     o.initial_trust_region_radius = o.max_trust_region_radius = 1e16;
     o.min_lm_diagonal = 1;
     o.jacobi_scaling = false;

@@ -12,8 +12,8 @@ struct Attempt {
     bool out_of_time = false;  // the iteration limit came before a standstill
 };
 
-Attempt newton(const System& system, const Loading& loading, const Eigen::VectorXd& start, const Options& options,
-               Counts& counts);
+Attempt newton(const System& system, const Loading& loading, const Eigen::VectorXd& start,
+               const Options& options, Counts& counts);
 
 // ∂E/∂(step) [n × n], by automatic differentiation.
 Eigen::MatrixXd jacobian(const System& system, double load_factor, const Eigen::VectorXd& x, Counts& counts);

@@ -43,11 +43,14 @@ struct Judge {
     }
     void apply(const Load& load, double factor) {
         const BodyId body = body_of(load.kind);
-        if (body != ground) apply(body, std::visit([&](const auto& k) { return on_body(k, frame(body)); }, load.kind), factor);
+        if (body != ground)
+            apply(body, std::visit([&](const auto& k) { return on_body(k, frame(body)); }, load.kind),
+                  factor);
     }
 };
 
-// What a joint's constraints push with, one column a row and unit reaction, as (force; moment about `at` / L) [6 × rows].
+// What a joint's constraints push with, one column a row and unit reaction, as (force; moment about `at` / L)
+// [6 × rows].
 MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
     MatrixXd columns(6, 0);
     for (const auto& constraint : judge.system.model->constraints) {
@@ -56,7 +59,9 @@ MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
         for (int k = 0; k < rows(constraint.kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
             const auto on_i = std::visit(
-                [&, i = i, j = j](const auto& c) { return holding(c, judge.frame(i), judge.frame(j), unit.data()).reaction; },
+                [&, i = i, j = j](const auto& c) {
+                    return holding(c, judge.frame(i), judge.frame(j), unit.data()).reaction;
+                },
                 constraint.kind);
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
@@ -79,7 +84,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     Judge judge{system, state, {}, std::vector<Balance>(model.bodies.size())};
     Residuals worst;
 
-    // A quaternion off the unit sphere is an error of direction; what follows is judged for the nearest rotation.
+    // A quaternion off the unit sphere is an error of direction; what follows is judged for the nearest
+    // rotation.
     for (const auto& pose : state.poses) {
         raise(worst.direction, std::abs(pose.p.norm() - 1));
         judge.frames.push_back({pose.r - system.centre, pose.p.normalized()});
@@ -88,9 +94,10 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     for (const auto& constraint : model.constraints) {
         const auto [i, j] = bodies_of(constraint.kind);
         const Vector3d none = Vector3d::Zero();
-        const auto h = std::visit(
-            [&, i = i, j = j](const auto& c) { return holding(c, judge.frame(i), judge.frame(j), none.data()); },
-            constraint.kind);
+        const auto h =
+            std::visit([&, i = i, j = j](
+                           const auto& c) { return holding(c, judge.frame(i), judge.frame(j), none.data()); },
+                       constraint.kind);
         for (int k = 0; k < rows(constraint.kind); ++k)
             raise(is_direction(constraint.kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
     }
@@ -98,7 +105,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     for (const auto& elastic : model.elastics) {
         const auto [i, j] = bodies_of(elastic.kind);
         const auto on_i = std::visit(
-            [&, i = i, j = j](const auto& k) { return interaction(k, judge.frame(i), judge.frame(j)); }, elastic.kind);
+            [&, i = i, j = j](const auto& k) { return interaction(k, judge.frame(i), judge.frame(j)); },
+            elastic.kind);
         judge.apply(i, on_i, +1);
         judge.apply(j, on_i, -1);
     }
@@ -114,7 +122,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         judge.apply(joint.i, on_i, +1);
         judge.apply(joint.j, on_i, -1);
 
-        // A joint without friction cannot transmit everything: what lies outside the span of its constraints counts too.
+        // A joint without friction cannot transmit everything: what lies outside the span of its constraints
+        // counts too.
         const MatrixXd C = transmitted_by(judge, static_cast<int>(n), on_i.at);
         Vector6 left_over;
         left_over << on_i.force, on_i.moment / system.length;

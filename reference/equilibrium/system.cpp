@@ -16,7 +16,9 @@ Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
 struct Values {
     const System& system;
     const VectorXd& x;
-    Frame<double> frame(const Part& part, int which) const { return frame_of(system, x, which == 0 ? part.i : part.j); }
+    Frame<double> frame(const Part& part, int which) const {
+        return frame_of(system, x, which == 0 ? part.i : part.j);
+    }
     double reaction(const Part& part, int k) const { return x[7 * system.bodies + part.row + k]; }
 };
 
@@ -94,7 +96,8 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     for (const auto& load : branch.loads) force = std::max(force, a * force_of(load, system.length));
     for (const auto& load : model.static_loads) force = std::max(force, force_of(load, system.length));
     for (const auto& elastic : model.elastics)
-        force = std::max(force, std::visit([&](const auto& k) { return force_of(k, system.length); }, elastic.kind));
+        force = std::max(force,
+                         std::visit([&](const auto& k) { return force_of(k, system.length); }, elastic.kind));
     if (std::isfinite(force) && force > 0) system.force = force;
 
     system.at_design = sum(system, 0, design_unknowns(system));
@@ -136,8 +139,10 @@ VectorXd moved(const System& system, const VectorXd& x, const VectorXd& dx) {
     for (int body = 0; body < system.bodies; ++body) {
         to.segment<3>(7 * body) += dx.segment<3>(6 * body);
         const Vector3d half = dx.segment<3>(6 * body + 3) / 2;
-        const double angle = half.norm(), by_angle = angle > 1e-4 ? std::sin(angle) / angle : 1 - angle * angle / 6;
-        const Eigen::Quaterniond turn(std::cos(angle), by_angle * half[0], by_angle * half[1], by_angle * half[2]);
+        const double angle = half.norm(),
+                     by_angle = angle > 1e-4 ? std::sin(angle) / angle : 1 - angle * angle / 6;
+        const Eigen::Quaterniond turn(std::cos(angle), by_angle * half[0], by_angle * half[1],
+                                      by_angle * half[2]);
         const Eigen::Quaterniond p(x.segment<4>(7 * body + 3));
         to.segment<4>(7 * body + 3) = product(turn, p).normalized().coeffs();
     }
@@ -195,11 +200,13 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
         const double unit = is_direction(constraint.kind) ? system.force * system.length : system.force;
         const Vector3d R = [&] {
             Vector3d padded = Vector3d::Zero();
-            padded.head(rows(constraint.kind)) = unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
+            padded.head(rows(constraint.kind)) =
+                unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
             return padded;
         }();
         const auto frame_i = frame_of(system, x, i), frame_j = frame_of(system, x, j);
-        const auto h = std::visit([&](const auto& k) { return holding(k, frame_i, frame_j, R.data()); }, constraint.kind);
+        const auto h = std::visit([&](const auto& k) { return holding(k, frame_i, frame_j, R.data()); },
+                                  constraint.kind);
         Phi2 += h.Phi.head(rows(constraint.kind)).squaredNorm();
 
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];

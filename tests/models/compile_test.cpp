@@ -279,7 +279,7 @@ struct RandomScene {
 
     JointKind joint(BodyId i, BodyId j) {
         const Direction a = direction(i), b = direction(j);
-        switch (below(7)) {
+        switch (below(12)) {
             case 0:
                 return Spherical{point(i), point(j)};
             case 1:
@@ -292,6 +292,21 @@ struct RandomScene {
                 return InPlane{point(i), point(j), b};
             case 5:
                 return Translational{point(i), point(j), a, b};
+            case 6:
+                return Universal{point(i), point(j), a, b};
+            case 7:
+                return Planar{point(i), point(j), a, b};
+            case 8:
+                return Fixed{point(i),
+                             point(j),
+                             {i, Vector3d::UnitX()},
+                             {i, Vector3d::UnitY()},
+                             {j, Vector3d::UnitX()},
+                             {j, Vector3d::UnitY()}};
+            case 9:
+                return InLine{point(i), point(j), b};
+            case 10:
+                return Perpendicular{a, b};
             default:
                 return Parallel{a, b};
         }
@@ -384,7 +399,9 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
                 [&](const auto& c) {
                     EXPECT_EQ(c.i.body, owner.i);
                     EXPECT_EQ(c.j.body, owner.j);
-                    if constexpr (requires { c.normal_j; }) EXPECT_EQ(c.normal_j.body, owner.j);
+                    if constexpr (requires { c.normal_j; }) {
+                        EXPECT_EQ(c.normal_j.body, owner.j);
+                    }
                 },
                 constraint.kind);
         }
@@ -400,7 +417,9 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
                 EXPECT_EQ(target(scene, *find(scene.branches[b].loads, load.name)), target(model, load));
         }
         ASSERT_EQ(model.wheel.has_value(), scene.wheel.has_value());
-        if (model.wheel) EXPECT_EQ(body_name(model, model.wheel->body), body_name(scene, scene.wheel->body));
+        if (model.wheel) {
+            EXPECT_EQ(body_name(model, model.wheel->body), body_name(scene, scene.wheel->body));
+        }
         ASSERT_EQ(model.probes.size(), scene.probes.size());
         for (std::size_t k = 0; k < model.probes.size(); ++k)
             EXPECT_EQ(body_name(model, model.probes[k].at.body), body_name(scene, scene.probes[k].at.body));
@@ -507,8 +526,9 @@ TEST(ModelJoint, ReportsAtItsPointOrAtTheOriginOfItsFirstBody) {
     scene.joints = {{"rod", Distance{{0, Vector3d(1, 2, 3)}, {1, Vector3d(4, 5, 6)}, 1}},
                     {"square", Perpendicular{{1, Vector3d::UnitX()}, {0, Vector3d::UnitY()}}},
                     {"ground_first", Spherical{{ground, Vector3d(7, 8, 9)}, {0, Vector3d::Zero()}}}};
+    scene.probes.push_back({"other", {.body = 1}});
     const Model model = compile(scene);
-    ASSERT_EQ(model.joints.size(), 2U + 1U);
+    ASSERT_EQ(model.joints.size(), 3U);
     EXPECT_EQ(model.joints[0].at.s_local, Vector3d(1, 2, 3));
     EXPECT_EQ(model.joints[1].at.body, 1);
     EXPECT_EQ(model.joints[1].at.s_local, Vector3d::Zero());

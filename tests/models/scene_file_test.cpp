@@ -29,14 +29,14 @@ Scene shipped(const std::string& name) { return read_scene(fs::path(ELASTOCHECK_
 Scene parsed(const std::string& text) { return parse_scene(text, "text.yaml"); }
 
 template <class T>
-const T& element(const Scene& scene, const std::string& name) {
+T element(const Scene& scene, const std::string& name) {
     for (const auto& elastic : scene.elastics)
         if (elastic.name == name) return std::get<T>(elastic.kind);
     throw std::out_of_range(name);
 }
 
 template <class T>
-const T& joint(const Scene& scene, const std::string& name) {
+T joint(const Scene& scene, const std::string& name) {
     for (const auto& candidate : scene.joints)
         if (candidate.name == name) return std::get<T>(candidate.kind);
     throw std::out_of_range(name);
@@ -70,24 +70,24 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     EXPECT_EQ(scene.bodies[0].name, "arm");
     expect_near(scene.bodies[0].design.r, Vector3d(-0.02165371, 0.94057703, -0.17402826), 0);
 
-    const auto& tie_rod = joint<Distance>(scene, "tie_rod");
+    const auto tie_rod = joint<Distance>(scene, "tie_rod");
     EXPECT_EQ(tie_rod.i.body, 1);
     EXPECT_EQ(tie_rod.j.body, ground);
     expect_near(tie_rod.i.s_local, Vector3d(-0.2373756 + 0.04, 0.89495045 - 1.10, -0.01605418 + 0.026),
                 1e-16);
     EXPECT_DOUBLE_EQ(tie_rod.length, Vector3d(0.0626244, 0.37495045, 0.04294582).norm());
 
-    const auto& tube = joint<Cylindrical>(scene, "strut_tube");
+    const auto tube = joint<Cylindrical>(scene, "strut_tube");
     const Vector3d axis = Vector3d(-0.115 + 0.07402507, 0.785 - 0.8532915, 0.579 - 0.2484536).normalized();
     expect_near(tube.axis_i.u_local, axis, 1e-15);
     expect_near(tube.axis_j.u_local, axis, 1e-15);
 
-    const auto& coil = element<AxialSpring>(scene, "K1_coil");
+    const auto coil = element<AxialSpring>(scene, "K1_coil");
     EXPECT_EQ(coil.k, 30e3);
     EXPECT_EQ(coil.i.body, 1);
     EXPECT_EQ(coil.j.body, 2);
 
-    const auto& front = element<Bushing>(scene, "K3_arm_front");
+    const auto front = element<Bushing>(scene, "K3_arm_front");
     Vector6 rates;
     rates << 1.5e6, 12e6, 12e6, 3 * per_degree, 10 * per_degree, 10 * per_degree;
     expect_near(front.K, Matrix6(rates.asDiagonal()), 1e-12);
@@ -108,7 +108,7 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
 
 TEST(ShippedScene, ParallelSpringsIsConvertedFromMillimetres) {
     const Scene scene = shipped("parallel_springs");
-    const auto& first = element<AxialSpring>(scene, "first");
+    const auto first = element<AxialSpring>(scene, "first");
     EXPECT_EQ(first.k, 30e3);
     EXPECT_DOUBLE_EQ(first.free_length, 0.4 + 600 / 30e3);
     EXPECT_EQ(first.i.s_local, Vector3d(-0.2, 0, 0));
@@ -121,7 +121,7 @@ TEST(ShippedScene, ParallelSpringsIsConvertedFromMillimetres) {
 TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
     const Scene scene = shipped("two_spring_arch");
     EXPECT_EQ(scene.bodies.at(0).design.r, Vector3d(0, 0, 0.08));
-    const auto& left = element<AxialSpring>(scene, "left");
+    const auto left = element<AxialSpring>(scene, "left");
     EXPECT_EQ(left.k, 1e5);
     EXPECT_EQ(left.i.s_local, Vector3d::Zero());
     EXPECT_EQ(left.j.s_local, Vector3d(-0.3, 0, 0));
@@ -130,22 +130,22 @@ TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
 
 TEST(ShippedScene, PinnedBarIsConvertedFromMillimetres) {
     const Scene scene = shipped("pinned_bar");
-    const auto& tip = element<Bushing>(scene, "tip");
+    const auto tip = element<Bushing>(scene, "tip");
     EXPECT_EQ(tip.K.diagonal(), (Vector6() << 2e4, 2e4, 2e4, 0, 0, 0).finished());
     EXPECT_EQ(tip.i.s_local, Vector3d(0.5, 0, 0));
     EXPECT_EQ(joint<Revolute>(scene, "pin").axis_i.u_local, Vector3d::UnitY());
 }
 
 TEST(ShippedScene, BushingScenesKeepTheirRatesAndOrder) {
-    const auto& mount = element<Bushing>(shipped("single_bushing"), "mount");
+    const auto mount = element<Bushing>(shipped("single_bushing"), "mount");
     EXPECT_EQ(mount.i.body, ground);
     EXPECT_EQ(mount.j.body, 0);
     EXPECT_EQ(mount.i.s_local, Vector3d(0.1, 0.2, 0.3));
     EXPECT_EQ(mount.j.s_local, Vector3d::Zero());
     EXPECT_EQ(mount.K.diagonal(), (Vector6() << 2e5, 3e5, 5e5, 400, 500, 700).finished());
-    const auto& pair = element<Bushing>(shipped("bushing_pair"), "front");
+    const auto pair = element<Bushing>(shipped("bushing_pair"), "front");
     EXPECT_EQ(pair.j.s_local, Vector3d(0.15, 0, 0));
-    const auto& pivot = element<Bushing>(shipped("pendulum"), "pivot");
+    const auto pivot = element<Bushing>(shipped("pendulum"), "pivot");
     EXPECT_EQ(pivot.K.diagonal(), (Vector6() << 0, 0, 0, 600, 600, 600).finished());
     EXPECT_EQ(pivot.i.s_local, Vector3d(-0.32, -0.24, 0));
 }
@@ -254,7 +254,7 @@ TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
     const Scene scene = parsed(scene_in("mm", "deg"));
     EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").k, 28e3);
     EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").free_length, 0.75);
-    const auto& full = element<Bushing>(scene, "full");
+    const auto full = element<Bushing>(scene, "full");
     EXPECT_DOUBLE_EQ(full.K(0, 0), 1e6);
     EXPECT_DOUBLE_EQ(full.K(0, 4), 250);
     EXPECT_DOUBLE_EQ(full.K(4, 0), 250);
@@ -371,9 +371,44 @@ TEST(Direction, PerpendicularAxesArePerpendicularToTheLastDigit) {
     for (int n = -10; n <= 10; ++n) {
         const Scene scene = parsed(
             replaced(bench_scene, "axis_j: y", fmt::format("axis_j: [{:.17g}, 0.8, 0.6]", n * 0.99e-10)));
-        const auto& cross = joint<Universal>(scene, "cross");
+        const auto cross = joint<Universal>(scene, "cross");
         EXPECT_LE(std::abs(cross.axis_i.u_local.dot(cross.axis_j.u_local)), 1e-16) << n;
     }
+}
+
+TEST(Joint, EveryTypeGetsItsPointsAndDirections) {
+    struct Case {
+        const char* text;
+        JointKind kind;
+    };
+    // Body 0 `arm` has its origin at 0, body 1 `hub` at `front` = (0.1, 0, 0).
+    const Vector3d side(0, 0.1, 0), x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+    const Point i{0, side}, j{1, side - Vector3d(0.1, 0, 0)}, top_j{1, Vector3d(-0.1, 0, 0.1)};
+    const Case cases[] = {
+        {"type: spherical, at: side", Spherical{i, j}},
+        {"type: revolute, at: side, axis: z", Revolute{i, j, {0, z}, {1, z}}},
+        {"type: universal, at: side, axis_i: x, axis_j: z", Universal{i, j, {0, x}, {1, z}}},
+        {"type: cylindrical, at: side, axis: -y", Cylindrical{i, j, {0, -y}, {1, -y}}},
+        {"type: translational, at: side, axis: x", Translational{i, j, {0, x}, {1, x}}},
+        {"type: planar, at: side, normal: z", Planar{i, j, {0, z}, {1, z}}},
+        {"type: fixed, at: side", Fixed{i, j, {0, x}, {0, y}, {1, x}, {1, y}}},
+        {"type: distance, from: side, to: top", Distance{i, top_j, 0.1 * std::numbers::sqrt2}},
+        {"type: in_plane, at: side, normal: y", InPlane{i, j, {1, y}}},
+        {"type: in_line, at: side, axis: z", InLine{i, j, {1, z}}},
+        {"type: perpendicular, axis_i: y, axis_j: z", Perpendicular{{0, y}, {1, z}}},
+        {"type: parallel, axis: z", Parallel{{0, z}, {1, z}}},
+    };
+    std::vector<bool> seen(std::variant_size_v<JointKind>, false);
+    for (const auto& [text, kind] : cases) {
+        Scene scene = parsed(replaced(bench_scene, "{type: spherical, bodies: [arm, hub], at: front}",
+                                      fmt::format("{{bodies: [arm, hub], {}}}", text)));
+        Scene expected = scene;
+        expected.joints.at(0) = {"ball", kind};
+        SCOPED_TRACE(text);
+        expect_same(scene, expected, 4e-16);
+        seen[kind.index()] = true;
+    }
+    EXPECT_EQ(seen, std::vector<bool>(seen.size(), true));
 }
 
 TEST(Frame, TwoAxesInAnyOrderAreARightHandedFrameThatKeepsTheFirst) {
@@ -404,7 +439,7 @@ TEST(Frame, OneAxisInAnyDirectionIsCompletedRightHanded) {
                 bench_scene, "frame: {x: [middle, front]}, rates: [1, 2, 2], rotational_rates: [3, 4, 4]",
                 fmt::format("frame: {{{}: [{}, {}, {}]}}, rates: [{}, {}, {}]", "xyz"[axis], u.x(), u.y(),
                             u.z(), rates.x(), rates.y(), rates.z())));
-            const auto& mount = element<Bushing>(scene, "mount");
+            const auto mount = element<Bushing>(scene, "mount");
             const Matrix3d A = mount.i.A_local.toRotationMatrix();
             expect_near(A.col(axis), u.normalized(), 1e-15);
             expect_near(A.transpose() * A, Matrix3d::Identity(), 1e-15);
@@ -423,7 +458,7 @@ TEST(Spring, PreloadIsTheCompressiveForceAtTheDesignPosition) {
     for (const double preload : {-4000.0, -1.0, 0.0, 300.0, 1e5}) {
         const Scene scene =
             parsed(replaced(bench_scene, "preload: 300", fmt::format("preload: {}", preload)));
-        const auto& coil = element<AxialSpring>(scene, "coil");
+        const auto coil = element<AxialSpring>(scene, "coil");
         EXPECT_NEAR(coil.k * (length - coil.free_length), -preload, 1e-11) << preload;
     }
     const Scene unloaded = parsed(replaced(bench_scene, ", preload: 300", ""));
@@ -443,7 +478,7 @@ TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
     const auto begin = bench_scene.find("      - [100"), end = bench_scene.find("\nstatic_loads");
     const std::string text = bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
     const Scene scene = parsed(text);
-    const auto& K = element<Bushing>(scene, "block").K;
+    const Matrix6 K = element<Bushing>(scene, "block").K;
     EXPECT_EQ(K, K.transpose());
 }
 

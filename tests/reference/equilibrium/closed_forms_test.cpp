@@ -6,9 +6,10 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-// Solves every branch of a scene and holds every point against `expected`, which gives the deviation relative to the size
-// of the scene.
-void expect_closed_form(const std::string& file, const std::function<double(const Model&, const Equilibrium&)>& deviation) {
+// Solves every branch of a scene and holds every point against `expected`, which gives the deviation relative
+// to the size of the scene.
+void expect_closed_form(const std::string& file,
+                        const std::function<double(const Model&, const Equilibrium&)>& deviation) {
     const Model model = compile(scene(file));
     Worst worst, balance;
     for (const auto& branch : model.branches) {
@@ -29,7 +30,9 @@ void expect_closed_form(const std::string& file, const std::function<double(cons
     ::testing::Test::RecordProperty("worst_deviation", fmt::format("{:.1e}", worst.value));
 }
 
-Vector3d probe(const Model& model, const Equilibrium& state, std::size_t n) { return position(state, model.probes[n].at); }
+Vector3d probe(const Model& model, const Equilibrium& state, std::size_t n) {
+    return position(state, model.probes[n].at);
+}
 
 TEST(EquilibriumClosedForm, PinnedBarTurnsByItsFormula) {
     expect_closed_form("pinned_bar", [](const Model& model, const Equilibrium& state) {
@@ -78,11 +81,13 @@ TEST(EquilibriumClosedForm, PendulumTurnsInItsPlane) {
         const Vector3d tip = probe(model, state, 0);
         const double theta = std::asin(tip[2] / L);
         const Vector3d expected = L * Vector3d(0.8 * std::cos(theta), 0.6 * std::cos(theta), std::sin(theta));
-        return std::max((tip - expected).norm() / L, std::abs(k_R * theta / (L * std::cos(theta)) - state.load) / 3000);
+        return std::max((tip - expected).norm() / L,
+                        std::abs(k_R * theta / (L * std::cos(theta)) - state.load) / 3000);
     });
 }
 
-// k_R θ = M about an axis that stays where it is, up to nearly half a turn, whichever body the frame rides on.
+// k_R θ = M about an axis that stays where it is, up to nearly half a turn, whichever body the frame rides
+// on.
 TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
     std::mt19937 random(11);
     Worst worst;
@@ -101,13 +106,15 @@ TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
         const auto path = solve(model, model.branches[0], loads);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& state : path.points)
-            worst.see(state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load / k_R, axis))),
-                      fmt::format("trial {}, {} N·m", trial, state.load));
+            worst.see(
+                state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load / k_R, axis))),
+                fmt::format("trial {}, {} N·m", trial, state.load));
     }
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// About a principal axis of anisotropic rates the same holds with that axis' rate, for a frame that is not the ground's.
+// About a principal axis of anisotropic rates the same holds with that axis' rate, for a frame that is not
+// the ground's.
 TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
     std::mt19937 random(12);
     Worst worst;
@@ -128,13 +135,15 @@ TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
             const auto path = solve(model, model.branches[0], loads);
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& state : path.points)
-                worst.see(state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load / k_R[axis], about))),
+                worst.see(state.poses[0].p.angularDistance(
+                              Quaterniond(Eigen::AngleAxisd(state.load / k_R[axis], about))),
                           fmt::format("axis {}, {} N·m", axis, state.load));
         }
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// A pendulum without any element stands by its weight alone: tan θ = F / W. Its spin is idle and does not matter.
+// A pendulum without any element stands by its weight alone: tan θ = F / W. Its spin is idle and does not
+// matter.
 TEST(EquilibriumClosedForm, WeightAloneHoldsAHangingPendulum) {
     Scene s;
     s.bodies = {{"bob", {{0, 0, -0.5}, Quaterniond::Identity()}}};
@@ -150,14 +159,15 @@ TEST(EquilibriumClosedForm, WeightAloneHoldsAHangingPendulum) {
     Worst worst;
     for (const auto& state : path.points) {
         const double theta = std::atan(state.load / 20);
-        const Vector3d expected = 0.5 * Vector3d(0.6 * std::sin(theta), 0.8 * std::sin(theta), -std::cos(theta));
+        const Vector3d expected =
+            0.5 * Vector3d(0.6 * std::sin(theta), 0.8 * std::sin(theta), -std::cos(theta));
         worst.see((state.poses[0].r - expected).norm() / 0.5, fmt::format("{} N", state.load));
     }
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// Static loads and preloads that do not balance at the design pose are settled first: the plate of parallel_springs with a
-// weight of 900 N instead of 600 N sinks by 300 N / 75 N/mm.
+// Static loads and preloads that do not balance at the design pose are settled first: the plate of
+// parallel_springs with a weight of 900 N instead of 600 N sinks by 300 N / 75 N/mm.
 TEST(EquilibriumClosedForm, UnbalancedStaticLoadSettlesBeforeTheBranchBegins) {
     Scene s = scene("parallel_springs");
     std::get<DeadForce>(s.static_loads.at(0).kind).f = {0, 0, -900};
@@ -168,7 +178,8 @@ TEST(EquilibriumClosedForm, UnbalancedStaticLoadSettlesBeforeTheBranchBegins) {
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     Worst worst;
     for (const auto& state : path.points)
-        worst.see(std::abs(probe(model, state, 0)[2] - (0.4 + (state.load - 300) / 75e3)), fmt::format("{} N", state.load));
+        worst.see(std::abs(probe(model, state, 0)[2] - (0.4 + (state.load - 300) / 75e3)),
+                  fmt::format("{} N", state.load));
     EXPECT_TRUE(within(worst, 1e-12));
 }
 

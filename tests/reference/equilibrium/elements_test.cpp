@@ -1,5 +1,5 @@
-// The element forces of this leg against the energies of mechanism.hpp, which are written out here once more and
-// differentiated numerically; and the Jacobian against differences of the residual.
+// The element forces of this leg against the energies of mechanism.hpp, which are written out here once more
+// and differentiated numerically; and the Jacobian against differences of the residual.
 #include <fmt/format.h>
 
 #include "reference/equilibrium/equations.hpp"
@@ -24,8 +24,10 @@ double energy(const Bushing& b, const Pose& i, const Pose& j) {
 }
 
 Pose moved(Pose pose, int coordinate, double by) {
-    if (coordinate < 3) pose.r[coordinate] += by;
-    else pose.p = Quaterniond(Eigen::AngleAxisd(by, Vector3d::Unit(coordinate - 3))) * pose.p;
+    if (coordinate < 3)
+        pose.r[coordinate] += by;
+    else
+        pose.p = Quaterniond(Eigen::AngleAxisd(by, Vector3d::Unit(coordinate - 3))) * pose.p;
     return pose;
 }
 
@@ -35,7 +37,8 @@ double slope(const Move& U, double h) {
     return (45 * (U(h) - U(-h)) - 9 * (U(2 * h) - U(-2 * h)) + (U(3 * h) - U(-3 * h))) / (60 * h);
 }
 
-// The wrench of the element on both bodies, (force; moment about the origin) each, against the gradient, relative to its size.
+// The wrench of the element on both bodies, (force; moment about the origin) each, against the gradient,
+// relative to its size.
 template <class Element>
 double deviation_from_gradient(const Element& element, const Pose& i, const Pose& j) {
     const Frame<double> frame_i{i.r, i.p}, frame_j{j.r, j.p};
@@ -68,8 +71,10 @@ TEST(EquilibriumElements, BushingForceIsTheNegativeGradientOfItsEnergy) {
     Worst worst;
     for (const double angle : {0., 1e-9, 1e-6, 1e-4, 0.01, 0.09, 0.0999, 0.1, 0.1001, 0.3, 1., 2., 3.})
         for (int trial = 0; trial < 40; ++trial) {
-            Bushing b{{0, random_vector(random, 0.3), random_turn(random)}, {1, random_vector(random, 0.3), random_turn(random)},
-                      random_stiffness(random), Vector6::Zero()};
+            Bushing b{{0, random_vector(random, 0.3), random_turn(random)},
+                      {1, random_vector(random, 0.3), random_turn(random)},
+                      random_stiffness(random),
+                      Vector6::Zero()};
             b.preload << random_vector(random, 500), random_vector(random, 20);
             const Pose i{random_vector(random, 0.3), random_turn(random)};
             const Quaterniond turn(Eigen::AngleAxisd(angle, random_vector(random, 1).normalized()));
@@ -95,16 +100,19 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfA
     EXPECT_TRUE(within(worst, 2e-15 * 4));
 }
 
-// The logarithm jumps at half a turn. Close to it there is no number at all, rather than one that may be the other.
+// The logarithm jumps at half a turn. Close to it there is no number at all, rather than one that may be the
+// other.
 TEST(EquilibriumElements, HalfATurnIsNotANumber) {
     for (const double short_of : {0., 1e-9, 1e-7})
         for (const double sign : {1., -1.}) {
-            const auto log = logarithm(Quaterniond(Eigen::AngleAxisd(sign * (M_PI - short_of), Vector3d(0.6, 0, 0.8))));
+            const auto log =
+                logarithm(Quaterniond(Eigen::AngleAxisd(sign * (M_PI - short_of), Vector3d(0.6, 0, 0.8))));
             EXPECT_TRUE(std::isnan(log.theta[0]) && std::isnan(log.c)) << short_of;
         }
 }
 
-// Automatic differentiation against differences, at design poses (θ = 0, where series stand in for 0/0) and away from them.
+// Automatic differentiation against differences, at design poses (θ = 0, where series stand in for 0/0) and
+// away from them.
 TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
     std::mt19937 random(4);
     Worst worst;
@@ -114,8 +122,9 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
         const System system = make_system(model, model.branches[0], loads);
         const int n = system.equations();
         for (const double away : {0., 1e-9, 1e-3, 0.3}) {
-            const Eigen::VectorXd off =
-                away * Eigen::VectorXd::NullaryExpr(n, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
+            const Eigen::VectorXd off = away * Eigen::VectorXd::NullaryExpr(n, [&] {
+                                            return std::uniform_real_distribution<double>(-1, 1)(random);
+                                        });
             const Eigen::VectorXd x = equilibrium::moved(system, design_unknowns(system), off);
             Counts counts;
             const Eigen::MatrixXd J = jacobian(system, 700, x, counts);
@@ -124,7 +133,9 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
                 for (int row = 0; row < n; ++row)
                     differences[row] = slope(
                         [&](double h) {
-                            return residual(system, {700, 0}, equilibrium::moved(system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
+                            return residual(
+                                system, {700, 0},
+                                equilibrium::moved(system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
                         },
                         2e-3);
                 worst.see((J.col(k) - differences).cwiseAbs().maxCoeff() / J.cwiseAbs().maxCoeff(),

@@ -1,4 +1,5 @@
-// What provably does not matter: unit of length, ground frame, order, body axes, side, number of steps, the run.
+// What provably does not matter: unit of length, ground frame, order, body axes, side, number of steps, the
+// run.
 #include <fmt/format.h>
 
 #include "tests/reference/equilibrium/scenes.hpp"
@@ -9,18 +10,21 @@ namespace {
 // Back from the other scene's ground axes and units to the original's.
 struct Back {
     std::function<Vector3d(const Vector3d&)> point = [](const Vector3d& v) { return v; };
-    std::function<Vector3d(const Vector3d&)> vector = [](const Vector3d& v) { return v; };  // forces, directions
+    std::function<Vector3d(const Vector3d&)> vector = [](const Vector3d& v) {
+        return v;
+    };  // forces, directions
     std::function<Vector3d(const Vector3d&)> moment = [](const Vector3d& v) { return v; };
 };
 
-// Both scenes along both first branches: wheel centre, contact, spin axis and all reactions at every point, relative to the
-// size of the scene (1 m) and of the largest reaction.
+// Both scenes along both first branches: wheel centre, contact, spin axis and all reactions at every point,
+// relative to the size of the scene (1 m) and of the largest reaction.
 void expect_same(const Scene& a, const Scene& b, const Back& back, double limit = 1e-9) {
     const Model model_a = compile(a), model_b = compile(b);
     Worst worst;
     for (std::size_t n = 0; n < model_a.branches.size(); ++n) {
         const auto loads = every_load(model_a.branches[n]);
-        const auto path_a = solve(model_a, model_a.branches[n], loads), path_b = solve(model_b, model_b.branches[n], loads);
+        const auto path_a = solve(model_a, model_a.branches[n], loads),
+                   path_b = solve(model_b, model_b.branches[n], loads);
         ASSERT_EQ(path_a.outcome, Outcome::converged) << a.name << ": " << path_a.detail;
         ASSERT_EQ(path_b.outcome, Outcome::converged) << b.name << ": " << path_b.detail;
         double force = 1, moment = 1;
@@ -32,23 +36,30 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
         for (std::size_t k = 0; k < loads.size(); ++k) {
             const auto &at_a = path_a.points[k], &at_b = path_b.points[k];
             const auto where = [&](const std::string& what) {
-                return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[n].name, loads[k]);
+                return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[n].name,
+                                   loads[k]);
             };
             const Wheel &w_a = *model_a.wheel, &w_b = *model_b.wheel;
-            worst.see((position(at_a, {w_a.body, w_a.centre_local}) - back.point(position(at_b, {w_b.body, w_b.centre_local}))).norm(),
+            worst.see((position(at_a, {w_a.body, w_a.centre_local}) -
+                       back.point(position(at_b, {w_b.body, w_b.centre_local})))
+                          .norm(),
                       where("wheel centre"));
-            worst.see((position(at_a, {w_a.body, w_a.contact_local}) - back.point(position(at_b, {w_b.body, w_b.contact_local}))).norm(),
+            worst.see((position(at_a, {w_a.body, w_a.contact_local}) -
+                       back.point(position(at_b, {w_b.body, w_b.contact_local})))
+                          .norm(),
                       where("contact"));
             worst.see((at_a.poses[static_cast<std::size_t>(w_a.body)].p * w_a.spin_axis_local -
-                       back.vector(at_b.poses[static_cast<std::size_t>(w_b.body)].p * w_b.spin_axis_local)).norm(),
+                       back.vector(at_b.poses[static_cast<std::size_t>(w_b.body)].p * w_b.spin_axis_local))
+                          .norm(),
                       where("spin axis"));
             for (std::size_t j = 0; j < model_a.joints.size(); ++j)
                 for (std::size_t i = 0; i < model_b.joints.size(); ++i) {
                     if (model_a.joints[j].name != model_b.joints[i].name) continue;
                     worst.see((at_a.reactions[j].force - back.vector(at_b.reactions[i].force)).norm() / force,
                               where("force of " + model_a.joints[j].name));
-                    worst.see((at_a.reactions[j].moment - back.moment(at_b.reactions[i].moment)).norm() / moment,
-                              where("moment of " + model_a.joints[j].name));
+                    worst.see(
+                        (at_a.reactions[j].moment - back.moment(at_b.reactions[i].moment)).norm() / moment,
+                        where("moment of " + model_a.joints[j].name));
                 }
         }
     }
@@ -61,9 +72,10 @@ std::vector<Scene> scenes() { return {scene("mcpherson"), rich_scene()}; }
 TEST(EquilibriumInvariance, UnitOfLength) {
     for (const auto& s : scenes())
         for (const double c : {1000., 1e-3, 39.37})
-            expect_same(s, with_length_unit(s, c),
-                        {[c](const Vector3d& v) { return Vector3d(v / c); }, [](const Vector3d& v) { return v; },
-                         [c](const Vector3d& v) { return Vector3d(v / c); }});
+            expect_same(
+                s, with_length_unit(s, c),
+                {[c](const Vector3d& v) { return Vector3d(v / c); }, [](const Vector3d& v) { return v; },
+                 [c](const Vector3d& v) { return Vector3d(v / c); }});
 }
 
 // The same scene file in millimetres and in metres.
@@ -93,8 +105,9 @@ TEST(EquilibriumInvariance, GroundFrame) {
             const Quaterniond Q = random_turn(random);
             const Vector3d t = random_vector(random, trial < 2 ? 1 : 100);
             const auto turn_back = [Q](const Vector3d& v) { return Vector3d(Q.conjugate() * v); };
-            expect_same(s, moved_with_ground(s, Q, t),
-                        {[=](const Vector3d& v) { return Vector3d(Q.conjugate() * (v - t)); }, turn_back, turn_back});
+            expect_same(
+                s, moved_with_ground(s, Q, t),
+                {[=](const Vector3d& v) { return Vector3d(Q.conjugate() * (v - t)); }, turn_back, turn_back});
         }
 }
 
@@ -119,7 +132,8 @@ TEST(EquilibriumInvariance, BodyFrames) {
 TEST(EquilibriumInvariance, MirroredSide) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     const auto mirror = [S](const Vector3d& v) { return Vector3d(S * v); };
-    for (const auto& s : scenes()) expect_same(s, mirrored(s), {mirror, mirror, [S](const Vector3d& v) { return Vector3d(-S * v); }});
+    for (const auto& s : scenes())
+        expect_same(s, mirrored(s), {mirror, mirror, [S](const Vector3d& v) { return Vector3d(-S * v); }});
 }
 
 // An equilibrium does not remember the steps that led to it.
@@ -136,7 +150,8 @@ TEST(EquilibriumInvariance, NumberOfSteps) {
                 const auto other = solve(model, branch, loads);
                 ASSERT_EQ(other.outcome, Outcome::converged) << other.detail;
                 const auto body = static_cast<std::size_t>(model.wheel->body);
-                worst.see((other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(), fmt::format("{} steps", steps));
+                worst.see((other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(),
+                          fmt::format("{} steps", steps));
                 worst.see(other.points.back().poses[body].p.angularDistance(fine.points.back().poses[body].p),
                           fmt::format("{} steps", steps));
             }

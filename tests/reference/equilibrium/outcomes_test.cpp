@@ -10,12 +10,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What was reached before a failure must be as good as anything.
-void expect_points_in_balance(const Model& model, const Branch& branch, const EquilibriumPath& path, double limit = 1e-8) {
+void expect_points_in_balance(const Model& model, const Branch& branch, const EquilibriumPath& path,
+                              double limit = 1e-8) {
     if (path.points.empty()) return;
     Worst worst;
     for (const auto& state : path.points) {
         const auto r = residuals(model, branch, state);
-        for (const double part : {r.length, r.direction, r.force, r.moment}) worst.see(part, fmt::format("{}", state.load));
+        for (const double part : {r.length, r.direction, r.force, r.moment})
+            worst.see(part, fmt::format("{}", state.load));
     }
     EXPECT_TRUE(within(worst, limit));
 }
@@ -75,15 +77,17 @@ TEST(EquilibriumOutcome, ABranchMayBeVisitedInAnyOrder) {
         for (const auto& state : path.points)
             if (state.load == load)
                 for (const std::size_t b : {0u, 1u}) {
-                    worst.see((state.poses[b].r - direct.points[0].poses[b].r).norm(), fmt::format("{} N", load));
-                    worst.see(state.poses[b].p.angularDistance(direct.points[0].poses[b].p), fmt::format("{} N", load));
+                    worst.see((state.poses[b].r - direct.points[0].poses[b].r).norm(),
+                              fmt::format("{} N", load));
+                    worst.see(state.poses[b].p.angularDistance(direct.points[0].poses[b].p),
+                              fmt::format("{} N", load));
                 }
     }
     EXPECT_TRUE(within(worst, 1e-11));
 }
 
-// An upright bar on a torsion spring under its weight loses stability at P = k_R / L; standing upright remains an equilibrium
-// beyond, but no longer the branch's only continuation.
+// An upright bar on a torsion spring under its weight loses stability at P = k_R / L; standing upright
+// remains an equilibrium beyond, but no longer the branch's only continuation.
 TEST(EquilibriumOutcome, BucklingIsReportedAsSingular) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 100);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
@@ -96,7 +100,8 @@ TEST(EquilibriumOutcome, BucklingIsReportedAsSingular) {
     expect_points_in_balance(model, model.branches[0], path);
 }
 
-// θ = M / k ends at half a turn, where the logarithm has no value: the branch ends there too and never comes back as -θ.
+// θ = M / k ends at half a turn, where the logarithm has no value: the branch ends there too and never comes
+// back as -θ.
 TEST(EquilibriumOutcome, ABushingAtHalfATurnEndsTheBranch) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 100);
     s.branches = {twist(0, {0, 1, 0})};
@@ -111,7 +116,8 @@ TEST(EquilibriumOutcome, ABushingAtHalfATurnEndsTheBranch) {
         EXPECT_NEAR(state.poses[0].p.angularDistance(Quaterniond::Identity()), state.load / 100, 1e-10);
 }
 
-// Without rotational rates a bushing does not care how far it is turned: a bar whose tip is pulled round the clock.
+// Without rotational rates a bushing does not care how far it is turned: a bar whose tip is pulled round the
+// clock.
 TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 0);
     auto& bushing = std::get<Bushing>(s.elastics[0].kind);
@@ -125,7 +131,8 @@ TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
     std::vector<double> loads;
     for (int n = 0; n <= 10; ++n) loads.push_back(n);
     const auto path = solve(model, model.branches[0], loads);
-    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (-2, 0, 0): moment 10·2·0.3 sin φ + 0.3 F cos φ = 0
+    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (-2, 0, 0): moment 10·2·0.3 sin φ + 0.3 F cos φ
+    // = 0
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {
         const Vector3d tip = position(state, {0, {0.3, 0, 0}});
@@ -184,7 +191,10 @@ TEST(EquilibriumOutcome, RedundantJointsThatAgreeAreSolved) {
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& state : path.points) {
             const double theta = std::atan(state.load / 10e3);
-            EXPECT_NEAR((position(state, model.probes[0].at) - 0.5 * Vector3d(std::cos(theta), 0, std::sin(theta))).norm(), 0, 5e-11);
+            EXPECT_NEAR(
+                (position(state, model.probes[0].at) - 0.5 * Vector3d(std::cos(theta), 0, std::sin(theta)))
+                    .norm(),
+                0, 5e-11);
         }
         expect_points_in_balance(model, branch, path);
     }
@@ -240,10 +250,18 @@ TEST(EquilibriumOutcome, ADesignPoseThatMissesItsJointsIsAssembled) {
 TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
     for (const double bad : {nan, infinity, -infinity}) {
         const std::vector<std::pair<const char*, std::function<void(Scene&)>>> places = {
-            {"load direction", [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).f[1] = bad; }},
-            {"load moment", [&](Scene& s) { s.branches[0].loads.push_back({"m", DeadMoment{1, {0, bad, 0}}}); }},
-            {"static load", [&](Scene& s) { s.static_loads.push_back({"f", DeadForce{{0, {0, 0, 0}}, {bad, 0, 0}}}); }},
-            {"load point", [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).at.s_local[0] = bad; }},
+            {"load direction",
+             [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).f[1] = bad; }},
+            {"load moment",
+             [&](Scene& s) {
+                 s.branches[0].loads.push_back({"m", DeadMoment{1, {0, bad, 0}}});
+             }},
+            {"static load",
+             [&](Scene& s) {
+                 s.static_loads.push_back({"f", DeadForce{{0, {0, 0, 0}}, {bad, 0, 0}}});
+             }},
+            {"load point",
+             [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).at.s_local[0] = bad; }},
             {"position", [&](Scene& s) { s.bodies[1].design.r[2] = bad; }},
             {"orientation", [&](Scene& s) { s.bodies[1].design.p.x() = bad; }},
             {"rate", [&](Scene& s) { std::get<AxialSpring>(s.elastics[0].kind).k = bad; }},
@@ -305,13 +323,17 @@ TEST(EquilibriumOutcome, ExtremeRatesGiveAnEquilibriumOrAnHonestOutcome) {
     for (std::size_t e = 0; e < original.elastics.size(); ++e)
         for (double factor = 1e-9; factor < 1e10; factor *= 10) {
             Scene s = original;
-            if (auto* spring = std::get_if<AxialSpring>(&s.elastics[e].kind)) spring->k *= factor;
-            else std::get<Bushing>(s.elastics[e].kind).K *= factor;
+            if (auto* spring = std::get_if<AxialSpring>(&s.elastics[e].kind))
+                spring->k *= factor;
+            else
+                std::get<Bushing>(s.elastics[e].kind).K *= factor;
             const Model model = compile(s);
             const std::vector<double> loads = {0, 300, 1000};
             const auto path = solve(model, model.branches[0], loads);
-            const auto where = fmt::format("{} times {:.0e}: {} {}", s.elastics[e].name, factor, name(path.outcome), path.detail);
-            const double round_off = 1e-15 * std::max(1e6, 1e7 * factor);  // [N]: eps of the stiffest element's force per metre
+            const auto where = fmt::format("{} times {:.0e}: {} {}", s.elastics[e].name, factor,
+                                           name(path.outcome), path.detail);
+            const double round_off =
+                1e-15 * std::max(1e6, 1e7 * factor);  // [N]: eps of the stiffest element's force per metre
             expect_points_in_balance(model, model.branches[0], path, 1e-8 + 10 * round_off);
             EXPECT_EQ(path.outcome == Outcome::converged, path.points.size() == loads.size()) << where;
             EXPECT_EQ(path.detail.empty(), path.outcome == Outcome::converged) << where;

@@ -15,15 +15,17 @@ Equilibrium solved(const Model& model, const Branch& branch, double load) {
     return path.points.empty() ? Equilibrium{} : path.points[0];
 }
 
-// A bracket welded to ground carries a force at p and a moment: the weld answers with the opposite of both, about its own
-// place, and the wrench is the one on body i, which may be the bracket or ground.
+// A bracket welded to ground carries a force at p and a moment: the weld answers with the opposite of both,
+// about its own place, and the wrench is the one on body i, which may be the bracket or ground.
 TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
     const Vector3d at(0.1, -0.2, 0.3), p(0.5, 0.4, -0.1), f(3, -2, 7), m(0.5, 0.25, -1);
     for (const bool ground_first : {false, true}) {
         const BodyId i = ground_first ? ground : 0, j = ground_first ? 0 : ground;
         Scene s;
         s.bodies = {{"bracket", {}}};
-        s.joints = {{"weld", Fixed{{i, at}, {j, at}, {i, {1, 0, 0}}, {i, {0, 1, 0}}, {j, {1, 0, 0}}, {j, {0, 1, 0}}}}};
+        s.joints = {
+            {"weld",
+             Fixed{{i, at}, {j, at}, {i, {1, 0, 0}}, {i, {0, 1, 0}}, {j, {1, 0, 0}}, {j, {0, 1, 0}}}}};
         s.branches = {{"both", {{"f", DeadForce{{0, p}, f}}, {"m", DeadMoment{0, m}}}, 1, 1}};
         s.probes = {{"p", {0, p}}};
         const Model model = compile(s);
@@ -34,16 +36,41 @@ TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
     }
 }
 
-// A crane: a horizontal jib hinged at the origin about y, held at 2 m by a stay to a point 1.5 m above the hinge, load at 3 m.
-// Statically determinate: stay force S from Σ M_y = 0, hinge from Σ F = 0.
+// The same weld on a block that gives way on a bushing: the wrench is about where the weld has gone.
+TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
+    const Vector3d at(0.2, 0.1, 0), p(0.5, -0.2, 0.3);
+    Scene s;
+    s.bodies = {{"block", {}}, {"bracket", {{0.2, 0, 0}, Quaterniond::Identity()}}};
+    const Vector3d at_bracket = at - s.bodies[1].design.r, p_bracket = p - s.bodies[1].design.r;
+    s.joints = {
+        {"weld",
+         Fixed{{1, at_bracket}, {0, at}, {1, {1, 0, 0}}, {1, {0, 1, 0}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}}}};
+    Bushing mount;
+    mount.j.body = 0;
+    mount.K.diagonal() << 2e4, 3e4, 4e4, 600, 500, 400;
+    s.elastics = {{"mount", mount}};
+    s.branches = {pull({1, p_bracket}, {0.36, 0.48, 0.8})};
+    s.probes = {{"p", {1, p_bracket}}};
+    const Model model = compile(s);
+    const auto state = solved(model, model.branches[0], 400);
+    const Vector3d f = 400 * Vector3d(0.36, 0.48, 0.8);
+    const Vector3d arm = position(state, {1, p_bracket}) - position(state, {0, at});
+    EXPECT_GT((arm - (p - at)).norm(), 0.01);
+    EXPECT_LE((state.reactions.at(0).force + f).norm(), 1e-10);
+    EXPECT_LE((state.reactions.at(0).moment + arm.cross(f)).norm(), 1e-10);
+}
+
+// A crane: a horizontal jib hinged at the origin about y, held at 2 m by a stay to a point 1.5 m above the
+// hinge, load at 3 m. Statically determinate: stay force S from Σ M_y = 0, hinge from Σ F = 0.
 TEST(EquilibriumReactions, ACraneIsInBalanceByHand) {
     for (const bool ground_first : {false, true}) {
         const BodyId i = ground_first ? ground : 0, j = ground_first ? 0 : ground;
         const Vector3d foot(2, 0, 0), head(0, 0, 1.5), hook(3, 0.4, 0);
         Scene s;
         s.bodies = {{"jib", {}}};
-        s.joints = {{"hinge", Revolute{{i, {0, 0, 0}}, {j, {0, 0, 0}}, {i, {0, 1, 0}}, {j, {0, 1, 0}}}},
-                    {"stay", Distance{{i, ground_first ? head : foot}, {j, ground_first ? foot : head}, 2.5}}};
+        s.joints = {
+            {"hinge", Revolute{{i, {0, 0, 0}}, {j, {0, 0, 0}}, {i, {0, 1, 0}}, {j, {0, 1, 0}}}},
+            {"stay", Distance{{i, ground_first ? head : foot}, {j, ground_first ? foot : head}, 2.5}}};
         s.branches = {pull({0, hook}, {0, 0, -1})};
         s.probes = {{"hook", {0, hook}}};
         const Model model = compile(s);
@@ -60,7 +87,8 @@ TEST(EquilibriumReactions, ACraneIsInBalanceByHand) {
     }
 }
 
-// The pin of the pinned bar carries what the bushing (k times the tip's way) and the load leave, along the whole branch.
+// The pin of the pinned bar carries what the bushing (k times the tip's way) and the load leave, along the
+// whole branch.
 TEST(EquilibriumReactions, ThePinOfTheBarCarriesTheRest) {
     const Model model = compile(scene("pinned_bar"));
     Worst worst;
@@ -74,7 +102,8 @@ TEST(EquilibriumReactions, ThePinOfTheBarCarriesTheRest) {
     EXPECT_TRUE(within(worst, 1e-9));
 }
 
-// Every kind of joint between two bodies on bushings, either way round: in balance, and only what the joint can transmit.
+// Every kind of joint between two bodies on bushings, either way round: in balance, and only what the joint
+// can transmit.
 TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
     std::mt19937 random(31);
     const Vector3d at(0.2, 0.1, -0.1), to(0.35, 0.2, 0.15), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -100,13 +129,17 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
             s.bodies = {{"a", {}}, {"b", {}}};
             s.joints = {{"joint", kind}};
             for (const BodyId body : {0, 1}) {
-                Bushing mount{{ground, random_vector(random, 0.2), random_turn(random)}, {}, random_stiffness(random), Vector6::Zero()};
+                Bushing mount{{ground, random_vector(random, 0.2), random_turn(random)},
+                              {},
+                              random_stiffness(random),
+                              Vector6::Zero()};
                 mount.j = mount.i;
                 mount.j.body = body;
                 s.elastics.push_back({"mount", mount});
                 s.branches.resize(1);
                 s.branches[0].name = "any";
-                s.branches[0].loads.push_back({"f", DeadForce{{body, random_vector(random, 0.3)}, random_vector(random, 1)}});
+                s.branches[0].loads.push_back(
+                    {"f", DeadForce{{body, random_vector(random, 0.3)}, random_vector(random, 1)}});
                 s.branches[0].loads.push_back({"m", DeadMoment{body, random_vector(random, 0.05)}});
             }
             s.probes = {{"a", {0, at}}, {"b", {1, at}}};
@@ -114,7 +147,8 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
             ASSERT_EQ(constraint_rows(model), count) << s.name;
             std::vector<double> loads;
             for (int n = -10; n <= 10; ++n) loads.push_back(50 * n);
-            std::stable_sort(loads.begin(), loads.end(), [](double l, double r) { return std::abs(l) < std::abs(r); });
+            std::stable_sort(loads.begin(), loads.end(),
+                             [](double l, double r) { return std::abs(l) < std::abs(r); });
             const auto path = solve(model, model.branches[0], loads);
             ASSERT_EQ(path.outcome, Outcome::converged) << s.name << ": " << path.detail;
             Worst worst;
@@ -122,7 +156,8 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
             for (const auto& state : path.points) {
                 const auto r = residuals(model, model.branches[0], state);
                 for (const double part : {r.length, r.direction, r.force, r.moment}) worst.see(part, s.name);
-                carried = std::max(carried, state.reactions[0].force.norm() + state.reactions[0].moment.norm());
+                carried =
+                    std::max(carried, state.reactions[0].force.norm() + state.reactions[0].moment.norm());
             }
             EXPECT_TRUE(within(worst, 5e-9));
             EXPECT_GT(carried, 1) << s.name;
@@ -142,18 +177,22 @@ TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffInAFractionOfASecond) {
         Worst constraints, balance;
         for (const auto& state : path.points) {
             const auto r = residuals(model, branch, state);
-            constraints.see(std::max({r.length, r.direction, state.constraint_error}), fmt::format("{} N", state.load));
+            constraints.see(std::max({r.length, r.direction, state.constraint_error}),
+                            fmt::format("{} N", state.load));
             balance.see(std::max(r.force, r.moment), fmt::format("{} N", state.load));
         }
         EXPECT_TRUE(within(constraints, 2e-15));
         EXPECT_TRUE(within(balance, 1e-8));
         EXPECT_LT(took.count(), 1);
         EXPECT_LE(path.counts.iterations, 3 * 301);
-        const double travel = position(path.points.back(), {model.wheel->body, model.wheel->centre_local})[2] + 0.026;
+        const double travel =
+            position(path.points.back(), {model.wheel->body, model.wheel->centre_local})[2] + 0.026;
         EXPECT_GT(travel * branch.to, 0);
-        fmt::print("{}: {:.1f} mm, constraints {:.1e} m, balance {:.1e} N, {:.0f} µs and {:.2f} iterations a point\n", branch.name,
-                   1e3 * travel, constraints.value, balance.value, 1e6 * took.count() / 301,
-                   static_cast<double>(path.counts.iterations) / 301);
+        fmt::print(
+            "{}: {:.1f} mm, constraints {:.1e} m, balance {:.1e} N, {:.0f} µs and {:.2f} iterations a "
+            "point\n",
+            branch.name, 1e3 * travel, constraints.value, balance.value, 1e6 * took.count() / 301,
+            static_cast<double>(path.counts.iterations) / 301);
     }
 }
 
@@ -197,19 +236,23 @@ TEST_F(EquilibriumResiduals, ShowEveryMisplacedBody) {
         const auto turned = judged([&](Equilibrium& s) {
             s.poses[b].p = Quaterniond(Eigen::AngleAxisd(1e-6, Vector3d(0.6, 0, 0.8))) * s.poses[b].p;
         });
-        EXPECT_TRUE(turned.length > 1e-8 || turned.direction > 1e-8 || turned.moment > 1e-5) << model.bodies[b].name;
+        EXPECT_TRUE(turned.length > 1e-8 || turned.direction > 1e-8 || turned.moment > 1e-5)
+            << model.bodies[b].name;
     }
 }
 
 TEST_F(EquilibriumResiduals, ShowEveryWrongReaction) {
     for (std::size_t n = 0; n < model.joints.size(); ++n)
         for (int k = 0; k < 3; ++k) {
-            EXPECT_GE(judged([&](Equilibrium& s) { s.reactions[n].force[k] += 0.1; }).force, 0.05) << model.joints[n].name;
-            EXPECT_GE(judged([&](Equilibrium& s) { s.reactions[n].moment[k] += 0.1; }).moment, 0.05) << model.joints[n].name;
+            EXPECT_GE(judged([&](Equilibrium& s) { s.reactions[n].force[k] += 0.1; }).force, 0.05)
+                << model.joints[n].name;
+            EXPECT_GE(judged([&](Equilibrium& s) { s.reactions[n].moment[k] += 0.1; }).moment, 0.05)
+                << model.joints[n].name;
         }
 }
 
-// Two joints on one body and ground can trade a moment without disturbing any balance; a ball joint cannot carry it.
+// Two joints on one body and ground can trade a moment without disturbing any balance; a ball joint cannot
+// carry it.
 TEST_F(EquilibriumResiduals, ShowAWrenchThatTheJointCannotTransmit) {
     Scene s = hinged_bar({0.5, 0, 0}, {0, 1, 0}, 100);
     s.joints.push_back({"ball", Spherical{{0, {0, 0.2, 0}}, {ground, {0, 0.2, 0}}}});

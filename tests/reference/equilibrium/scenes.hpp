@@ -1,4 +1,5 @@
-// Scenes for the tests of this leg: those of models/scenes, some built in code, and ways to say the same scene differently.
+// Scenes for the tests of this leg: those of models/scenes, some built in code, and ways to say the same
+// scene differently.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +17,9 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-inline Scene scene(const std::string& file) { return read_scene(std::string(ELASTOCHECK_SCENES) + "/" + file + ".yaml"); }
+inline Scene scene(const std::string& file) {
+    return read_scene(std::string(ELASTOCHECK_SCENES) + "/" + file + ".yaml");
+}
 
 // The load factors of a branch, 0 included.
 inline std::vector<double> every_load(const Branch& branch) {
@@ -40,7 +43,8 @@ inline Quaterniond random_turn(std::mt19937& random) {
     return Quaterniond(in(random), in(random), in(random), in(random)).normalized();
 }
 inline Matrix6 random_stiffness(std::mt19937& random) {
-    const Matrix6 root = Matrix6::NullaryExpr([&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
+    const Matrix6 root =
+        Matrix6::NullaryExpr([&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
     Vector6 units;  // √(N/m), √(N·m/rad)
     units << 400, 400, 400, 30, 30, 30;
     const Matrix6 spd = root * root.transpose() + 0.3 * Matrix6::Identity();
@@ -94,8 +98,10 @@ inline void visit(Scene& s, const Visitor& v) {
 
 inline void turn_loads(Scene& s, const Matrix3d& force, const Matrix3d& moment) {
     const auto turn = [&](Load& load) {
-        if (auto* f = std::get_if<DeadForce>(&load.kind)) f->f = force * f->f;
-        else std::get<DeadMoment>(load.kind).m = moment * std::get<DeadMoment>(load.kind).m;
+        if (auto* f = std::get_if<DeadForce>(&load.kind))
+            f->f = force * f->f;
+        else
+            std::get<DeadMoment>(load.kind).m = moment * std::get<DeadMoment>(load.kind).m;
     };
     for (auto& load : s.static_loads) turn(load);
     for (auto& branch : s.branches)
@@ -107,8 +113,12 @@ inline void turn_loads(Scene& s, const Matrix3d& force, const Matrix3d& moment) 
 // All of it turned by Q and shifted by t, in the same ground axes.
 inline Scene moved_with_ground(Scene s, const Quaterniond& Q, const Vector3d& t) {
     for (auto& body : s.bodies) body.design = {Q * body.design.r + t, Q * body.design.p};
-    visit(s, {[&](Point& p) { if (p.body == ground) p.s_local = Q * p.s_local + t; },
-              [&](Direction& d) { if (d.body == ground) d.u_local = Q * d.u_local; },
+    visit(s, {[&](Point& p) {
+                  if (p.body == ground) p.s_local = Q * p.s_local + t;
+              },
+              [&](Direction& d) {
+                  if (d.body == ground) d.u_local = Q * d.u_local;
+              },
               [&](Marker& m) {
                   if (m.body == ground) m.s_local = Q * m.s_local + t, m.A_local = Q * m.A_local;
               }});
@@ -123,8 +133,12 @@ inline Scene with_body_frames(Scene s, const std::vector<Quaterniond>& Q, const 
         auto& pose = s.bodies[b].design;
         pose = {pose.r + pose.p * c[b], pose.p * Q[b]};
     }
-    visit(s, {[&](Point& p) { if (p.body != ground) p.s_local = Q[n(p.body)].conjugate() * (p.s_local - c[n(p.body)]); },
-              [&](Direction& d) { if (d.body != ground) d.u_local = Q[n(d.body)].conjugate() * d.u_local; },
+    visit(s, {[&](Point& p) {
+                  if (p.body != ground) p.s_local = Q[n(p.body)].conjugate() * (p.s_local - c[n(p.body)]);
+              },
+              [&](Direction& d) {
+                  if (d.body != ground) d.u_local = Q[n(d.body)].conjugate() * d.u_local;
+              },
               [&](Marker& m) {
                   if (m.body == ground) return;
                   m.s_local = Q[n(m.body)].conjugate() * (m.s_local - c[n(m.body)]);
@@ -135,8 +149,11 @@ inline Scene with_body_frames(Scene s, const std::vector<Quaterniond>& Q, const 
 
 // Bodies, joints, elements and loads in the opposite order.
 inline Scene reversed(Scene s) {
-    const auto turn = [&](BodyId& body) { if (body != ground) body = static_cast<BodyId>(s.bodies.size()) - 1 - body; };
-    visit(s, {[&](Point& p) { turn(p.body); }, [&](Direction& d) { turn(d.body); }, [&](Marker& m) { turn(m.body); }});
+    const auto turn = [&](BodyId& body) {
+        if (body != ground) body = static_cast<BodyId>(s.bodies.size()) - 1 - body;
+    };
+    visit(s, {[&](Point& p) { turn(p.body); }, [&](Direction& d) { turn(d.body); },
+              [&](Marker& m) { turn(m.body); }});
     std::reverse(s.bodies.begin(), s.bodies.end());
     std::reverse(s.joints.begin(), s.joints.end());
     std::reverse(s.elastics.begin(), s.elastics.end());
@@ -144,7 +161,8 @@ inline Scene reversed(Scene s) {
     return s;
 }
 
-// y -> -y. With S = diag(1, -1, 1): vectors S v, rotations and axes S A S, turning quantities (moments, θ) -S v.
+// y -> -y. With S = diag(1, -1, 1): vectors S v, rotations and axes S A S, turning quantities (moments, θ) -S
+// v.
 inline Scene mirrored(Scene s) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     const auto mirror = [&](const Quaterniond& p) { return Quaterniond(p.w(), -p.x(), p.y(), -p.z()); };
@@ -188,17 +206,18 @@ inline Scene with_length_unit(Scene s, double c) {
 
 // ---- Built in code
 
-// An axle corner with nothing simple about it: every kind of joint, bushings with full 6×6 rates and preload, a preloaded
-// spring, weight, a load of force and moment together, bodies whose axes are not those of ground.
+// An axle corner with nothing simple about it: every kind of joint, bushings with full 6×6 rates and preload,
+// a preloaded spring, weight, a load of force and moment together, bodies whose axes are not those of ground.
 inline Scene rich_scene() {
     std::mt19937 random(7);
     Scene s;
     s.name = "rich";
     enum : BodyId { subframe, arm, knuckle, upper, slider, link, plate };
-    const std::vector<Vector3d> origins = {{0, .3, 0}, {0, .7, -.1}, {0, .8, .1}, {0, .6, .3}, {.2, .5, .1}, {-.2, .6, 0},
-                                           {.1, .9, .1}};
+    const std::vector<Vector3d> origins = {{0, .3, 0},   {0, .7, -.1}, {0, .8, .1}, {0, .6, .3},
+                                           {.2, .5, .1}, {-.2, .6, 0}, {.1, .9, .1}};
     const char* names[] = {"subframe", "arm", "knuckle", "upper", "slider", "link", "plate"};
-    for (std::size_t b = 0; b < origins.size(); ++b) s.bodies.push_back({names[b], {origins[b], random_turn(random)}});
+    for (std::size_t b = 0; b < origins.size(); ++b)
+        s.bodies.push_back({names[b], {origins[b], random_turn(random)}});
     const auto point = [&](BodyId body, const Vector3d& p) {
         if (body == ground) return Point{body, p};
         const auto& pose = s.bodies[static_cast<std::size_t>(body)].design;
@@ -206,21 +225,26 @@ inline Scene rich_scene() {
     };
     const auto along = [&](BodyId body, const Vector3d& u) {
         if (body == ground) return Direction{body, u.normalized()};
-        return Direction{body, s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * u.normalized()};
+        return Direction{body,
+                         s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * u.normalized()};
     };
     const auto marker = [&](BodyId body, const Vector3d& p, const Quaterniond& axes) {
         const auto at = point(body, p);
-        return Marker{body, at.s_local,
-                      body == ground ? axes : s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * axes};
+        return Marker{
+            body, at.s_local,
+            body == ground ? axes : s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * axes};
     };
     const auto bushing = [&](const char* name, BodyId i, BodyId j, const Vector3d& at, double preload) {
         const Quaterniond axes = random_turn(random);
         Vector6 pre;
         pre << random_vector(random, 1), random_vector(random, 0.02);
-        s.elastics.push_back({name, Bushing{marker(i, at, axes), marker(j, at, axes), random_stiffness(random), preload * pre}});
+        s.elastics.push_back({name, Bushing{marker(i, at, axes), marker(j, at, axes),
+                                            random_stiffness(random), preload * pre}});
     };
-    const Vector3d lower_ball(.02, .75, -.12), upper_ball(-.01, .68, .3), tie_out(-.12, .72, 0), tie_in(-.15, .35, .02);
-    for (const Vector3d& at : {Vector3d(.3, .3, .05), Vector3d(-.3, .3, .05), Vector3d(.3, .2, -.1), Vector3d(-.3, .2, -.1)})
+    const Vector3d lower_ball(.02, .75, -.12), upper_ball(-.01, .68, .3), tie_out(-.12, .72, 0),
+        tie_in(-.15, .35, .02);
+    for (const Vector3d& at :
+         {Vector3d(.3, .3, .05), Vector3d(-.3, .3, .05), Vector3d(.3, .2, -.1), Vector3d(-.3, .2, -.1)})
         bushing("mount", ground, subframe, at, 200);
     bushing("front", arm, subframe, {.2, .35, -.1}, 100);
     bushing("rear", subframe, arm, {-.2, .35, -.1}, 0);
@@ -228,29 +252,35 @@ inline Scene rich_scene() {
     s.joints = {
         {"lower ball", Spherical{point(arm, lower_ball), point(knuckle, lower_ball)}},
         {"upper ball", Spherical{point(knuckle, upper_ball), point(upper, upper_ball)}},
-        {"upper pivot", Revolute{point(ground, {0, .4, .32}), point(upper, {0, .4, .32}), along(ground, axis), along(upper, axis)}},
+        {"upper pivot", Revolute{point(ground, {0, .4, .32}), point(upper, {0, .4, .32}), along(ground, axis),
+                                 along(upper, axis)}},
         {"tie rod", Distance{point(knuckle, tie_out), point(ground, tie_in), (tie_out - tie_in).norm()}},
-        {"damper", Translational{point(slider, {.2, .5, .1}), point(subframe, {.2, .5, .1}), along(slider, {.1, .2, 1}),
-                                 along(subframe, {.1, .2, 1})}},
+        {"damper", Translational{point(slider, {.2, .5, .1}), point(subframe, {.2, .5, .1}),
+                                 along(slider, {.1, .2, 1}), along(subframe, {.1, .2, 1})}},
         {"cross", Universal{point(link, {-.2, .5, 0}), point(subframe, {-.2, .5, 0}), along(link, {1, 0, 0}),
                             along(subframe, {0, 0, 1})}},
-        {"weld", Fixed{point(plate, {.1, .9, .1}), point(knuckle, {.1, .9, .1}), along(plate, {1, 0, 0}), along(plate, {0, 1, 0}),
-                       along(knuckle, {1, 0, 0}), along(knuckle, {0, 1, 0})}},
+        {"weld", Fixed{point(plate, {.1, .9, .1}), point(knuckle, {.1, .9, .1}), along(plate, {1, 0, 0}),
+                       along(plate, {0, 1, 0}), along(knuckle, {1, 0, 0}), along(knuckle, {0, 1, 0})}},
         {"tube", InLine{point(link, {-.2, .7, 0}), point(arm, {-.2, .7, 0}), along(arm, {1, .1, 0})}},
     };
     bushing("spin", link, arm, {-.2, .7, 0}, 0);
-    s.elastics.push_back({"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}), 30e3, .49}});
-    s.elastics.push_back({"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}), 20e3, .27}});
+    s.elastics.push_back(
+        {"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}), 30e3, .49}});
+    s.elastics.push_back(
+        {"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}), 20e3, .27}});
     s.static_loads = {{"weight", DeadForce{point(knuckle, {0, .85, .1}), {0, 0, 400}}}};
     s.branches = {{"mixed",
-                   {{"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}, {"twist", DeadMoment{knuckle, {.02, .05, .03}}}},
+                   {{"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}},
+                    {"twist", DeadMoment{knuckle, {.02, .05, .03}}}},
                    1500,
                    30}};
-    s.wheel = Wheel{plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local, along(plate, {0, 1, 0}).u_local, 1};
+    s.wheel = Wheel{plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local,
+                    along(plate, {0, 1, 0}).u_local, 1};
     return s;
 }
 
-// A bar from the origin along `u`, hinged at the origin about `axis`, with a rotational bushing there. Its probe is its tip.
+// A bar from the origin along `u`, hinged at the origin about `axis`, with a rotational bushing there. Its
+// probe is its tip.
 inline Scene hinged_bar(const Vector3d& u, const Vector3d& axis, double k_R) {
     Scene s;
     s.name = "hinged bar";
@@ -264,8 +294,12 @@ inline Scene hinged_bar(const Vector3d& u, const Vector3d& axis, double k_R) {
     return s;
 }
 
-inline Branch pull(const Point& at, const Vector3d& f) { return {"pull", {{"pull", DeadForce{at, f}}}, 1, 1}; }
-inline Branch twist(BodyId body, const Vector3d& m) { return {"twist", {{"twist", DeadMoment{body, m}}}, 1, 1}; }
+inline Branch pull(const Point& at, const Vector3d& f) {
+    return {"pull", {{"pull", DeadForce{at, f}}}, 1, 1};
+}
+inline Branch twist(BodyId body, const Vector3d& m) {
+    return {"twist", {{"twist", DeadMoment{body, m}}}, 1, 1};
+}
 
 // Keeps the worst of many comparisons and where it was, to be judged and printed once.
 struct Worst {
@@ -281,7 +315,8 @@ struct Worst {
 inline ::testing::AssertionResult within(const Worst& worst, double limit) {
     const bool ok = worst.compared > 0 && std::isfinite(worst.value) && worst.value <= limit;
     return (ok ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-           << "worst " << worst.value << " of " << worst.compared << " at " << worst.where << ", allowed " << limit;
+           << "worst " << worst.value << " of " << worst.compared << " at " << worst.where << ", allowed "
+           << limit;
 }
 
 }  // namespace elastocheck::reference::equilibrium::test

@@ -1,0 +1,76 @@
+// Walking along a branch: from the design pose to the settled state at load factor 0, then from load to load.
+//
+// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium
+// there is. So a step is believed only if it is a short, nearly straight piece of one curve: the chord
+// between two equilibria and the tangents at both its ends agree within a quarter, and the Jacobian is
+// oriented alike at both. Otherwise the step is halved, and if that does not help, the branch has ended here.
+#pragma once
+
+#include <optional>
+
+#include "reference/equilibrium/linearisation.hpp"
+#include "reference/equilibrium/newton.hpp"
+
+namespace elastocheck::reference::equilibrium {
+
+// The way has two legs, each with a parameter t: letting go of the design pose (t from 0 to 1), then loading
+// (t = a).
+enum class Stage { settling, loading };
+
+inline Loading loading_at(Stage stage, double t) {
+    return stage == Stage::settling ? Loading{0, 1 - t} : Loading{t, 0};
+}
+
+// An equilibrium on the way.
+struct Station {
+    double t = 0;
+    Eigen::VectorXd x;
+    Linearisation linearised;
+    Eigen::VectorXd E_rate;   // dE/dt [n]
+    Eigen::VectorXd tangent;  // dx/dt [n]
+    Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]
+};
+
+struct Walk {
+    const System& system;
+    const Options& options;
+    Stage stage = Stage::settling;
+    Station here;
+    std::optional<Station> before;
+    Counts counts;
+};
+
+enum class Verdict {
+    accepted,
+    out_of_reach,    // the tangent already leads too far away for one step
+    unsolved,        // the residual stays above the tolerance
+    another_branch,  // an equilibrium, but not on this branch
+    unsettled,       // on this branch, but a further Newton step would still move it
+    turned_over,     // on this branch, but past a singular point
+};
+
+struct Trial {
+    Verdict verdict;
+    Attempt attempt;
+    Station station;
+};
+
+struct Failure {
+    Outcome outcome;
+    std::string what;
+};
+
+Walk start(const System& system, const Options& options);  // at the design pose, held
+void begin_loading(Walk& walk);                            // after settling, at load factor 0
+
+// From here to t = target, by as few steps as it takes.
+std::optional<Failure> advance(Walk& walk, double target);
+
+// Why the branch does not go on from here towards t, judged by the last and smallest trial.
+Failure failure(Walk& walk, double t, const Trial& trial);
+
+// What cannot be answered, as a left null vector of the system: a load on an idle mode, or joints against
+// each other.
+Failure unanswerable(const System& system, const Eigen::VectorXd& left);
+
+}  // namespace elastocheck::reference::equilibrium

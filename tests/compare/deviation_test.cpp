@@ -1,0 +1,119 @@
+// Deviations, and that no alarm can be switched off by a NaN, an empty curve or a wrong abscissa.
+#include "compare/deviation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// y = shape(travel) with travel = rate · load, at 0 ... 10.
+template <class F>
+Curve made(double rate, F&& shape, int points = 41) {
+    Curve curve;
+    for (int k = 0; k < points; ++k) {
+        const double load = 10.0 * k / (points - 1), travel = rate * load;
+        curve.load.push_back(load);
+        curve.travel.push_back(travel);
+        curve.values.push_back({travel, shape(travel)});
+    }
+    return curve;
+}
+
+TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
+    const auto shape = [](double x) { return std::sin(0.2 * x) + 0.01 * x * x; };
+    const Curve a = made(1, shape), b = made(1.04, shape);
+    const auto load = at_equal_load(a, b), travel = at_equal_travel(a, b);
+    EXPECT_NEAR(load.channels[0].max, 0.4, 1e-12);
+    EXPECT_NEAR(load.channels[0].signed_max, 0.4, 1e-12);
+    EXPECT_EQ(load.channels[0].at, 10);
+    EXPECT_NEAR(load.channels[0].range, 10, 1e-12);
+    EXPECT_GT(load.channels[1].max, 0.01);
+    EXPECT_LE(travel.channels[1].max, 1e-7);
+    EXPECT_LE(travel.channels[1].max, 2 * travel.channels[1].interpolation + 1e-15);
+    EXPECT_EQ(travel.outside, 0);
+    EXPECT_EQ(travel.channels[1].compared, 41);
+}
+
+TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
+    const auto shape = [](double x) { return x; };
+    const auto reading = at_equal_travel(made(1, shape), made(0.9, shape));
+    EXPECT_EQ(reading.outside, 4);
+    EXPECT_EQ(reading.channels[1].compared, 37);
+}
+
+TEST(Deviation, FallingTravelIsReadAsWell) {
+    const auto shape = [](double x) { return x * x; };
+    const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));
+    EXPECT_TRUE(reading.not_compared.empty());
+    EXPECT_LE(reading.channels[1].max, 1e-12);
+}
+
+TEST(Deviation, RmsAndSignAreOfTheDifference) {
+    Curve a = made(1, [](double) { return 0.0; }, 4), b = a;
+    b.values[1][1] = -3;
+    b.values[2][1] = 1;
+    const auto d = at_equal_load(a, b).channels[1];
+    EXPECT_DOUBLE_EQ(d.rms, std::sqrt(10.0 / 4));
+    EXPECT_EQ(d.signed_max, -3);
+    EXPECT_EQ(d.max, 3);
+    EXPECT_EQ(d.end, 0);
+}
+
+TEST(Deviation, ANaNAnywhereIsNeverSmall) {
+    for (const std::size_t where : {0u, 20u, 40u}) {
+        Curve a = made(1, [](double x) { return x; }), b = a;
+        b.values[where][1] = nan;
+        const auto load = at_equal_load(a, b).channels[1];
+        EXPECT_TRUE(std::isnan(load.max)) << where;
+        EXPECT_TRUE(std::isnan(load.rms)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_travel(a, b).channels[1].max)) << where;
+        b = a;
+        a.values[where][1] = nan;
+        EXPECT_TRUE(std::isnan(at_equal_load(a, b).channels[1].max)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_load(a, b).channels[1].range)) << where;
+        b.travel[where] = nan;
+        EXPECT_FALSE(at_equal_travel(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
+    }
+}
+
+TEST(Deviation, NothingComparedSaysWhy) {
+    const Curve a = made(1, [](double x) { return x; });
+    EXPECT_FALSE(at_equal_load(a, {}).not_compared.empty());
+    EXPECT_FALSE(at_equal_load({}, a).not_compared.empty());
+    EXPECT_FALSE(at_equal_travel(a, {}).not_compared.empty());
+    Curve other = a;
+    other.load[7] += 1e-9;
+    EXPECT_FALSE(at_equal_load(a, other).not_compared.empty());
+    Curve folded = a;
+    std::swap(folded.travel[5], folded.travel[6]);
+    EXPECT_FALSE(at_equal_travel(a, folded).not_compared.empty());
+    Curve elsewhere = made(1, [](double x) { return x; });
+    for (auto& t : elsewhere.travel) t += 100;
+    const auto reading = at_equal_travel(a, elsewhere);
+    EXPECT_EQ(reading.channels[1].compared, 0);
+    EXPECT_TRUE(std::isnan(reading.channels[1].max));
+}
+
+TEST(Interpolation, IsExactForPolynomialsUpToItsDegreeOnBothDirections) {
+    for (const double direction : {1.0, -1.0}) {
+        std::vector<double> x, y;
+        const auto p = [](double t) { return 1 + t * (2 + t * (-0.5 + t * (0.3 + t * (0.1 - 0.02 * t)))); };
+        for (int k = 0; k < 12; ++k) {
+            x.push_back(direction * (k + 0.3 * std::sin(3.0 * k)));
+            y.push_back(p(x.back()));
+        }
+        for (double t = 0; t <= 11; t += 0.37) {
+            const double at = direction * t;
+            EXPECT_NEAR(interpolate(x, y, at, 6), p(at), 1e-9 * (1 + std::abs(p(at))));
+        }
+        for (std::size_t k = 0; k < x.size(); ++k) EXPECT_DOUBLE_EQ(interpolate(x, y, x[k], 6), y[k]);
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

@@ -1,0 +1,299 @@
+// Taylor tests of everything derived by hand: V(x + h s) = V(x) + h g·s + O(h²), the same for every row of Φ.
+#include <Eigen/QR>
+
+#include "reference/energy/balance.hpp"
+#include "support.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+struct Case {
+    std::string name;
+    Model model;
+    Loading loading;
+};
+
+// Two bodies in random poses; what joins them, or one of them and ground, is added by the cases.
+Model two_bodies(Random& random) {
+    Model model;
+    model.bodies = {{"a", random.pose()}, {"b", random.pose()}};
+    return model;
+}
+
+constexpr std::pair<BodyId, BodyId> pairs[] = {{0, 1}, {1, 0}, {0, ground}, {ground, 1}};
+
+Matrix6 coupled_stiffness(Random& random) {
+    Matrix6 R;
+    for (int i = 0; i < 6; ++i) R.col(i) = random.many(6);
+    return R * R.transpose();  // positive definite, anisotropic, every entry different from zero
+}
+
+Point point(Random& random, BodyId body) { return {body, random.vector()}; }
+Direction direction(Random& random, BodyId body) { return {body, random.unit()}; }
+
+std::vector<Case> potentials(Random& random) {
+    std::vector<Case> cases;
+    for (const auto& [i, j] : pairs) {
+        const std::string ends = fmt::format(" {}-{}", i, j);
+        Case spring{"spring" + ends, two_bodies(random), {}};
+        spring.model.elastics = {{"", AxialSpring{point(random, i), point(random, j), 3, 0.7}}};
+        Case bushing{"bushing" + ends, two_bodies(random), {}};
+        bushing.model.elastics = {{"", Bushing{{i, random.vector(), random.rotation()},
+                                               {j, random.vector(), random.rotation()},
+                                               coupled_stiffness(random),
+                                               random.many(6)}}};
+        Case relieved = bushing;
+        relieved.name = "relieved " + bushing.name;
+        relieved.loading.relief = 0.3;
+        cases.insert(cases.end(), {spring, bushing, relieved});
+    }
+    Case force{"force", two_bodies(random), {}};
+    force.loading.forces = {{point(random, 0), random.vector()}, {point(random, 1), random.vector()}};
+    Case moment{"moment", two_bodies(random), {}};
+    moment.loading.moments = {{0, random.vector()}, {1, random.vector()}};
+    cases.insert(cases.end(), {force, moment});
+    return cases;
+}
+
+std::vector<Case> constraint_cases(Random& random) {
+    std::vector<Case> cases;
+    const auto add = [&](const std::string& name, const ConstraintKind& kind) {
+        Case one{name, two_bodies(random), {}};
+        one.model.joints = {{name, 0, 1, {}}};
+        one.model.constraints = {{0, kind}};
+        cases.push_back(one);
+    };
+    for (const auto& [i, j] : pairs) {
+        const std::string ends = fmt::format(" {}-{}", i, j);
+        add("coincident points" + ends, CoincidentPoints{point(random, i), point(random, j)});
+        add("point in plane" + ends, PointInPlane{point(random, i), point(random, j), direction(random, j)});
+        add("perpendicular" + ends, PerpendicularDirections{direction(random, i), direction(random, j)});
+        add("distance" + ends, DistanceBetween{point(random, i), point(random, j), 0.9});
+    }
+    return cases;
+}
+
+struct Values {
+    VectorXd f;  // any number of functions
+    MatrixXd f_x;
+};
+
+// Remainders of the first-order expansion in several directions, at h and h/2. Returns the observed order; 2
+// when there is no remainder at all.
+template <class F>
+double observed_order(Random& random, int n, const VectorXd& x, F values_at) {
+    const Values at = values_at(x);
+    double remainder[2] = {0, 0};
+    for (int k = 0; k < 8; ++k) {
+        const VectorXd s = random.many(n);
+        for (const int half : {0, 1}) {
+            const double h = half ? 2e-4 : 4e-4;
+            remainder[half] += (values_at(x + h * s).f - at.f - h * at.f_x * s).squaredNorm();
+        }
+    }
+    if (std::sqrt(remainder[0]) <= 1e-14 * (1 + at.f_x.norm())) return 2;
+    return 0.5 * std::log2(remainder[0] / remainder[1]);
+}
+
+TEST(Derivatives, GradientOfEveryPotentialIsFirstOrderExact) {
+    Random random;
+    for (int repeat = 0; repeat < 25; ++repeat) {
+        for (const auto& one : potentials(random)) {
+            Chart chart = chart_about({random.pose(), random.pose()});
+            const auto values = [&](const VectorXd& x) -> Values {
+                move_to(chart, x);
+                const Potential V = potential(one.model, one.loading, chart);
+                return {VectorXd::Constant(1, V.change), V.gradient.transpose()};
+            };
+            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1) << one.name;
+        }
+    }
+}
+
+TEST(Derivatives, JacobianOfEveryConstraintIsFirstOrderExact) {
+    Random random;
+    for (int repeat = 0; repeat < 25; ++repeat) {
+        for (const auto& one : constraint_cases(random)) {
+            Chart chart = chart_about({random.pose(), random.pose()});
+            const auto values = [&](const VectorXd& x) -> Values {
+                move_to(chart, x);
+                const ConstraintValues c = constraints(one.model, chart);
+                return {c.Phi, c.Phi_q};
+            };
+            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1) << one.name;
+        }
+    }
+}
+
+// The bushing's law is regular where it usually is: at rest, θ = 0 and d = 0.
+TEST(Derivatives, BushingAtRestIsRegular) {
+    Random random;
+    Model model = two_bodies(random);
+    const Pose& a = model.bodies[0].design;
+    model.bodies[1].design = a;
+    model.elastics = {{"", Bushing{Marker{0}, Marker{1}, coupled_stiffness(random), random.many(6)}}};
+    Chart chart = chart_about({a, a});
+    const auto values = [&](const VectorXd& x) -> Values {
+        move_to(chart, x);
+        const Potential V = potential(model, {}, chart);
+        return {VectorXd::Constant(1, V.change), V.gradient.transpose()};
+    };
+    for (const double size : {0.0, 1e-12, 1e-6, 1e-4, 1e-2}) {
+        EXPECT_NEAR(observed_order(random, 12, random.many(12, size), values), 2, 0.1) << size;
+    }
+}
+
+TEST(Derivatives, HessianAgreesWithDifferencesOfTheGradient) {
+    Random random;
+    Scales scales;
+    scales.length = 0.7;
+    scales.force = 1.3;
+    for (const auto& one : potentials(random)) {
+        Model model = one.model;
+        for (const auto& c : constraint_cases(random)) {
+            model.joints.push_back(c.model.joints[0]);
+            model.constraints.push_back(
+                {static_cast<int>(model.joints.size()) - 1, c.model.constraints[0].kind});
+        }
+        const std::vector<Pose> centre{random.pose(), random.pose()};
+        const VectorXd lambda = random.many(constraint_rows(model));
+        const MatrixXd H = hessian(model, one.loading, scales, centre, lambda);
+        const VectorXd S = scales.coordinates(12);
+        Chart chart = chart_about(centre);
+        MatrixXd D(12, 12);
+        for (int i = 0; i < 12; ++i) {
+            VectorXd g[2];
+            for (const int side : {0, 1}) {
+                move_to(chart, S.cwiseProduct((side ? 1e-5 : -1e-5) * VectorXd::Unit(12, i)));
+                g[side] =
+                    potential(model, one.loading, chart).gradient / scales.energy() +
+                    constraints(model, chart).Phi_q.transpose() * scales.rows(model).cwiseProduct(lambda);
+            }
+            D.col(i) = S.cwiseProduct(g[1] - g[0]) / 2e-5;
+        }
+        EXPECT_LE((H - D).norm(), 1e-7 * H.norm()) << one.name;
+        EXPECT_LE((H - H.transpose()).norm(), 1e-14 * H.norm()) << one.name;
+    }
+}
+
+// The laws of models/mechanism.hpp, written out once more from the poses alone.
+double energy(const Model& model, const std::vector<Pose>& poses) {
+    const auto at = [&](BodyId body) {
+        return body == ground ? Pose{} : poses[static_cast<std::size_t>(body)];
+    };
+    const auto place = [&](const auto& p) -> Vector3d { return at(p.body).r + at(p.body).p * p.s_local; };
+    double U = 0;
+    for (const auto& elastic : model.elastics) {
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
+            const double stretch = (place(spring->j) - place(spring->i)).norm() - spring->free_length;
+            U += 0.5 * spring->k * stretch * stretch;
+        } else {
+            const auto& b = std::get<Bushing>(elastic.kind);
+            const Eigen::Quaterniond A_i = at(b.i.body).p * b.i.A_local, A_j = at(b.j.body).p * b.j.A_local;
+            const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
+            Vector6 e;
+            e << A_i.conjugate() * (place(b.j) - place(b.i)), turn.angle() * turn.axis();
+            U += 0.5 * e.dot(b.K * e) + b.preload.dot(e);
+        }
+    }
+    return U;
+}
+
+TEST(Potential, IsTheLawsOfTheElements) {
+    Random random;
+    double worst = 0;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        for (const auto& one : potentials(random)) {
+            if (one.loading.relief != 0) continue;
+            const std::vector<Pose> centre{random.pose(), random.pose()};
+            Chart chart = chart_about(centre);
+            // Small enough for the logarithm to stay on its sheet most of the time; the few others are left
+            // out.
+            move_to(chart, random.many(12, 0.1));
+            const double expected = energy(one.model, poses(chart)) - energy(one.model, centre);
+            if (bushing_rotations(one.model, centre).norm() > 2.8) continue;
+            double change = potential(one.model, {}, chart).change;
+            worst = std::max(worst, std::abs(change - expected) / (1 + energy(one.model, centre)));
+        }
+    }
+    EXPECT_LE(worst, 1e-13);
+}
+
+TEST(Potential, IsUnchangedByARigidMotionOfEverything) {
+    Random random;
+    double worst_change = 0, worst_force = 0;
+    for (int repeat = 0; repeat < 100; ++repeat) {
+        Model model = two_bodies(random);
+        model.elastics = {{"", AxialSpring{point(random, 0), point(random, 1), 3, 0.7}},
+                          {"", Bushing{{1, random.vector(), random.rotation()},
+                                       {0, random.vector(), random.rotation()},
+                                       coupled_stiffness(random),
+                                       random.many(6)}}};
+        const std::vector<Pose> centre{random.pose(), random.pose()};
+        Chart chart = chart_about(centre);
+        const Vector3d t = random.vector(), phi = random.unit() * random(0, 3);
+        const Eigen::AngleAxisd Q(phi.norm(), phi.normalized());
+        VectorXd x(12);
+        for (int b = 0; b < 2; ++b) {
+            const Vector3d& r = centre[static_cast<std::size_t>(b)].r;
+            x.segment<6>(6 * b) << Q * r + t - r, phi;
+        }
+        const VectorXd g = potential(model, {}, chart).gradient;
+        move_to(chart, x);
+        worst_change = std::max(worst_change, std::abs(potential(model, {}, chart).change) / g.norm());
+        const Vector3d force = g.segment<3>(0) + g.segment<3>(6);
+        const Vector3d moment = g.segment<3>(3) + g.segment<3>(9) + centre[0].r.cross(g.segment<3>(0)) +
+                                centre[1].r.cross(g.segment<3>(6));
+        worst_force = std::max(worst_force, std::max(force.norm(), moment.norm()) / g.norm());
+    }
+    EXPECT_LE(worst_change, 1e-14);
+    EXPECT_LE(worst_force, 1e-14);
+}
+
+// A change of 1e-10 at a level of 1 is known to 1e-13 of itself: by the trapezium rule V(x) - V(0) = ½ (g(0)
+// + g(x))·x + O(x³).
+TEST(Potential, ChangesKeepTheirRelativeAccuracy) {
+    Random random;
+    double worst = 0;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        for (const auto& one : potentials(random)) {
+            Chart chart = chart_about({random.pose(), random.pose()});
+            const VectorXd g_c = potential(one.model, one.loading, chart).gradient,
+                           x = random.many(12, 1e-10);
+            move_to(chart, x);
+            const Potential V = potential(one.model, one.loading, chart);
+            const double expected = 0.5 * (g_c + V.gradient).dot(x);
+            worst = std::max(worst, std::abs(V.change - expected) / (g_c.norm() * x.norm()));
+        }
+    }
+    EXPECT_LE(worst, 1e-14);
+}
+
+TEST(Constraints, ChangesAgreeWithValuesAndKeepTheirRelativeAccuracy) {
+    Random random;
+    double worst = 0, worst_small = 0;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        for (const auto& one : constraint_cases(random)) {
+            Chart chart = chart_about({random.pose(), random.pose()});
+            const ConstraintValues c = constraints(one.model, chart);
+            EXPECT_TRUE(c.dPhi.isZero(0)) << one.name;
+            move_to(chart, random.many(12, 0.5));
+            const ConstraintValues now = constraints(one.model, chart);
+            worst = std::max(worst, (now.Phi - c.Phi - now.dPhi).norm());
+            const VectorXd x = random.many(12, 1e-10);
+            move_to(chart, x);
+            const ConstraintValues near = constraints(one.model, chart);
+            const VectorXd expected = 0.5 * (c.Phi_q + near.Phi_q) * x;
+            worst_small = std::max(worst_small, (near.dPhi - expected).norm() / (c.Phi_q.norm() * x.norm()));
+        }
+    }
+    EXPECT_LE(worst, 2e-14);
+    EXPECT_LE(worst_small, 1e-14);
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::energy

@@ -1,0 +1,157 @@
+// The scene the house was built for: both branches, 301 points each.
+#include "support.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::Vector3d;
+
+// At the design position, from strut top to lower mount.
+const Vector3d strut_axis = Vector3d(0.04097493, 0.0682915, -0.3305464).normalized();
+
+struct Solved {
+    Scene scene = scene_named("mcpherson");
+    Model model = compile(scene);
+    std::vector<EquilibriumPath> paths;
+};
+
+const Solved& solved() {
+    static const Solved all = [] {
+        Solved s;
+        for (const auto& branch : s.model.branches) s.paths.push_back(solve(s.model, branch, sweep(branch)));
+        return s;
+    }();
+    return all;
+}
+
+TEST(McPherson, EveryPointSatisfiesItsOwnConditions) {
+    const Solved& s = solved();
+    for (std::size_t b = 0; b < s.paths.size(); ++b) {
+        ASSERT_EQ(s.paths[b].outcome, Outcome::converged) << s.paths[b].detail;
+        ASSERT_EQ(s.paths[b].points.size(), 301u);
+        Residuals worst;
+        for (const auto& state : s.paths[b].points) {
+            const Residuals r = residuals(s.model, s.model.branches[b], state);
+            ASSERT_TRUE(std::isfinite(largest(r))) << state.load;
+            worst = {std::max(worst.length, r.length), std::max(worst.direction, r.direction),
+                     std::max(worst.force, r.force), std::max(worst.moment, r.moment)};
+            EXPECT_LE(state.constraint_error, 1e-12) << state.load;
+        }
+        // 1e-7 N is 5e-9 mm at the wheel
+        EXPECT_LE(worst.length, 1e-13);
+        EXPECT_LE(worst.direction, 1e-13);
+        EXPECT_LE(worst.force, 1e-7);
+        EXPECT_LE(worst.moment, 1e-7);
+    }
+}
+
+// The wheel goes where the wheel should go: up under an upward load, and by what wheel and spring rates
+// allow.
+TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
+    const Solved& s = solved();
+    for (std::size_t b = 0; b < s.paths.size(); ++b) {
+        double previous = 0;
+        for (const auto& state : s.paths[b].points) {
+            const double z = state.poses[static_cast<std::size_t>(s.model.wheel->body)].r.z() -
+                             s.model.bodies[static_cast<std::size_t>(s.model.wheel->body)].design.r.z();
+            if (state.load != 0) {
+                EXPECT_GT(z / state.load, previous / state.load) << state.load;
+            }
+            previous = z;
+        }
+        EXPECT_GT(std::abs(previous), 0.07);
+        EXPECT_LT(std::abs(previous), 0.25);
+    }
+}
+
+// Whatever way the load is reached, the equilibrium is the same: in 3 steps or 300, up or on the way back.
+TEST(McPherson, EquilibriumDoesNotDependOnTheWayThere) {
+    const Solved& s = solved();
+    double worst_r = 0, worst_p = 0;
+    for (std::size_t b = 0; b < s.paths.size(); ++b) {
+        const Branch& branch = s.model.branches[b];
+        const double a = branch.to;
+        const double loads[] = {a, a / 3, 0, 2 * a / 3, a};
+        const int index[] = {300, 100, 0, 200, 300};
+        const EquilibriumPath path = solve(s.model, branch, loads);
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        for (std::size_t k = 0; k < path.points.size(); ++k) {
+            const auto& fine = s.paths[b].points[static_cast<std::size_t>(index[k])];
+            for (std::size_t body = 0; body < fine.poses.size(); ++body) {
+                // The strut spins freely: its axis is compared, not its rotation.
+                const bool strut = s.model.bodies[body].name == "strut";
+                const auto& p = path.points[k].poses[body].p;
+                worst_r = std::max(worst_r, (path.points[k].poses[body].r - fine.poses[body].r).norm());
+                worst_p = std::max(worst_p, strut ? (p * strut_axis - fine.poses[body].p * strut_axis).norm()
+                                                  : p.angularDistance(fine.poses[body].p));
+            }
+        }
+    }
+    EXPECT_LE(worst_r, 1e-11);  // [m]
+    EXPECT_LE(worst_p, 1e-10);  // [rad]
+}
+
+// From point to point the strut turns across its axis only, as far as a finite step can tell: the rest is
+// second order.
+TEST(McPherson, IdleStrutDoesNotSpin) {
+    const Solved& s = solved();
+    const auto strut = std::find_if(s.model.bodies.begin(), s.model.bodies.end(),
+                                    [](const Body& body) { return body.name == "strut"; });
+    const auto b = static_cast<std::size_t>(strut - s.model.bodies.begin());
+    double worst = 0, turned = 0;
+    for (const auto& path : s.paths) {
+        for (std::size_t k = 1; k < path.points.size(); ++k) {
+            const auto &p = path.points[k - 1].poses[b].p, &q = path.points[k].poses[b].p;
+            const Eigen::AngleAxisd turn(q * p.conjugate());
+            worst = std::max(worst, std::abs(turn.angle() * turn.axis().dot(q * strut_axis)));
+            turned = std::max(turned, turn.angle());
+        }
+    }
+    EXPECT_GT(turned, 3e-4);  // [rad] a step
+    EXPECT_LE(worst, 1e-6);
+}
+
+TEST(McPherson, ResultsAreIdenticalFromRunToRun) {
+    const Solved& s = solved();
+    const EquilibriumPath again = solve(s.model, s.model.branches[0], sweep(s.model.branches[0]));
+    ASSERT_EQ(again.points.size(), s.paths[0].points.size());
+    for (std::size_t k = 0; k < again.points.size(); ++k) {
+        const auto &one = again.points[k], &two = s.paths[0].points[k];
+        for (std::size_t b = 0; b < one.poses.size(); ++b) {
+            EXPECT_EQ(one.poses[b].r, two.poses[b].r);
+            EXPECT_EQ(one.poses[b].p.coeffs(), two.poses[b].p.coeffs());
+        }
+        for (std::size_t j = 0; j < one.reactions.size(); ++j) {
+            EXPECT_EQ(one.reactions[j].force, two.reactions[j].force);
+            EXPECT_EQ(one.reactions[j].moment, two.reactions[j].moment);
+        }
+    }
+    EXPECT_EQ(again.counts.evaluations, s.paths[0].counts.evaluations);
+}
+
+// Energy is what it costs: warm-started points need one chart and few evaluations (36 of them for the
+// Hessian, twice).
+TEST(McPherson, WarmStartedPointsAreCheap) {
+    for (const auto& path : solved().paths) {
+        EXPECT_LE(path.counts.iterations, 310);
+        EXPECT_LE(path.counts.evaluations, 100 * 301);
+    }
+}
+
+// With preload and the wheel's own weight the scene settles elsewhere, then goes on from there.
+TEST(McPherson, SettlesUnderPreloadAndWeight) {
+    Scene scene = scene_named("mcpherson");
+    auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
+    coil.free_length += 3500 / coil.k;
+    scene.static_loads = {{"weight", DeadForce{{scene.wheel->body, Vector3d::Zero()}, {0, 0, 2500}}}};
+    const Model model = compile(scene);
+    for (const auto& branch : model.branches) {
+        const auto path = solve(model, branch, sweep(branch, 60));
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        for (const auto& state : path.points)
+            EXPECT_LE(largest(residuals(model, branch, state)), 1e-7) << state.load;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::energy

@@ -1,0 +1,156 @@
+// The command as a user runs it: output, exit codes, typos.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/folder.hpp"
+
+namespace {
+
+using elastocheck::support::Folder;
+using elastocheck::support::text_of;
+
+const std::string scenes = ELASTOCHECK_SCENES;
+
+struct Said {
+    int code;
+    std::string out, err;
+};
+
+Said elastocheck_says(const std::string& arguments) {
+    const Folder folder;
+    const std::string error = (folder.path / "err").string();
+    FILE* pipe = ::popen((std::string(ELASTOCHECK_COMMAND) + " " + arguments + " 2>" + error).c_str(), "r");
+    Said said{};
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.out.append(buffer, n);
+    const int status = ::pclose(pipe);
+    said.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    said.err = text_of(error);
+    return said;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
+    const Said said = elastocheck_says("inspect " + scenes + "/mcpherson.yaml");
+    EXPECT_EQ(said.code, 0);
+    for (const char* part : {"coordinates           18", "constraints            9", "unknowns              27",
+                             "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'",
+                             "ball_joint           arm - wheel: coincident points", "left out", "in equilibrium"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+}
+
+TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
+    const Folder folder;
+    const auto scene = folder.write("s.yaml",
+        "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: a}, idler: {origin: c}}\n"
+        "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
+        "  second: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
+        "  hanger: {type: spherical, bodies: [idler, bar], at: c}\n"
+        "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+        "static_loads: {weight: {on: bar, at: c, force: [0, 0, -50]}}\n"
+        "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, steps: 2}}\n"
+        "probes: {tip: {on: bar, at: c}}\n");
+    const Said said = elastocheck_says("inspect " + scene);
+    EXPECT_EQ(said.code, 0) << said.err;
+    for (const char* part : {"joint 'second': 5 of its rows repeat", "body 'idler': it hangs on one other body",
+                             "joint 'hanger': a body it connects is left out", "out of balance by 40.82 N"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+}
+
+TEST(Command, CompareWritesTheTableAndTheResult) {
+    const Folder folder;
+    const Said said = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 20 -o " + (folder.path / "out").string());
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
+    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]", "at equal travel", "recursive    converged", "conclusive: "})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
+    EXPECT_EQ(result["scene"]["name"], "McPherson strut (Kang 2004, section 3)");
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "curves.csv"), "rebound,energy,-3000,"));
+}
+
+TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
+    const Folder folder;
+    std::string scene = text_of(scenes + "/two_spring_arch.yaml");
+    scene.replace(scene.find("to: -200"), 8, "to: -300");
+    const Said said = elastocheck_says("compare " + folder.write("arch.yaml", scene) + " -o " + folder.path.string());
+    EXPECT_EQ(said.code, 3);
+    EXPECT_TRUE(contains(said.out, "INCONCLUSIVE")) << said.out;
+    EXPECT_TRUE(contains(said.out, "branch lost")) << said.out;
+    const auto result = nlohmann::json::parse(text_of(folder.path / "result.json"));
+    EXPECT_EQ(result["verdict"]["conclusive"], false);
+    EXPECT_FALSE(result["verdict"]["reasons"].empty());
+}
+
+TEST(Command, SolvePrintsOneLegAsCsv) {
+    for (const char* method : {"recursive", "equilibrium", "energy"}) {
+        const Said said = elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4 --method " + method);
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_EQ(std::count(said.out.begin(), said.out.end(), '\n'), 1 + 2 * 5);
+        EXPECT_TRUE(contains(said.out, std::string("up,") + method + ",5000,")) << said.out;
+    }
+    EXPECT_TRUE(contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out, "up,recursive,"));
+}
+
+TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
+    const Folder folder;
+    std::string scene = text_of(scenes + "/pendulum.yaml");
+    for (const char* word : {"to: 1500, steps: 60", "to: -1500, steps: 60"})
+        scene.replace(scene.find(word), std::string(word).size(), word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
+    const Said said = elastocheck_says("solve " + folder.write("p.yaml", scene));
+    EXPECT_EQ(said.code, 3);
+    EXPECT_TRUE(contains(said.err, "recursive: diverged: branch 'up': at load factor")) << said.err;
+}
+
+TEST(Command, BadInputExitsWith2AndWritesNothing) {
+    const Folder folder;
+    const auto bad = folder.write("bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
+    const auto out = (folder.path / "out").string();
+    const Said said = elastocheck_says("compare " + bad + " -o " + out);
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "bad.yaml:3: units.length: ")) << said.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+    EXPECT_EQ(elastocheck_says("compare " + (folder.path / "none.yaml").string()).code, 2);
+    EXPECT_EQ(elastocheck_says("inspect " + folder.path.string()).code, 2);
+}
+
+TEST(Command, OutputThatCannotBeWrittenExitsWith2) {
+    const Folder folder;
+    const auto file = folder.write("file", "old");
+    const Said said = elastocheck_says("compare " + scenes + "/single_bushing.yaml --steps 2 -o " + file);
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "file/result.json: cannot")) << said.err;
+    EXPECT_EQ(text_of(file), "old");
+}
+
+TEST(Command, TyposAreAnsweredWithTheNearestWord) {
+    struct Typo { const char *arguments, *answer; };
+    for (const auto& [arguments, answer] : {Typo{"comprae x", "unknown command 'comprae', did you mean 'compare'?"},
+                                            Typo{"inspet x", "did you mean 'inspect'?"},
+                                            Typo{"compare --stpes 3 x", "unknown option '--stpes', did you mean '--steps'?"},
+                                            Typo{"solve x --methd=energy", "did you mean '--method'?"},
+                                            Typo{"solve x --method enrgy", "--method: enrgy not in {recursive,equilibrium,energy}"},
+                                            Typo{"solve x --steps 0", "--steps"},
+                                            Typo{"solve", "SCENE is required"},
+                                            Typo{"", "subcommand is required"}}) {
+        const Said said = elastocheck_says(arguments);
+        EXPECT_EQ(said.code, 2) << arguments;
+        EXPECT_TRUE(contains(said.err, answer)) << arguments << ": " << said.err;
+        EXPECT_TRUE(said.out.empty()) << said.out;
+    }
+}
+
+TEST(Command, HelpListsTheCommands) {
+    const Said said = elastocheck_says("--help");
+    EXPECT_EQ(said.code, 0);
+    for (const char* part : {"inspect", "solve", "compare", "Exit codes"}) EXPECT_TRUE(contains(said.out, part)) << part;
+    EXPECT_EQ(elastocheck_says("compare --help").code, 0);
+    EXPECT_EQ(elastocheck_says("--version").out, "0.1.0\n");
+}
+
+}  // namespace

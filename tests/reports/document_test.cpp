@@ -1,0 +1,98 @@
+// result.json says what was compared, in a form that cannot lie by leaving out.
+#include "reports/document.hpp"
+
+#include <gtest/gtest.h>
+
+#include "models/compile.hpp"
+#include "reports/csv.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Made {
+    Scene scene = support::scene("mcpherson");
+    Model model = compile(scene);
+    compare::Comparison comparison;
+
+    Made() {
+        compare::Options options;
+        options.steps = 12;
+        comparison = compare::compare(model, options);
+    }
+    json document(std::string_view input = "input") const {
+        return reports::document(scene, input, model, recursive::diagnose(model), comparison, provenance());
+    }
+};
+
+TEST(Document, CarriesWhatItTakesToTrustAndReproduceIt) {
+    const json d = Made().document();
+    EXPECT_EQ(d["schema"], result_schema);
+    EXPECT_EQ(d["scene"]["input_hash"], input_hash("input"));
+    for (const char* key : {"elastocheck", "commit", "compiler", "flags", "cpu"})
+        EXPECT_FALSE(d["provenance"][key].get<std::string>().empty()) << key;
+    for (const char* key : {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt"})
+        EXPECT_FALSE(d["provenance"]["libraries"][key].get<std::string>().empty()) << key;
+    EXPECT_EQ(d["model"]["unknowns"], 27);
+    EXPECT_EQ(d["model"]["idle_modes"].size(), 1u);
+    EXPECT_EQ(d["verdict"]["conclusive"], true);
+    EXPECT_GT(d["verdict"]["numbers_compared"], 1000);
+}
+
+TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
+    const Made made;
+    const json d = json::parse(made.document().dump());
+    ASSERT_EQ(d["branches"].size(), 2u);
+    for (const auto& branch : d["branches"]) {
+        ASSERT_EQ(branch["legs"].size(), 3u);
+        for (const auto& leg : branch["legs"]) {
+            EXPECT_EQ(leg["outcome"], "converged");
+            EXPECT_EQ(leg["curve"]["load"].size(), 13u);
+            EXPECT_EQ(leg["curve"]["travel_mm"].size(), 13u);
+            for (const auto& channel : d["channels"])
+                EXPECT_EQ(leg["curve"]["values"][channel["name"].get<std::string>()].size(), 13u);
+            EXPECT_EQ(leg["residuals_by"].size(), 3u);
+        }
+        for (const char* pair : {"deviation", "cross_check", "reference_uncertainty"})
+            for (const char* reading : {"at_equal_load", "at_equal_travel"})
+                EXPECT_EQ(branch[pair][reading]["channels"].size(), d["channels"].size()) << pair << reading;
+    }
+    const auto& toe = d["branches"][0]["deviation"]["at_equal_load"]["channels"]["toe"];
+    EXPECT_EQ(toe["max"], made.comparison.branches[0].deviation.equal_load.channels[3].max);
+    EXPECT_EQ(toe["unit"], "deg");
+}
+
+TEST(Document, NumbersThatAreNotFiniteAreNull) {
+    Made made;
+    made.comparison.branches[0].runs[0].curve.values[3][0] = std::numeric_limits<double>::quiet_NaN();
+    made.comparison.branches[0].deviation.equal_load.channels[0].max = std::numeric_limits<double>::infinity();
+    const json d = json::parse(made.document().dump());
+    EXPECT_TRUE(d["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
+    EXPECT_TRUE(d["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
+}
+
+TEST(Document, InputHashIsFnv1a) {
+    EXPECT_EQ(input_hash(""), "cbf29ce484222325");
+    EXPECT_EQ(input_hash("a"), "af63dc4c8601ec8c");
+    EXPECT_EQ(input_hash("foobar"), "85944171f73967e8");
+}
+
+TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
+    const Made made;
+    const std::string csv = curves_csv(made.comparison);
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
+    const std::string header = csv.substr(0, csv.find('\n'));
+    EXPECT_TRUE(header.starts_with("branch,leg,load factor,travel [mm],wheel_centre_x [mm],")) << header;
+    EXPECT_NE(header.find(",toe [deg],camber [deg],"), std::string::npos);
+    const auto columns = std::ranges::count(header, ',');
+    for (std::size_t at = 0; at < csv.size();) {
+        const auto end = csv.find('\n', at);
+        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at), csv.begin() + static_cast<long>(end), ','), columns);
+        at = end + 1;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::reports
