@@ -16,7 +16,7 @@ std::string share(double value, double range) {
     if (!(range > 1e-9)) return "-";
     if (value < 1e-9) return "0";
     const double percent = 100 * value / range;
-    return percent < 0.001 ? "<0.001 %" : fmt::format("{:.3g} %", percent);
+    return percent < 0.001 ? "<0.001 %" : fmt::format("{:.2g} %", percent);
 }
 
 // A deviation with its sign; below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's.

@@ -107,7 +107,7 @@ TEST(McPherson, IdleStrutDoesNotSpin) {
             turned = std::max(turned, turn.angle());
         }
     }
-    EXPECT_GT(turned, 3e-4);  // [rad] a step
+    EXPECT_GT(turned, 1e-4);  // [rad] a step
     EXPECT_LE(worst, 1e-6);
 }
 
