@@ -94,7 +94,7 @@ LegRun run(const Model& model, const Branch& branch, Leg leg, int steps) {
     LegRun run{leg, {}, {}, 0, {}};
     const auto start = std::chrono::steady_clock::now();
     switch (leg) {
-        case Leg::recursive: run.path = recursive::solve(model, branch, {N}); break;
+        case Leg::recursive: run.path = recursive::solve(model, branch, {.steps = N}); break;
         case Leg::equilibrium: run.path = reference::equilibrium::solve(model, branch, loads); break;
         case Leg::energy: run.path = reference::energy::solve(model, branch, loads); break;
     }

@@ -72,23 +72,22 @@ Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
     return (K.array() / (d * d.transpose()).array()).matrix();
 }
 
-double lowest_eigenvalue(const Matrix6& K) {
-    return Eigen::SelfAdjointEigenSolver<Matrix6>(K, Eigen::EigenvaluesOnly).eigenvalues()[0];
-}
-
 void require_semidefinite(const Cursor& at, const Matrix6& K) {
-    if (lowest_eigenvalue(scaled_to_unit_diagonal(K)) >= -round_off) return;
-    at.fail(
-        fmt::format("indefinite, its lowest eigenvalue is {:g}; a stiffness must be positive semidefinite",
-                    lowest_eigenvalue(K)));
+    const Matrix6 S = scaled_to_unit_diagonal(K);
+    const double lowest = Eigen::SelfAdjointEigenSolver<Matrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    if (!(lowest >= -round_off))
+        at.fail(
+            fmt::format("indefinite, its lowest eigenvalue is {:g} when scaled to a unit diagonal; "
+                        "a stiffness must be positive semidefinite",
+                        lowest));
 }
 
 void require_symmetric(const Cursor& at, const Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int j = i + 1; j < 6; ++j)
             if (!(std::abs(K(i, j) - K(j, i)) <= round_off * std::max(std::abs(K(i, j)), std::abs(K(j, i)))))
-                at.fail(fmt::format("not symmetric: row {}, column {} is {:g}, row {}, column {} is {:g}",
-                                    i + 1, j + 1, K(i, j), j + 1, i + 1, K(j, i)));
+                at.fail(fmt::format("not symmetric: row {}, column {} is {}, row {}, column {} is {}", i + 1,
+                                    j + 1, K(i, j), j + 1, i + 1, K(j, i)));
 }
 
 // The 6×6 as written; both off-diagonal blocks are force/angle, so that it is symmetric in any units.
@@ -96,8 +95,7 @@ Matrix6 read_stiffness(const Cursor& at, const Units& units) {
     const auto rows = at.list(6, "rows");
     Matrix6 K;
     for (int i = 0; i < 6; ++i) {
-        const auto row =
-            rows[static_cast<std::size_t>(i)].list(6, fmt::format("numbers (row {})", i + 1).c_str());
+        const auto row = rows[static_cast<std::size_t>(i)].list(6, fmt::format("numbers (row {})", i + 1));
         for (int j = 0; j < 6; ++j) K(i, j) = row[static_cast<std::size_t>(j)].number();
     }
     require_symmetric(at, K);

@@ -96,13 +96,13 @@ std::vector<Cursor> Cursor::items() const {
     return items;
 }
 
-std::vector<Cursor> Cursor::list(std::size_t size, const char* what) const {
+std::vector<Cursor> Cursor::list(std::size_t size, const std::string& what) const {
     if (!is_list() || value->items.size() != size)
         fail(fmt::format("expected a list of {} {}, found {}", size, what, found()));
     return items();
 }
 
-const std::string& Cursor::text(const char* what) const {
+const std::string& Cursor::text(const std::string& what) const {
     if (value->kind != Value::Kind::scalar || value->text.empty())
         fail(fmt::format("expected {}, found {}", what, found()));
     if (std::any_of(value->text.begin(), value->text.end(), is_control))
@@ -136,7 +136,7 @@ int Cursor::whole_number(int least, int most) const {
     return n;
 }
 
-std::size_t Cursor::one_of(const char* what, const std::vector<std::string>& allowed) const {
+std::size_t Cursor::one_of(const std::string& what, const std::vector<std::string>& allowed) const {
     const std::string& word = text(what);
     const auto it = std::find(allowed.begin(), allowed.end(), word);
     if (it == allowed.end())

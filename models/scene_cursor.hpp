@@ -27,18 +27,16 @@ struct Cursor {
     struct Named;
     std::vector<Named> entries() const;
 
-    // ---- of a list
-    std::vector<Cursor> list(std::size_t size,
-                             const char* what) const;  // "expected a list of 3 numbers, found ..."
+    // ---- of a list; `what` completes "expected a list of 3 ..."
+    std::vector<Cursor> list(std::size_t size, const std::string& what) const;
     bool is_list() const { return value->kind == Value::Kind::list; }
     std::vector<Cursor> items() const;
 
-    // ---- of a scalar
-    const std::string& text(const char* what) const;  // not empty, without control characters
-    double number() const;                            // 0, or 1e-30 to 1e30 in size; "." whatever the locale
+    // ---- of a scalar; `what` completes "expected ..." and "'text' is not ..."
+    const std::string& text(const std::string& what) const;  // one line, not empty
+    double number() const;                                   // 0, or 1e-30 to 1e30 in size; any locale
     int whole_number(int least, int most) const;
-    std::size_t one_of(const char* what,
-                       const std::vector<std::string>& allowed) const;  // position in `allowed`
+    std::size_t one_of(const std::string& what, const std::vector<std::string>& allowed) const;  // position
 
     std::string found() const;  // "'text'", "a list of 3", "a map", "nothing"
 };

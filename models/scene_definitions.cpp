@@ -4,29 +4,12 @@
 
 #include <numbers>
 
-#include "models/scene_words.hpp"
+#include "models/scene_look_up.hpp"
 
 namespace elastocheck::reader {
 namespace {
 
 using Eigen::Vector3d;
-
-template <class T>
-std::vector<std::string> names(const std::map<std::string, T>& table) {
-    std::vector<std::string> names;
-    for (const auto& [name, _] : table) names.push_back(name);
-    return names;
-}
-
-template <class T>
-const T& look_up(const Cursor& at, const char* kind, const std::map<std::string, T>& table) {
-    const std::string& name = at.text(fmt::format("the name of a {}", kind).c_str());
-    const auto found = table.find(name);
-    if (found == table.end())
-        at.fail(fmt::format("no {} is called {}{}", kind, quote(name),
-                            did_you_mean(name, names(table), "defined")));
-    return found->second;
-}
 
 Units read_units(const Cursor& at) {
     at.only_keys({"length", "angle", "force"});

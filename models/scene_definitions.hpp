@@ -36,21 +36,19 @@ Definitions read_definitions(const Cursor& scene);
 // Two hardpoints nearer than this are one [m]: a direction or a length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-double rate(const Cursor& at);                                         // zero or more, as written
-Eigen::Vector3d vector(const Cursor& at);                              // three numbers, as written
-Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);  // [m]
-Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);  // unit
-BodyId body(const Cursor& at, const Definitions& defs);                // or ground
-BodyId moving_body(const Cursor& at, const Definitions& defs,
-                   const char* what);  // "a load" cannot be on ground
+double rate(const Cursor& at);                                                    // zero or more, as written
+Eigen::Vector3d vector(const Cursor& at);                                         // three numbers, as written
+Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);             // [m]
+Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);             // unit
+BodyId body(const Cursor& at, const Definitions& defs);                           // or ground
+BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what);  // not ground
 
 struct BodyPair {
     BodyId i, j;
 };
 BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], different
 
-// A ground position as a point of the body; s_local = p - r, all bodies begin with their axes parallel to
-// ground.
+// A ground position as a point of the body: s_local = p - r, as bodies begin parallel to ground.
 Point point_of(BodyId body, const Eigen::Vector3d& p, const Definitions& defs);
 
 }  // namespace elastocheck::reader

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "models/scene_sections.hpp"
-#include "models/scene_words.hpp"
 #include "models/scene_yaml.hpp"
 
 namespace elastocheck {
@@ -74,11 +73,11 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
     const auto local = [&](const Cursor& field) {
         return point_of(body, hardpoint(field, defs), defs).s_local;
     };
-    const Wheel wheel{.body = body,
-                      .centre_local = local(centre),
-                      .contact_local = local(contact ? *contact : centre),
-                      .spin_axis_local = direction(spin_axis, defs),
-                      .side = at.require("side").one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
+    Wheel wheel{.body = body,
+                .centre_local = local(centre),
+                .contact_local = local(contact ? *contact : centre),
+                .spin_axis_local = direction(spin_axis, defs),
+                .side = at.require("side").one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
     if (!(wheel.side * wheel.spin_axis_local.y() > 0))
         spin_axis.fail(fmt::format("does not point outboard, which is {}y for a {} wheel",
                                    wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));

@@ -1,20 +1,18 @@
 // Loads and branches.
 //
-// f_ext(a) = static loads + a · (sum of the branch's loads). What a number in `loads` is follows from the
-// factor a:
+// f_ext(a) = static loads + a · (sum of the branch's loads). What is per unit of a follows from what a is:
 //
-//   a branch with a force in it    a is a force [N]:                a force per unit of a is a pure number,
-//                                                                   a moment per unit of a is a length -> m
-//   a branch of moments only       a is a moment (force·length) -> N·m:   a moment per unit of a is a pure
-//   number
+//   branch with a force      a [N]                        force [-], moment [length -> m]
+//   branch of moments only   a [force·length -> N·m]      moment [-]
 //
-// So the same entry of `loads` may be used in both kinds, and only the branch knows its units.
+// One entry of `loads` may serve both kinds, so only the branch knows its unit.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <variant>
 
+#include "models/scene_look_up.hpp"
 #include "models/scene_sections.hpp"
 #include "models/scene_words.hpp"
 
@@ -52,20 +50,14 @@ void convert_moment(Load& load, const Units& units) {
 
 // A name or a list of names.
 std::vector<Load> chosen_loads(const Cursor& at, const std::map<std::string, Load>& loads) {
-    std::vector<std::string> names;
-    for (const auto& [name, _] : loads) names.push_back(name);
     const auto cursors = at.is_list() ? at.items() : std::vector<Cursor>{at};
     if (cursors.empty()) at.fail("an empty list; at least one load is needed");
     std::vector<Load> chosen;
     for (const Cursor& cursor : cursors) {
-        const std::string& name = cursor.text("the name of a load");
-        const auto load = loads.find(name);
-        if (load == loads.end())
-            cursor.fail(
-                fmt::format("no load is called {}{}", quote(name), did_you_mean(name, names, "defined")));
-        if (std::any_of(chosen.begin(), chosen.end(), [&](const Load& l) { return l.name == name; }))
-            cursor.fail(fmt::format("{} is listed twice", quote(name)));
-        chosen.push_back(load->second);
+        const Load& load = look_up(cursor, "load", loads);
+        if (std::any_of(chosen.begin(), chosen.end(), [&](const Load& l) { return l.name == load.name; }))
+            cursor.fail(fmt::format("{} is listed twice", quote(load.name)));
+        chosen.push_back(load);
     }
     return chosen;
 }

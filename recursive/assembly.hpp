@@ -5,17 +5,16 @@
 #include "recursive/elastic.hpp"
 #include "recursive/loads.hpp"
 #include "recursive/saddle_point.hpp"
+#include "recursive/tangent.hpp"
 
 namespace elastocheck::recursive {
 
-// ⎡ K(q)    Φ_q(q)ᵀ ⎤
-// ⎣ Φ_q(q)    0     ⎦  → M,  and Φ(q) → Phi when asked for
+// ⎡ 0       Φ_qᵀ ⎤
+// ⎣ Φ_q      0   ⎦  → M, everything else zero,  and Φ(q) → Phi
 template <class Real>
-void assemble(const Model& model, const State<Real>& q, Matrix<Real>& M, Vector<Real>* Phi = nullptr) {
+void assemble_constraints(const Model& model, const State<Real>& q, Matrix<Real>& M, Vector<Real>& Phi) {
     const int n = coordinates(model);
     M.setZero();
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { add_stiffness(element_stiffness<Real>(e, q), M); }, elastic.kind);
     for_each_row<Real>(model, q, [&](int k, const Row<Real>& row) {
         const auto put = [&](BodyId b, const Vector6<Real>& block) {
             if (b == ground) return;
@@ -24,7 +23,35 @@ void assemble(const Model& model, const State<Real>& q, Matrix<Real>& M, Vector<
         };
         put(row.i, row.on_i);
         put(row.j, row.on_j);
-        if (Phi) (*Phi)[k] = row.Phi;
+        Phi[k] = row.Phi;
+    });
+}
+
+// ⎡ K(q)    Φ_q(q)ᵀ ⎤
+// ⎣ Φ_q(q)    0     ⎦  → M     (24)
+template <class Real>
+void assemble(const Model& model, const State<Real>& q, Matrix<Real>& M, Vector<Real>& Phi) {
+    assemble_constraints<Real>(model, q, M, Phi);
+    for (const auto& elastic : model.elastics)
+        std::visit([&](const auto& e) { add_stiffness(element_stiffness<Real>(e, q), M); }, elastic.kind);
+}
+
+// The same with the consistent tangent ∂G/∂q in place of K (tangent.hpp).
+template <class Real>
+void assemble_consistent(const Model& model, const Branch& branch, Real a, const State<Real>& q, const Vector<Real>& lambda,
+                         Matrix<Real>& M, Vector<Real>& Phi) {
+    assemble_constraints<Real>(model, q, M, Phi);
+    add_consistent_tangent<Real>(model, branch, a, q, lambda, M);
+}
+
+// Φ_qᵀ λ [6nb] and Φ(q), without the matrix.
+template <class Real>
+void constraint_force(const Model& model, const State<Real>& q, const Vector<Real>& lambda, Vector<Real>& f, Vector<Real>& Phi) {
+    f.setZero(coordinates(model));
+    for_each_row<Real>(model, q, [&](int k, const Row<Real>& row) {
+        if (row.i != ground) f.template segment<6>(6 * row.i) += lambda[k] * row.on_i;
+        if (row.j != ground) f.template segment<6>(6 * row.j) += lambda[k] * row.on_j;
+        Phi[k] = row.Phi;
     });
 }
 

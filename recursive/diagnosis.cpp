@@ -52,10 +52,10 @@ int rank_of(const MatrixXd& rows) {
 // Orthonormal null space of rows of unit length [columns × nullity].
 MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
     if (rows.rows() == 0) return MatrixXd::Identity(columns, columns);
-    const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullV);
-    const double largest = svd.singularValues()[0];
-    const Eigen::Index rank = (svd.singularValues().array() > rank_threshold * largest).count();
-    return svd.matrixV().rightCols(columns - rank);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
+    qr.setThreshold(rank_threshold);
+    const MatrixXd Q = qr.householderQ();
+    return Q.rightCols(columns - qr.rank());
 }
 
 // √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size count alike.
@@ -207,12 +207,6 @@ Diagnosis diagnose(const Model& model) {
     if (redundant.cols() > 0)  // λ of the unscaled rows
         result.null_space.bottomRightCorner(m, redundant.cols()) = row_norm.cwiseInverse().asDiagonal() * redundant;
 
-    MatrixXd M(n + m, n + m);
-    assemble<double>(model, q, M);
-    const VectorXd D = equilibration<double>(M);
-    result.condition_raw = condition_number(M, result.null_space.cols());
-    result.condition = condition_number(D.asDiagonal() * M * D.asDiagonal(), result.null_space.cols());
-
     // f_ext(0) - f_elast, projected on what the constraints leave free.
     VectorXd f(n);
     f.setZero();
@@ -222,6 +216,16 @@ Diagnosis diagnose(const Model& model) {
     const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
     result.imbalance = n > 0 ? left.cwiseAbs().maxCoeff() : 0;
     return result;
+}
+
+Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
+    const State<double> q = design_state<double>(model);
+    MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);
+    VectorXd unused(diagnosis.rows);
+    assemble<double>(model, q, M, unused);
+    const VectorXd D = equilibration<double>(M);
+    const auto nullity = diagnosis.null_space.cols();
+    return {condition_number(M, nullity), condition_number(D.asDiagonal() * M * D.asDiagonal(), nullity)};
 }
 
 }  // namespace elastocheck::recursive

@@ -34,8 +34,6 @@ struct Diagnosis {
     double length = 1;            // L, characteristic lever of the model [m]
     double constraint_error = 0;  // largest |Φ| at the design position [m] or [-]
     double imbalance = 0;         // largest force [N] (or moment/L) that is left at load factor 0 at the design position
-    double condition_raw = 0;     // κ₂ of eq. (24) as it stands; meaningless, shown because it is what others see
-    double condition = 0;         // κ₂ after equilibration, idle and redundant directions left out
     std::vector<Redundancy> redundant;
     std::vector<IdleMode> idle;
     Eigen::MatrixXd null_space;   // of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d]
@@ -44,5 +42,12 @@ struct Diagnosis {
 };
 
 Diagnosis diagnose(const Model& model);
+
+// κ₂ of eq. (24) at the design position, idle and redundant directions left out.
+struct Conditioning {
+    double raw = 0;          // as it stands: depends on the unit of length; shown because it is what others see
+    double equilibrated = 0; // rows and columns scaled to unit size
+};
+Conditioning conditioning(const Model& model, const Diagnosis& diagnosis);
 
 }  // namespace elastocheck::recursive

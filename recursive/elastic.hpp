@@ -122,20 +122,24 @@ Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     return Matrix3<Real>::Identity() - t / 2 + c * (t * t);
 }
 
-namespace detail {
+// The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and where its line of action passes: levers from
+// both origins to p_j (bushing: the frame rides on i, so it is p_j for both) or to either end of a spring.
+template <class Real>
+struct ElementForce {
+    Vector3<Real> F, M;
+    Vector3<Real> lever_i, lever_j;
+};
 
-template <class Real, class Target>
-void add_force(const AxialSpring& e, const State<Real>& q, Target& f) {
+template <class Real>
+ElementForce<Real> element_force(const AxialSpring& e, const State<Real>& q) {
     const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
     const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
     const Real length = D.norm();
-    const Vector3<Real> F = static_cast<Real>(e.k) * (length - static_cast<Real>(e.free_length)) / length * D;
-    if (e.j.body != ground) f.template segment<6>(6 * e.j.body) += (Vector6<Real>() << F, s_j.cross(F)).finished();
-    if (e.i.body != ground) f.template segment<6>(6 * e.i.body) -= (Vector6<Real>() << F, s_i.cross(F)).finished();
+    return {static_cast<Real>(e.k) * (length - static_cast<Real>(e.free_length)) / length * D, Vector3<Real>::Zero(), s_i, s_j};
 }
 
-template <class Real, class Target>
-void add_force(const Bushing& e, const State<Real>& q, Target& f) {
+template <class Real>
+ElementForce<Real> element_force(const Bushing& e, const State<Real>& q) {
     const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
     const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
     const Matrix3<Real> A_j = q[e.j.body].A * e.j.A_local.cast<Real>().toRotationMatrix();
@@ -143,20 +147,34 @@ void add_force(const Bushing& e, const State<Real>& q, Target& f) {
     Vector6<Real> strain;  // e = (d, θ)
     strain << A_i.transpose() * D, logarithm<Real>(A_i.transpose() * A_j);
     const Vector6<Real> stress = e.K.cast<Real>() * strain + e.preload.cast<Real>();
-    const Vector3<Real> F = A_i * stress.template head<3>();
-    const Vector3<Real> M = A_i * (inverse_left_jacobian<Real>(strain.template tail<3>()).transpose() * stress.template tail<3>());
-    if (e.j.body != ground) f.template segment<6>(6 * e.j.body) += (Vector6<Real>() << F, s_j.cross(F) + M).finished();
-    if (e.i.body != ground) f.template segment<6>(6 * e.i.body) -= (Vector6<Real>() << F, (s_i + D).cross(F) + M).finished();
+    const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(strain.template tail<3>());
+    return {A_i * stress.template head<3>(), A_i * (J_inverse.transpose() * stress.template tail<3>()), s_i + D, s_j};
 }
 
-}  // namespace detail
+// Adds (F, s × F + M) on body j and its opposite on body i to f [6nb].
+template <class Real>
+void add_element_force(BodyId i, BodyId j, const ElementForce<Real>& e, Vector<Real>& f) {
+    if (j != ground) {
+        f.template segment<3>(6 * j) += e.F;
+        f.template segment<3>(6 * j + 3) += e.lever_j.cross(e.F) + e.M;
+    }
+    if (i != ground) {
+        f.template segment<3>(6 * i) -= e.F;
+        f.template segment<3>(6 * i + 3) -= e.lever_i.cross(e.F) + e.M;
+    }
+}
 
 // f_elast(q) = ∂U/∂q [6nb], moments about the bodies' origins, ground axes.
 template <class Real>
-Vector<Real> elastic_force(const Model& model, const State<Real>& q) {
-    Vector<Real> f = Vector<Real>::Zero(coordinates(model));
+void elastic_force(const Model& model, const State<Real>& q, Vector<Real>& f) {
+    f.setZero(coordinates(model));
     for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { detail::add_force<Real>(e, q, f); }, elastic.kind);
+        std::visit([&](const auto& e) { add_element_force<Real>(e.i.body, e.j.body, element_force<Real>(e, q), f); }, elastic.kind);
+}
+template <class Real>
+Vector<Real> elastic_force(const Model& model, const State<Real>& q) {
+    Vector<Real> f;
+    elastic_force<Real>(model, q, f);
     return f;
 }
 

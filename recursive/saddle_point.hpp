@@ -13,10 +13,9 @@
 // ⎣ bᵀ  0 ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭    and, for next time,  ⎣ bᵀ  0 ⎦ ⎩ ν ⎭ = ⎩ 1 ⎭      b = (W² z, 0) or (0, y)
 //
 // with the same factors. bᵀ x = 0 is what singles out the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ of minimum
-// norm. n is the null vector of the present configuration and gives z (y) for the next step. ν is the stiffness that the
-// held motion has after all: zero where the constraints are met, of second order in the constraint error that the
-// published method leaves. Only the Δq part of an idle n is kept (and the λ part of a redundant one): the other part is
-// that error, and feeding it back grows it.
+// norm. n is the null vector of the present configuration and gives z (y) for the next step. Only the Δq part of an idle n
+// is kept (and the λ part of a redundant one): the other part is the constraint error that the published method leaves, and
+// feeding it back grows it.
 #pragma once
 
 #include <Eigen/LU>
@@ -85,17 +84,23 @@ void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
     system.lu = Eigen::PartialPivLU<Matrix<Real>>(size);
 }
 
-// What one solve says about the system.
+// x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is allocated.
 template <class Real>
-struct SolveReport {
-    Real pivot_ratio = 0;     // smallest over largest pivot of the scaled, bordered matrix
-    Real held_stiffness = 0;  // largest |ν|
-};
+void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower, Vector<Real>& x) {
+    const int N = system.n + system.m;
+    auto rhs = system.rhs.col(0);
+    rhs.head(system.n) = f;
+    rhs.segment(system.n, system.m) = lower;
+    rhs.head(N).array() *= system.scale.array();
+    rhs.tail(system.borders()).setZero();
+    system.x.col(0) = system.lu.solve(rhs);
+    x = system.scale.asDiagonal() * system.x.col(0).head(N);
+}
 
-// Factorises the matrix now in M and solves for (Δq, λ) = x, f = upper right-hand side [n], lower = lower one [m].
-// Nothing is allocated. Singularity shows in the report; the caller judges it.
+// Factorises the matrix now in M and renews what is held. Nothing is allocated. Returns the smallest over the largest pivot
+// of the scaled, bordered matrix; the caller judges it.
 template <class Real>
-SolveReport<Real> solve(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower, Vector<Real>& x) {
+Real factorise(SaddlePoint<Real>& system) {
     const int N = system.n + system.m, d = system.borders();
     const auto& D = system.scale;
     system.bordered.topLeftCorner(N, N).noalias() = D.asDiagonal() * system.M * D.asDiagonal();
@@ -106,26 +111,17 @@ SolveReport<Real> solve(SaddlePoint<Real>& system, const Vector<Real>& f, const 
     }
     system.bordered.bottomLeftCorner(d, N) = system.bordered.topRightCorner(N, d).transpose();
     system.bordered.bottomRightCorner(d, d).setZero();
-    system.rhs.col(0).head(system.n) = f;
-    system.rhs.col(0).segment(system.n, system.m) = lower;
-    system.rhs.col(0).head(N).array() *= D.array();
-    system.rhs.col(0).tail(d).setZero();
-    system.rhs.rightCols(d).setZero();
-    system.rhs.bottomRightCorner(d, d).setIdentity();
-
     system.lu.compute(system.bordered);
-    system.x = system.lu.solve(system.rhs);
 
-    SolveReport<Real> report;
-    const auto pivots = system.lu.matrixLU().diagonal().cwiseAbs();
-    report.pivot_ratio = pivots.minCoeff() / pivots.maxCoeff();
-    x = D.asDiagonal() * system.x.col(0).head(N);
     for (int c = 0; c < d; ++c) {
-        report.held_stiffness = std::max(report.held_stiffness, std::abs(system.x(N + c, 1 + c)));
+        system.rhs.col(1 + c).setZero();
+        system.rhs(N + c, 1 + c) = 1;
+        system.x.col(1 + c) = system.lu.solve(system.rhs.col(1 + c));
         system.held.col(c) = D.asDiagonal() * system.x.col(1 + c).head(N);
     }
-    orthonormalise(system);
-    return report;
+    if (d > 0) orthonormalise(system);
+    const auto pivots = system.lu.matrixLU().diagonal().cwiseAbs();
+    return pivots.minCoeff() / pivots.maxCoeff();
 }
 
 }  // namespace elastocheck::recursive

@@ -14,6 +14,7 @@ json provenance_json(const Provenance& p) {
 }
 
 json model_json(const Model& model, const recursive::Diagnosis& d) {
+    const recursive::Conditioning condition = recursive::conditioning(model, d);
     json bodies = json::array(), joints = json::array(), elements = json::array(), idle = json::array(),
          redundant = json::array(), left_out = json::array();
     for (const auto& body : model.bodies) bodies.push_back(body.name);
@@ -35,8 +36,8 @@ json model_json(const Model& model, const recursive::Diagnosis& d) {
             {"redundant", redundant},
             {"left_out", left_out},
             {"imbalance_N", d.imbalance},
-            {"condition_equilibrated", d.condition},
-            {"condition_raw", d.condition_raw}};
+            {"condition_equilibrated", condition.equilibrated},
+            {"condition_raw", condition.raw}};
 }
 
 json residuals_json(const Residuals& r) {

@@ -20,6 +20,7 @@ std::string constraint_name(const ConstraintKind& kind) {
 
 std::string inspection(const Model& model, const recursive::Diagnosis& d) {
     std::string text;
+    const recursive::Conditioning condition = recursive::conditioning(model, d);
     const auto line = [&](const char* format, const auto&... args) {
         fmt::vformat_to(std::back_inserter(text), format, fmt::make_format_args(args...));
         text += '\n';
@@ -30,7 +31,7 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
     line("  constraints         {:>4}   of rank {}", d.rows, d.rank);
     line("  unknowns            {:>4}", d.coordinates + d.rows);
     line("  degrees of freedom  {:>4}   {} of them idle", d.degrees_of_freedom(), d.idle.size());
-    line("  condition        {:>7.2g}   of eq. (24), equilibrated; {:.2g} as it stands", d.condition, d.condition_raw);
+    line("  condition        {:>7.2g}   of eq. (24), equilibrated; {:.2g} as it stands", condition.equilibrated, condition.raw);
     line("");
     line("bodies");
     for (const auto& body : model.bodies)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/energy/rotation.hpp"
+
 namespace elastocheck::reference::energy {
 namespace {
 
@@ -13,7 +15,7 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
 constexpr double difference = 1e-5;      // of ξ, central
-constexpr double idle_stiffness = 1e-7;  // F would move such a mode by 10⁷ L
+constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
 
 }  // namespace
 
@@ -75,6 +77,18 @@ MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scale
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
 }
 
+// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ...,
+// whereas the balance is g - m. They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they
+// balance.
+MatrixXd moment_stiffness(const Loading& loading, const Scales& scales, int n) {
+    MatrixXd A = MatrixXd::Zero(n, n);
+    for (const auto& moment : loading.moments) {
+        const int row = 6 * moment.body + 3;
+        A.block<3, 3>(row, row) -= 0.5 * skew(moment.m) / scales.energy();
+    }
+    return A;
+}
+
 Modes modes_of(const Balance& at, const MatrixXd& H) {
     Modes modes;
     if (at.along.cols() == 0) return {at.along, VectorXd(0), 0};
@@ -85,6 +99,13 @@ Modes modes_of(const Balance& at, const MatrixXd& H) {
     const double roundoff = 50 * std::numeric_limits<double>::epsilon();
     modes.idle_limit = idle_stiffness + roundoff * modes.stiffness.cwiseAbs().maxCoeff();
     return modes;
+}
+
+std::vector<int> Modes::resisting() const {
+    std::vector<int> which;
+    for (int i = 0; i < count(); ++i)
+        if (!idle(i)) which.push_back(i);
+    return which;
 }
 
 MatrixXd Modes::idle_motions() const {

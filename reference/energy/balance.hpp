@@ -6,6 +6,7 @@
 
 #include "reference/energy/constraints.hpp"
 #include "reference/energy/potential.hpp"
+#include "reference/energy/scales.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -29,6 +30,10 @@ Balance balance(const Model& model, const Loading& loading, const Scales& scales
 Eigen::MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scales,
                         const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 
+// A dead moment has no symmetric stiffness: with a small rotation φ of its body, the balance of moments
+// changes by ½ φ × m more than the gradient of the chart's potential does. In ξ [6nb × 6nb].
+Eigen::MatrixXd moment_stiffness(const Loading& loading, const Scales& scales, int n);
+
 // The modes of motion that the constraints allow: eigenvectors of the Hessian reduced to `along`.
 struct Modes {
     Eigen::MatrixXd Z;          // orthonormal [6nb × f]
@@ -37,6 +42,7 @@ struct Modes {
 
     int count() const { return static_cast<int>(stiffness.size()); }
     bool idle(int mode) const { return std::abs(stiffness[mode]) <= idle_limit; }
+    std::vector<int> resisting() const;    // the modes that are not idle
     Eigen::MatrixXd idle_motions() const;  // [6nb × idle modes]
     bool unstable() const { return count() > 0 && !(stiffness[0] >= -idle_limit); }
 };

@@ -11,6 +11,9 @@
 
 namespace elastocheck::reference::energy {
 
+// Why a branch ends, half a sentence.
+inline constexpr const char* turned_over = "a bushing has turned by half a turn, where its law ends";
+
 struct Failure {
     Outcome outcome;
     std::string what;  // half a sentence
@@ -23,7 +26,6 @@ struct State {
     Balance at;
     Eigen::MatrixXd H;
     Modes modes;
-    std::optional<Eigen::VectorXd> velocity;  // dξ/da along the branch, from the state before [6nb]
 };
 
 // What a branch is made of: everything but the load factor.
@@ -33,6 +35,7 @@ struct Path {
     Scales scales;
     std::function<Loading(double)> loading;  // at a load factor
     Counts& counts;
+    Modes first = {};  // modes where the branch starts
 };
 
 // Pose, balance, Hessian and modes at load factor a, whether an equilibrium or not.

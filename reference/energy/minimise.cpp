@@ -1,24 +1,28 @@
 // What makes SLSQP reach the last digits here, where it otherwise stops at 1e-6 of the gradient:
 //
 // 1. Coordinates y, ξ = T y, in which the problem is round: T = [N B] with
-//      B = Z |W|^-½                         the modes along the constraints, each with unit stiffness
-//      N = (1 - Z W⁻¹ Zᵀ H) Y, scaled       the directions across them, conjugate to the modes
+//      B = Z |W|^-½                      the modes along the constraints, each with unit stiffness
+//      N = (1 - Z W⁻¹ Zᵀ H) Y, scaled    the directions across them, conjugate to the modes
 //    so that SLSQP's first Hessian, the unit matrix, is the right one and its first steps are Newton steps.
-// 2. The function is V + λᵀΦ with λ fixed at the best multipliers of the centre: the same as V wherever Φ =
-// 0, hence with
-//    the same constrained minima, but its gradient is small and its multipliers are almost zero. The line
-//    search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of stiff constraints under load
+//
+// 2. The function is V + λᵀΦ with λ fixed at the best multipliers of the centre. It equals V wherever Φ = 0,
+// so
+//    it has the same constrained minima, but its gradient is small and its own multipliers almost vanish. The
+//    line search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of constraints under load
 //    spoils them (Maratos).
+//
 // 3. All values are changes since the centre, summed without cancellation (potential.hpp, constraints.hpp):
 // the
-//    function-value test has its floor at the roundoff of the change, not of V.
+//    function-value test has its floor at the roundoff of the change, not of V. Charts of large steps end
+//    there; the next chart, centred at their result, has a floor far below.
+//
 // 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not change along
-// them, so
-//    this picks one of many equal minima, where it vanishes; without it, what little of their stiffness
-//    appears away from equilibrium would send them anywhere. If V did change along them, the measure, which
+//    them, so this picks one of many equal minima, where it vanishes. Without it, what little of a stiffness
+//    they show away from equilibrium would send them anywhere. If V did change along them, the measure, which
 //    knows nothing of this, would say so. Modes that turn up idle at the centre itself are left out of T.
+//
 // 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them. They stay in
-// the measure.
+//    the measure.
 #include "reference/energy/minimise.hpp"
 
 #include <nlopt.h>
@@ -40,9 +44,7 @@ constexpr int patience = 5;        // evaluations without improvement, within th
 constexpr int long_patience = 20;  // and before that: a chart of large steps ends at the roundoff of these
 
 MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& modes) {
-    std::vector<int> resisting;
-    for (int i = 0; i < modes.count(); ++i)
-        if (!modes.idle(i)) resisting.push_back(i);
+    const auto resisting = modes.resisting();
     const MatrixXd Z = modes.Z(Eigen::all, resisting);
     const VectorXd W = modes.stiffness(resisting);
     const int rank = static_cast<int>(at.across.cols());
@@ -75,7 +77,7 @@ struct Problem {
     VectorXd y{}, c{};
     double f = 0;
     VectorXd f_y{};
-    MatrixXd c_y_t{};  // (∂c/∂y)ᵀ [6nb × rank]
+    MatrixXd c_y_t{};  // (∂c/∂y)ᵀ [size of y × rank]
 
     Minimisation best;
     int since_best = 0;
@@ -94,7 +96,7 @@ double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorX
 
 // All of f, c and their derivatives at y, and whether to go on.
 void evaluate(Problem& p, const VectorXd& y) {
-    if (p.y.size() == y.size() && p.y == y) return;
+    if (p.best.evaluations > 0 && p.y == y) return;
     p.y = y;
     move_to(p.chart, p.ST * y);
     const Potential V = potential(p.model, p.loading, p.chart);

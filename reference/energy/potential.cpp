@@ -1,5 +1,8 @@
 #include "reference/energy/potential.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "reference/energy/overloaded.hpp"
 #include "reference/energy/rotation.hpp"
 
@@ -182,6 +185,17 @@ MatrixXd stiffness(const Model& model, const Chart& chart) {
     return H;
 }
 
+double stress_size(const Model& model, const Chart& chart, double length) {
+    double size = 0;
+    for_each_element(model, {}, chart, [&]<int N>(const Element<N>& e) {
+        if constexpr (N == 1)
+            size += std::abs(e.sigma_c[0]);
+        else
+            size += e.sigma_c.template head<3>().norm() + e.sigma_c.template tail<3>().norm() / length;
+    });
+    return size;
+}
+
 Matrix3Xd bushing_rotations(const Model& model, const std::vector<Pose>& poses) {
     const auto axes = [&](const Marker& m) {
         return m.body == ground ? m.A_local : poses[static_cast<std::size_t>(m.body)].p * m.A_local;
@@ -194,6 +208,11 @@ Matrix3Xd bushing_rotations(const Model& model, const std::vector<Pose>& poses) 
             theta.col(column++) = rotation_vector(axes(b->i).conjugate() * axes(b->j));
     }
     return theta.leftCols(column);
+}
+
+bool within_half_turn(const Model& model, const std::vector<Pose>& poses) {
+    const Matrix3Xd theta = bushing_rotations(model, poses);
+    return theta.cols() == 0 || theta.colwise().norm().maxCoeff() <= std::numbers::pi - 1e-3;
 }
 
 }  // namespace elastocheck::reference::energy

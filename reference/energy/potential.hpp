@@ -26,7 +26,13 @@ Eigen::VectorXd gradient_at_centre_stress(const Model& model, const Loading& loa
 // Σ Eᵀ K E at the centre [6nb × 6nb], positive semidefinite.
 Eigen::MatrixXd stiffness(const Model& model, const Chart& chart);
 
+// What the elements hold at the centre, as a force [N]: Σ |forces| + |moments| / length.
+double stress_size(const Model& model, const Chart& chart, double length);
+
 // The rotations, at these poses, of the bushings that resist one [3 × their number].
 Eigen::Matrix3Xd bushing_rotations(const Model& model, const std::vector<Pose>& poses);
+
+// Whether all of these are short of half a turn, where the law is no longer differentiable.
+bool within_half_turn(const Model& model, const std::vector<Pose>& poses);
 
 }  // namespace elastocheck::reference::energy

@@ -14,8 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The name of the joint that cannot be closed: Gauss-Newton on |Φ|² from the design pose comes to rest with Φ
-// ≠ 0.
+// The joint that cannot be closed: Gauss-Newton on |Φ|² from the design pose comes to rest with Φ ≠ 0.
 std::optional<std::string> contradicting_joint(const Path& path) {
     const VectorXd S = path.scales.coordinates(coordinates(path.model)), D = path.scales.rows(path.model);
     Chart chart = chart_about(design_poses(path.model));
@@ -51,6 +50,7 @@ std::optional<Failure> settle(const Path& path, State& state) {
     state = state_at(path, 0, design_poses(path.model));
     if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
         return Failure{Outcome::not_finite, "the design pose has no finite potential"};
+    if (!within_half_turn(path.model, state.poses)) return Failure{Outcome::branch_lost, turned_over};
     if (is_stationary(path, state) && !state.modes.unstable()) return {};
 
     Path settling = path;
@@ -66,9 +66,8 @@ std::optional<Failure> settle(const Path& path, State& state) {
         }
         state = closed.state;
     }
-    if (auto failure = advance(settling, state, 0)) return failure;
-    state.velocity.reset();
-    return {};
+    settling.first = state.modes;
+    return advance(settling, state, 0);
 }
 
 Equilibrium equilibrium(const Path& path, const State& state) {
@@ -89,10 +88,11 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             fmt::format("branch '{}', load factor {:.10g}: {}{}", branch.name, load, failure.what, reached);
         return result;
     };
-    const Path path{model, options, scales_of(model, branch, loads),
-                    [&](double a) { return loading_at(model, branch, a); }, result.counts};
+    Path path{model, options, scales_of(model, branch, loads),
+              [&](double a) { return loading_at(model, branch, a); }, result.counts};
     State state;
     if (const auto failure = settle(path, state)) return fail(*failure, 0, ", before any load of the branch");
+    path.first = state.modes;
     for (const double load : loads) {
         if (!std::isfinite(load)) return fail({Outcome::not_finite, "the load is not finite"}, load, "");
         if (const auto failure = advance(path, state, load))

@@ -1,8 +1,7 @@
 // The physics of this leg: what joints, elements and loads do to free bodies, for double and for Ceres' Jets.
 //
 // Free-body diagrams. Whatever connects two bodies acts on body i with a force and a moment, and on body j
-// with the opposite force on the same line of action and the opposite moment. So one `Interaction` says it
-// all:
+// with the opposite of both, the force on the same line of action. So one `Interaction` says it all:
 //
 //   on body i:   force  F      moment about r_i   M + (x - r_i) × F
 //   on body j:   force -F      moment about r_j  -M - (x - r_j) × F        x: any point of the line of action

@@ -95,8 +95,7 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         const MatrixXd& U = walk.here.linearised.modes.left;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > 0.9 * left_over.norm())
             return unanswerable(system, U * (U.transpose() * left_over));
-        // At a limit point a good part of the load step finds no answer; a standstill far below is one of
-        // arithmetic.
+        // At a limit point a good part of the load step finds no answer; far below, arithmetic is at its end.
         const double step = std::abs(t - walk.here.t) * largest(walk.here.E_rate);
         if (attempt.out_of_time || attempt.residual <= std::max(1e-6 * step, 1e-13))
             return {Outcome::iteration_limit,

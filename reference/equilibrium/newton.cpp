@@ -3,6 +3,8 @@
 #include <ceres/ceres.h>
 #include <ceres/jet.h>
 
+#include <algorithm>
+
 namespace elastocheck::reference::equilibrium {
 namespace {
 
@@ -162,7 +164,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
     ceres::Solve(solver, &problem, &summary);
 
     counts.factorisations += summary.num_linear_solves;
-    counts.iterations += std::max<long>(0, static_cast<long>(summary.iterations.size()) - 1);
+    counts.iterations += summary.num_linear_solves;  // `iterations` leaves out one that ends at a standstill
     counts.evaluations += summary.num_residual_evaluations + 1;
     for (int body = 0; body < system.bodies; ++body) x.segment<4>(column(body) + 3).normalize();
     attempt.residual = largest(residual(system, loading, x));

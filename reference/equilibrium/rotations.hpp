@@ -39,10 +39,9 @@ Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& p, const Eigen::Quatern
 //   J⁻¹(θ) = I - ½ θ̃ + c θ̃²,   c = (1 - (θ/2) cot(θ/2)) / θ².
 //
 // With the quaternion of A as (w, v), w ≥ 0: |v| = sin(θ/2), w = cos(θ/2), so θ = 2 v atan2(|v|, w) / |v| and
-// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, which have derivatives there
-// too: atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!). At
-// half a turn the logarithm is not unique: there, and 1e-6 rad before, all is NaN rather than quietly one of
-// two.
+// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, with derivatives there too:
+// atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!).
+// At half a turn the logarithm is not unique: from 1e-6 rad before, all is NaN rather than one of two.
 template <class T>
 struct Logarithm {
     Vec3<T> theta;

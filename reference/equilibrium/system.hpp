@@ -53,13 +53,12 @@ Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from, 
 double pose_size(const System& system, const Eigen::VectorXd& dx);
 double largest(const Eigen::VectorXd& E);  // absolute entry, NaN when anything is not finite
 
-// The name of a bushing whose rotation is within 0.05 rad of where the logarithm ends; empty when there is
-// none.
+// The name of a bushing whose rotation is within 0.05 rad of where the logarithm ends, or empty.
 std::string bushing_at_half_turn(const System& system, const Eigen::VectorXd& x);
 
 Equilibrium state_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
-// The position of every body in the frame of the system, whose origin is `centre`.
+// The ground in the frame of the system, whose origin is `centre`.
 inline Frame<double> ground_frame(const System& system) {
     return {-system.centre, Eigen::Quaterniond::Identity()};
 }

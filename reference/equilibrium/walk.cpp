@@ -97,8 +97,8 @@ std::optional<Failure> advance(Walk& walk, double target) {
         if (unanswered > std::max(walk.options.tolerance, 1e-9 * asked))
             return unanswerable(walk.system, walk.here.linearised.modes.left * walk.here.mu);
         if (!walk.here.tangent.allFinite())
-            return Failure{Outcome::singular,
-                           fmt::format("the system is singular at load factor {:.10g}", walk.here.t)};
+            return Failure{Outcome::singular, fmt::format("the system is singular at load factor {:.10g}",
+                                                          loading_at(walk.stage, walk.here.t).factor)};
 
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
         const double t = h == rest ? target : walk.here.t + h;

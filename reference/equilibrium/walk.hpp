@@ -13,8 +13,8 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// The way has two legs, each with a parameter t: letting go of the design pose (t from 0 to 1), then loading
-// (t = a).
+// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), loading (t =
+// a).
 enum class Stage { settling, loading };
 
 inline Loading loading_at(Stage stage, double t) {
@@ -69,8 +69,7 @@ std::optional<Failure> advance(Walk& walk, double target);
 // Why the branch does not go on from here towards t, judged by the last and smallest trial.
 Failure failure(Walk& walk, double t, const Trial& trial);
 
-// What cannot be answered, as a left null vector of the system: a load on an idle mode, or joints against
-// each other.
+// What cannot be answered, as a left null vector: a load on an idle mode, or joints against each other.
 Failure unanswerable(const System& system, const Eigen::VectorXd& left);
 
 }  // namespace elastocheck::reference::equilibrium

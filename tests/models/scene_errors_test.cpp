@@ -47,7 +47,7 @@ const std::string steps = "expected a whole number from 1 to 1000000, found ";
 const std::string plain_text = "; a scene is plain text";
 const std::string no_aliases = "aliases (*name) are not part of the scene format; write the value out";
 const std::string one_document = "; a scene is one YAML document";
-const std::string semidefinite = "; a stiffness must be positive semidefinite";
+const std::string semidefinite = " when scaled to a unit diagonal; a stiffness must be positive semidefinite";
 const std::string on_ground = " cannot be on ground, which never moves; allowed: a body";
 const std::string missing = ": missing, it must be given";
 const std::string empty = "empty; a scene begins with `elastocheck: 1`";
@@ -297,11 +297,17 @@ const std::vector<Mistake> mistakes{
      "5.00001"},
     {"StiffnessIndefinite", "- [100, 0, 0, 0, 5, 0]\n      - [0, 100, 0, 0, 0, 0]",
      "- [100, 200, 0, 0, 5, 0]\n      - [200, 100, 0, 0, 0, 0]",
-     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -100.083" + semidefinite},
+     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -1.00125" + semidefinite},
     {"StiffnessWithANegativeDiagonal", "      - [0, 0, 0, 0, 0, 50]", "      - [0, 0, 0, 0, 0, -50]",
-     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -50" + semidefinite},
+     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -1" + semidefinite},
     {"StiffnessCouplingAFreeDirection", "      - [100, 0, 0, 0, 5, 0]", "      - [0, 0, 0, 0, 5, 0]",
-     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -0.495098" + semidefinite},
+     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -0.618034" + semidefinite},
+    {"StiffnessCouplingAFreeDirectionToAStiffOne",
+     "      - [100, 0, 0, 0, 5, 0]\n      - [0, 100, 0, 0, 0, 0]\n      - [0, 0, 100, 0, 0, 0]\n "
+     "     - [0, 0, 0, 50, 0, 0]\n      - [5, 0, 0, 0, 50, 0]",
+     "      - [0, 0, 0, 0, 5, 0]\n      - [0, 100, 0, 0, 0, 0]\n      - [0, 0, 100, 0, 0, 0]\n   "
+     "   - [0, 0, 0, 50, 0, 0]\n      - [5, 0, 0, 0, 1e20, 0]",
+     "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -0.618034" + semidefinite},
     {"FrameWithoutAxis", "frame: {x: [middle, front]}", "frame: {}",
      "25: bushings.mount.frame: 0 axes given; allowed: one or two"},
     {"FrameOfThreeAxes", "frame: {x: [middle, front]}", "frame: {x: x, y: y, z: z}",

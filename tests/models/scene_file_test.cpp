@@ -10,6 +10,7 @@
 #include <limits>
 #include <locale>
 #include <numbers>
+#include <random>
 #include <sstream>
 
 #include "tests/models/bench_scene.hpp"
@@ -163,16 +164,16 @@ TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed)
             return p.body == ground ? p.s_local
                                     : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r + p.s_local;
         };
-        for (const auto& [name, kind] : scene.joints)
+        for (const Joint& candidate : scene.joints)
             std::visit(
                 [&](const auto& s) {
                     if constexpr (requires { s.i.s_local; }) {
                         double length = 0;
                         if constexpr (requires { s.length; }) length = s.length;
-                        EXPECT_NEAR((position(s.i) - position(s.j)).norm(), length, 1e-15) << name;
+                        EXPECT_NEAR((position(s.i) - position(s.j)).norm(), length, 1e-15) << candidate.name;
                     }
                 },
-                kind);
+                candidate.kind);
     }
     EXPECT_GE(count, 7);
 }
@@ -465,21 +466,40 @@ TEST(Spring, PreloadIsTheCompressiveForceAtTheDesignPosition) {
     EXPECT_DOUBLE_EQ(element<AxialSpring>(unloaded, "coil").free_length, length);
 }
 
-TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
-    // Rank one, K = v vᵀ, as a bushing computed elsewhere may be: its five zero eigenvalues come out as
-    // ±1e-16.
-    const double v[6] = {1.0 / 3, 0.1, -7.7, 1e3 / 7, 0, 0.05};
+// The bench scene with K as the 6×6 of its bushing `block`.
+std::string bench_with(const Matrix6& K) {
     std::string rows;
-    for (const double x : v) {
+    for (int i = 0; i < 6; ++i) {
         rows += "      - [";
-        for (int j = 0; j < 6; ++j) rows += fmt::format("{}{:.17g}", j ? ", " : "", x * v[j]);
+        for (int j = 0; j < 6; ++j) rows += fmt::format("{}{:.17g}", j > 0 ? ", " : "", K(i, j));
         rows += "]\n";
     }
     const auto begin = bench_scene.find("      - [100"), end = bench_scene.find("\nstatic_loads");
-    const std::string text = bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
-    const Scene scene = parsed(text);
-    const Matrix6 K = element<Bushing>(scene, "block").K;
-    EXPECT_EQ(K, K.transpose());
+    return bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
+}
+
+// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere may be like. Its zero eigenvalues come out as
+// ±1e-16.
+TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
+    std::mt19937 random(6);
+    std::normal_distribution<double> normal;
+    for (int n = 0; n < 100; ++n) {
+        Eigen::MatrixXd V(6, 1 + n % 5);
+        for (double& v : V.reshaped()) v = normal(random) * std::exp(3 * normal(random));
+        const Matrix6 K = V * V.transpose();
+        EXPECT_NO_THROW(parsed(bench_with(K))) << K;
+        const Matrix6 indefinite = K - 1e-9 * Matrix6(K.diagonal().asDiagonal());
+        EXPECT_THROW(parsed(bench_with(indefinite)), SceneError) << indefinite;
+    }
+}
+
+TEST(Stiffness, IsSymmetricToTheLastBit) {
+    Matrix6 K = 100 * Matrix6::Identity();
+    K(0, 4) = 5;
+    K(4, 0) = 5 * (1 + 9e-13);
+    const Matrix6 read = element<Bushing>(parsed(bench_with(K)), "block").K;
+    EXPECT_EQ(read, read.transpose());
+    EXPECT_NE(read(0, 4), 0);
 }
 
 TEST(Wheel, ContactPatchIsTheCentreUnlessGiven) {
@@ -519,6 +539,26 @@ TEST(Text, LineEndsAndByteOrderMarkMakeNoDifference) {
     expect_same(parsed(bench_scene), parsed(windows), 0);
 }
 
+TEST(Text, IsUtf8AndNothingElse) {
+    const auto is_read = [](const std::string& bytes) {
+        try {
+            return parsed(replaced(bench_scene, "name: Bench", "name: Ben" + bytes + "ch")).name ==
+                   "Ben" + bytes + "ch";
+        } catch (const SceneError& error) {
+            EXPECT_NE(std::string(error.what()).find("is not UTF-8"), std::string::npos) << error.what();
+            return false;
+        }
+    };
+    // The first and the last code point of each length, and those around the surrogates (RFC 3629).
+    for (const char* bytes : {"\xC2\xA1", "\xDF\xBF", "\xE0\xA0\x80", "\xEF\xBF\xBD", "\xED\x9F\xBF",
+                              "\xEE\x80\x80", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
+        EXPECT_TRUE(is_read(bytes)) << testing::PrintToString(bytes);
+    for (const char* bytes : {"\x80", "\xBF", "\xC0\xAF", "\xC1\xBF", "\xC3", "\xC3\xC3", "\xE0\x9F\xBF",
+                              "\xE2\x82", "\xED\xA0\x80", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF0\x9F\x98",
+                              "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xFE", "\xFF"})
+        EXPECT_FALSE(is_read(bytes)) << testing::PrintToString(bytes);
+}
+
 TEST(Text, NamesMayBeOfAnyLanguage) {
     const Scene scene = parsed(replaced(bench_scene, "  tip:", "  Längslenker 2-a+b.c:"));
     EXPECT_EQ(scene.probes.at(0).name, "Längslenker 2-a+b.c");
@@ -550,7 +590,9 @@ std::string complaint_about(const fs::path& file) {
 }
 
 struct TemporaryFile {
-    fs::path path = fs::path(testing::TempDir()) / "elastocheck_scene_file_test.yaml";
+    fs::path path =
+        fs::path(testing::TempDir()) /
+        fmt::format("elastocheck_{}.yaml", testing::UnitTest::GetInstance()->current_test_info()->name());
     explicit TemporaryFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
     ~TemporaryFile() { fs::remove(path); }
 };

@@ -77,7 +77,7 @@ TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
         const auto branch = std::ranges::find(model.branches, limit.load, &Branch::to);
         ASSERT_NE(branch, model.branches.end()) << limit.scene;
         const auto error = [&](int steps) {
-            const auto path = solve(model, *branch, {steps});
+            const auto path = solve(model, *branch, {.steps = steps});
             EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
             return Vector3d(leading_point(model, path.points.back()) - limit.point);
         };
@@ -91,7 +91,7 @@ TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
 TEST(Recursion, LinearScenesAreExactWithOneStep) {
     for (const char* name : {"single_bushing", "parallel_springs"}) {
         const Model model = compile(support::scene(name));
-        const auto one = solve(model, model.branches[0], {1}), many = solve(model, model.branches[0], {1000});
+        const auto one = solve(model, model.branches[0], {.steps = 1}), many = solve(model, model.branches[0], {.steps = 1000});
         EXPECT_LE((leading_point(model, one.points.back()) - leading_point(model, many.points.back())).norm(), 1e-12) << name;
     }
 }
@@ -102,7 +102,7 @@ TEST(Recursion, ConstraintErrorOfEquation31FallsAtFirstOrder) {
         // Slope of log |Φ| over log N by least squares.
         double n = 0, x = 0, y = 0, xx = 0, xy = 0;
         for (const int steps : {75, 150, 300, 600, 1200, 2400}) {
-            const auto path = solve(model, branch, {steps});
+            const auto path = solve(model, branch, {.steps = steps});
             ASSERT_EQ(path.outcome, Outcome::converged);
             ASSERT_EQ(path.points.size(), static_cast<std::size_t>(steps) + 1);
             const double u = std::log(steps), v = std::log(path.points.back().constraint_error);
@@ -121,7 +121,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
     std::vector<State<double>> path{q};
     for (int k = 0; k < N; ++k) {
         Matrix<double> M(n + m, n + m);
-        assemble<double>(model, q, M);
+        Vector<double> Phi(m);
+        assemble<double>(model, q, M, Phi);
         external_force<double>(model, branch, branch.to * (k + 1) / N, q, f);
         Vector<double> rhs = Vector<double>::Zero(n + m);
         rhs.head(n) = f - stored;
@@ -137,7 +138,7 @@ TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
     for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch", "single_bushing", "parallel_springs"}) {
         const Model model = compile(support::scene(name));
         for (const auto& branch : model.branches) {
-            const auto path = solve(model, branch, {25});
+            const auto path = solve(model, branch, {.steps = 25});
             const auto expected = equation_28(model, branch, 25);
             double worst = 0;
             for (std::size_t k = 0; k < expected.size(); ++k)
@@ -163,12 +164,12 @@ TEST(Recursion, StaticLoadAndPreloadStartFromTheirReactionsNotFromZero) {
     // The guide carries nothing, the spring's preload carries the weight: no motion at load factor 0.
     Scene scene = support::scene("parallel_springs");
     const Model model = compile(scene);
-    const auto path = solve(model, model.branches[0], {10});
+    const auto path = solve(model, model.branches[0], {.steps = 10});
     EXPECT_LE((leading_point(model, path.points.front()) - Vector3d(0, 0, 0.4)).norm(), 1e-12);
     // A sideways weight goes into the guide's reaction and must still be there at full load.
     std::get<DeadForce>(scene.static_loads[0].kind).f.x() = 250;
     const Model loaded = compile(scene);
-    const auto sideways = solve(loaded, loaded.branches[0], {10});
+    const auto sideways = solve(loaded, loaded.branches[0], {.steps = 10});
     for (const auto& point : sideways.points) {
         EXPECT_NEAR(point.reactions[0].force.x(), -250, 1e-9);
         EXPECT_LE(residuals(loaded, loaded.branches[0], point).force, 1e-9);
@@ -179,7 +180,7 @@ TEST(Recursion, UnbalancedDesignPositionSettlesAtLoadFactorZero) {
     Scene scene = support::scene("parallel_springs");
     std::get<DeadForce>(scene.static_loads[0].kind).f.z() -= 75;  // 1 mm on 75 N/mm
     const Model model = compile(scene);
-    const auto path = solve(model, model.branches[0], {10});
+    const auto path = solve(model, model.branches[0], {.steps = 10});
     EXPECT_NEAR(leading_point(model, path.points.front()).z(), 0.399, 1e-12);
     EXPECT_EQ(path.counts.factorisations, 11);
 }
@@ -226,12 +227,12 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
                     mirrored = compile(support::mirrored(scene)), reversed = compile(support::reversed(scene));
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
             const auto point = [&](const Model& m) {
-                const auto path = solve(m, m.branches[b], {50});
+                const auto path = solve(m, m.branches[b], {.steps = 50});
                 EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
                 return leading_point(m, path.points.back());
             };
             const Vector3d p = point(model);
-            const double bound = 1e-9 * (p - leading_point(model, solve(model, model.branches[b], {1}).points[0])).norm();
+            const double bound = 1e-9 * (p - leading_point(model, solve(model, model.branches[b], {.steps = 1}).points[0])).norm();
             EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
             EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
             EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";
@@ -345,7 +346,7 @@ TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
         for (const int steps : {300, 600, 2400}) {
-            const auto path = solve(model, branch, {steps});
+            const auto path = solve(model, branch, {.steps = steps});
             EXPECT_EQ(path.outcome, Outcome::diverged) << steps;
             EXPECT_GT(std::abs(path.points.back().load), 1979);
         }

@@ -97,6 +97,16 @@ TEST(ClosedForm, Pendulum) {
     });
 }
 
+// Without its weight the plate settles where the first spring's preload has pushed it.
+TEST(ClosedForm, PreloadSettlesBeforeTheBranchStarts) {
+    Scene scene = scene_named("parallel_springs");
+    scene.static_loads.clear();
+    const auto path = solve(scene, 0, sweep(scene.branches[0]));
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    for (const auto& state : path.points)
+        EXPECT_NEAR(position(state, scene.probes[0].at).z() - 0.4, (600 + state.load) / 75e3, 1e-13);
+}
+
 // A dead moment m has no potential for finite rotations, but re-centred charts find where it balances: a body
 // held by a rotational bushing K_R on ground (frame on the body) turns by θ with J⁻ᵀ(-θ) K_R θ = Aᵀ m. Here
 // the rotation is chosen and the moment that holds it computed, by differences of the energy, and then found

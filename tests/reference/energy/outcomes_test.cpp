@@ -1,4 +1,6 @@
 // Right, or an honest outcome; never a quiet wrong number.
+#include <numbers>
+
 #include "models/lowering.hpp"
 #include "support.hpp"
 
@@ -26,9 +28,10 @@ double limit_load(double h) {
 TEST(Outcomes, SnapThroughIsNeverJumpedOver) {
     EXPECT_NEAR(limit_load(0.08), 211.5166, 1e-4);
     for (const double h : {0.08, 0.04, 0.02, 0.01, 0.005}) {
-        const Scene scene = arch(h);
-        for (const double beyond : {1.0001, 1.01, 1.2, 2.0, 5.0, 13.0, 20.0, 100.0, 1e4}) {
+        Scene scene = arch(h);
+        for (const double beyond : {1.0001, 1.01, 1.2, 2.1, 5.3, 13.0, 20.3, 101.0, 1e4}) {
             const double to = -beyond * limit_load(h);
+            scene.branches[0].to = to;
             for (const int steps : {1, 3, 10, 57}) {
                 std::vector<double> loads;
                 for (int i = 0; i <= steps; ++i) loads.push_back(to * i / steps);
@@ -243,6 +246,21 @@ TEST(Outcomes, HalfATurnOfABushingEndsTheBranch) {
         EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
         EXPECT_NE(path.detail.find("half a turn"), std::string::npos) << path.detail;
         for (const auto& state : path.points) EXPECT_LE(state.load, 600 * 3.1416);
+    }
+}
+
+TEST(Outcomes, BushingMountedHalfATurnRoundIsDeclined) {
+    Scene scene = scene_named("pendulum");
+    auto& bushing = std::get<Bushing>(scene.elastics[0].kind);
+    for (const double short_of : {0.0, 1e-15, 1e-9, 1e-4}) {
+        bushing.j.A_local = Eigen::AngleAxisd(std::numbers::pi - short_of, Vector3d(0.6, 0, 0.8));
+        const double loads[] = {0, 1};
+        const Model model = compile(scene);
+        const auto path = solve(model, model.branches[0], loads);
+        EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+        EXPECT_TRUE(path.points.empty());
+        const Equilibrium design{0, {model.bodies[0].design}, {}, 0};
+        EXPECT_TRUE(std::isnan(residuals(model, model.branches[0], design).moment)) << short_of;
     }
 }
 

@@ -165,7 +165,7 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
     }
 }
 
-TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffInAFractionOfASecond) {
+TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffForHardlyMoreThanOneIterationAPoint) {
     const Model model = compile(scene("mcpherson"));
     for (const auto& branch : model.branches) {
         const auto loads = every_load(branch);
@@ -183,8 +183,7 @@ TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffInAFractionOfASecond) {
         }
         EXPECT_TRUE(within(constraints, 2e-15));
         EXPECT_TRUE(within(balance, 1e-8));
-        EXPECT_LT(took.count(), 1);
-        EXPECT_LE(path.counts.iterations, 3 * 301);
+        EXPECT_LE(path.counts.iterations, 2 * 301);
         const double travel =
             position(path.points.back(), {model.wheel->body, model.wheel->centre_local})[2] + 0.026;
         EXPECT_GT(travel * branch.to, 0);

@@ -206,8 +206,9 @@ inline Scene with_length_unit(Scene s, double c) {
 
 // ---- Built in code
 
-// An axle corner with nothing simple about it: every kind of joint, bushings with full 6×6 rates and preload,
-// a preloaded spring, weight, a load of force and moment together, bodies whose axes are not those of ground.
+// An axle corner with nothing simple about it: eight kinds of joints, bushings with full 6×6 rates and
+// preload, preloaded springs, a static load, a load of force and moment together, body axes that are not
+// those of ground.
 inline Scene rich_scene() {
     std::mt19937 random(7);
     Scene s;

@@ -1,0 +1,27 @@
+// A name that refers to something defined elsewhere in the scene.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "models/scene_cursor.hpp"
+#include "models/scene_words.hpp"
+
+namespace elastocheck::reader {
+
+// What `at` names in the table; an error names the nearest entry. `kind` says what the table holds,
+// "hardpoint".
+template <class T>
+const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
+    const std::string& name = at.text("the name of a " + kind);
+    if (const auto found = table.find(name); found != table.end()) return found->second;
+    std::vector<std::string> names;
+    names.reserve(table.size());
+    for (const auto& entry : table) names.push_back(entry.first);
+    at.fail(fmt::format("no {} is called {}{}", kind, quote(name), did_you_mean(name, names, "defined")));
+}
+
+}  // namespace elastocheck::reader

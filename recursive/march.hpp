@@ -1,0 +1,167 @@
+// What all methods march with: the state, the system, and the pieces of a step.
+#pragma once
+
+#include "models/equilibrium_path.hpp"
+#include "recursive/assembly.hpp"
+#include "recursive/diagnosis.hpp"
+#include "recursive/method.hpp"
+#include "recursive/reactions.hpp"
+
+namespace elastocheck::recursive {
+
+// Everything a step touches, allocated once.
+template <class Real>
+struct March {
+    const Model& model;
+    const Branch& branch;
+    const Method& method;
+    double length;            // L of the diagnosis [m]
+    Counts counts;
+
+    State<Real> q;            // qⁿ
+    State<Real> before;       // qⁿ⁻¹
+    Vector<Real> lambda;      // λⁿ⁻¹, total
+    Real a = 0;               // load factor of qⁿ
+    SaddlePoint<Real> system;
+
+    Vector<Real> applied;     // f_ext as far as the method lets it follow, at (qⁿ, aⁿ⁺¹)
+    Vector<Real> stored;      // f_elast as far as the method lets it follow, at qⁿ
+    std::vector<ElementForce<Real>> element;  // of each elastic element, where stored forces are kept by element
+
+    Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
+    int swings = 0;           // steps in a row that reversed the one before and were larger
+
+    March(const Model& model_, const Branch& branch_, const Method& method_, const Diagnosis& diagnosis)
+        : model(model_), branch(branch_), method(method_), length(diagnosis.length), q(design_state<Real>(model)), before(q) {
+        const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
+        system.M.setZero(n + m, n + m);
+        system.weight.setOnes(n + m);
+        for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
+        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
+        for (auto* v : {&lambda, &lower, &Phi}) v->setZero(m);
+        x.setZero(n + m);
+        assemble<Real>(model, q, system.M, Phi);
+        prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space);
+    }
+    int n() const { return system.n; }
+    int m() const { return system.m; }
+};
+
+// The part of the external force that works on the idle modes now held, as a share of the whole.
+template <class Real>
+Real load_on_idle_modes(const March<Real>& s) {
+    const int n = s.n();
+    const Real whole = s.applied.cwiseQuotient(s.system.weight.head(n)).norm();
+    Real worst = 0;
+    for (int c = 0; c < s.system.idle; ++c)
+        if (whole > 0) worst = std::max(worst, std::abs(s.system.held.col(c).head(n).dot(s.applied)) / whole);
+    return worst;
+}
+
+// How far the held motions are from idle, and the held combinations from redundant, at q: 0 for exactly so, up to 1.
+//   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
+//   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
+template <class Real>
+Real strain_of_held(const March<Real>& s, const State<Real>& q) {
+    const auto& system = s.system;
+    Real worst = 0;
+    for (int c = 0; c < system.idle; ++c) {
+        Real energy = 0, single = 0;
+        for (const auto& elastic : s.model.elastics) {
+            const auto e = std::visit([&](const auto& kind) { return element_stiffness<Real>(kind, q); }, elastic.kind);
+            const Real k_T = e.K.template topLeftCorner<3, 3>().trace(), k_R = e.K.template bottomRightCorner<3, 3>().trace();
+            Vector6<Real> de = Vector6<Real>::Zero();
+            const auto end = [&](BodyId b, const Vector3<Real>& lever, Real sign) {
+                if (b == ground) return;
+                const Vector6<Real> z = system.held.col(c).template segment<6>(6 * b);
+                const Vector3<Real> v = z.template head<3>(), w = z.template tail<3>();
+                de.template head<3>() += sign * (v - lever.cross(w));
+                de.template tail<3>() += sign * w;
+                single += k_T * (v.squaredNorm() + static_cast<Real>(s.length * s.length) * w.squaredNorm()) + k_R * w.squaredNorm();
+            };
+            end(e.i, e.s_i, -1);
+            end(e.j, e.s_j, +1);
+            energy += de.dot(e.K * de);
+        }
+        if (single > 0) worst = std::max(worst, std::sqrt(std::max(energy, Real(0)) / single));
+    }
+    for (int c = system.idle; c < system.borders(); ++c) {
+        const auto y = system.held.col(c).tail(system.m);
+        const auto Phi_q = system.M.bottomLeftCorner(system.m, system.n);
+        const Real left = (Phi_q.transpose() * y).norm(), whole = y.cwiseAbs().dot(Phi_q.rowwise().norm());
+        if (whole > 0) worst = std::max(worst, left / whole);
+    }
+    return worst;
+}
+
+// Stored forces that do not follow are turned with one step's delay: where their stiffness k_g exceeds the elements' k a
+// step answers Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., reverses the last one and outgrows it, and more steps only give it more room.
+// The linearisation itself, eq. (6), means nothing for a rotation of a radian in one step.
+template <class Real>
+bool has_diverged(March<Real>& s) {
+    const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
+    const bool swung = (weighted * s.last.array()).sum() < 0 && weighted.matrix().squaredNorm() > s.last.squaredNorm();
+    s.swings = swung ? s.swings + 1 : 0;
+    s.last = weighted;
+    Real turn = 0;
+    for (int b = 0; b < s.n() / 6; ++b) turn = std::max(turn, s.dq.template segment<3>(6 * b + 3).norm());
+    return s.swings >= 2 || !(turn <= 1);
+}
+
+// Assembles and factorises the method's matrix at (q, λ) with the load factor a, and judges it.
+template <class Real>
+Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda, Real a) {
+    if (s.method.consistent) assemble_consistent<Real>(s.model, s.branch, a, q, lambda, s.system.M, s.Phi);
+    else assemble<Real>(s.model, q, s.system.M, s.Phi);
+    const Real pivot_ratio = factorise(s.system);
+    ++s.counts.factorisations;
+    if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
+    if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
+    // What is idle or redundant where the constraints are met blurs with the constraint error (and with rounding): strain and
+    // a load's share on it grow in proportion. More than that is real, and holding it would be a quiet wrong number.
+    const Real rounding = 1e7 * std::numeric_limits<Real>::epsilon();
+    const Real blur = s.Phi.norm() / static_cast<Real>(std::min(1.0, s.length));
+    if (!(strain_of_held(s, q) <= rounding + Real(1e-3) + 100 * blur)) return Outcome::singular;
+    if (!(load_on_idle_modes(s) <= rounding + 10 * blur)) return Outcome::loaded_idle_mode;
+    return Outcome::converged;
+}
+
+// G = f_elast + Φ_qᵀ λ - f_ext at (q, λ, a), and Φ: the right-hand side (-G, -Φ) of a correction.
+template <class Real>
+void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda, Real a) {
+    external_force<Real>(s.model, s.branch, a, q, s.upper);
+    elastic_force<Real>(s.model, q, s.force);
+    s.upper -= s.force;
+    constraint_force<Real>(s.model, q, lambda, s.force, s.lower);
+    s.upper -= s.force;
+    s.lower = -s.lower;
+    ++s.counts.evaluations;
+}
+
+template <class Real>
+void back_substitute(March<Real>& s) {
+    back_substitute(s.system, s.upper, s.lower, s.x);
+    ++s.counts.iterations;
+}
+
+template <class Real>
+void record(March<Real>& s, const State<Real>& q, const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load,
+            Equilibrium& point) {
+    point.load = load;
+    for (std::size_t b = 0; b < point.poses.size(); ++b) {
+        point.poses[b].r = q[static_cast<BodyId>(b)].r.template cast<double>();
+        point.poses[b].p = q[static_cast<BodyId>(b)].p.template cast<double>();
+    }
+    joint_wrenches<Real>(s.model, where_lambda_acts, lambda, point.reactions);
+    Real sum = 0;
+    for_each_row<Real>(s.model, q, [&](int, const Row<Real>& row) { sum += row.Phi * row.Phi; });
+    point.constraint_error = static_cast<double>(std::sqrt(sum));  // (31)
+}
+
+// Recorded points to be, so that the stepping allocates nothing.
+inline void make_room(const Model& model, int points, EquilibriumPath& path) {
+    const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()), std::vector<Wrench>(model.joints.size()), 0};
+    path.points.assign(static_cast<std::size_t>(points), blank);
+}
+
+}  // namespace elastocheck::recursive

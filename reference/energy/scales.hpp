@@ -1,0 +1,25 @@
+// What makes a model's quantities of order one, whatever its unit of length and its rates.
+#pragma once
+
+#include <span>
+
+#include "models/model.hpp"
+
+namespace elastocheck::reference::energy {
+
+// Length: the largest distance between any two attachment points at the design pose (1 m when they coincide).
+// Force: all loads at their largest, and what the elements hold at the design pose (1 N when there are none).
+// Rotations are of order one as they are. An energy is force · length.
+struct Scales {
+    double length = 1;    // L [m]
+    double force = 1;     // F [N]
+    double roundoff = 0;  // what the last bit of a position means, relative to L [-]
+
+    double energy() const { return force * length; }
+    Eigen::VectorXd coordinates(int n) const;        // S [6nb]: x = S ξ, ξ of order one
+    Eigen::VectorXd rows(const Model& model) const;  // D [m]: D Φ of order one
+};
+
+Scales scales_of(const Model& model, const Branch& branch, std::span<const double> loads);
+
+}  // namespace elastocheck::reference::energy
