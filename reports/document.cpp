@@ -92,6 +92,14 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
 
 }  // namespace
 
+json document_head(const Scene& scene, std::string_view input, const Model& model, const recursive::Diagnosis& diagnosis,
+                   const Provenance& provenance) {
+    return {{"schema", result_schema},
+            {"scene", {{"name", scene.name}, {"source", scene.source}, {"input_hash", input_hash(input)}}},
+            {"provenance", provenance_json(provenance)},
+            {"model", model_json(model, diagnosis)}};
+}
+
 json document(const Scene& scene, std::string_view input, const Model& model, const recursive::Diagnosis& diagnosis,
               const compare::Comparison& comparison, const Provenance& provenance) {
     json channels = json::array(), branches = json::array(), reasons = json::array();
@@ -112,13 +120,11 @@ json document(const Scene& scene, std::string_view input, const Model& model, co
                             {"cross_check", pair_json(branch.cross_check, comparison)},
                             {"reference_uncertainty", pair_json(branch.uncertainty, comparison)}});
     }
-    return {{"schema", result_schema},
-            {"scene", {{"name", scene.name}, {"source", scene.source}, {"input_hash", input_hash(input)}}},
-            {"provenance", provenance_json(provenance)},
-            {"model", model_json(model, diagnosis)},
-            {"verdict", {{"conclusive", comparison.conclusive()}, {"numbers_compared", comparison.compared}, {"reasons", reasons}}},
-            {"channels", channels},
-            {"branches", branches}};
+    json result = document_head(scene, input, model, diagnosis, provenance);
+    result["verdict"] = {{"conclusive", comparison.conclusive()}, {"numbers_compared", comparison.compared}, {"reasons", reasons}};
+    result["channels"] = channels;
+    result["branches"] = branches;
+    return result;
 }
 
 }  // namespace elastocheck::reports

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "compare/compare.hpp"
+#include "compare/study.hpp"
 #include "models/compile.hpp"
 #include "models/scene_file.hpp"
 #include "models/scene_words.hpp"
@@ -19,6 +20,7 @@
 #include "reports/document.hpp"
 #include "reports/files.hpp"
 #include "reports/inspection.hpp"
+#include "reports/study_tables.hpp"
 #include "reports/tables.hpp"
 
 namespace {
@@ -83,6 +85,37 @@ int compare_legs(const std::string& file, int steps, const std::string& folder) 
     return comparison.conclusive() ? fine : could_not_judge;
 }
 
+std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
+    std::vector<recursive::Method> methods;
+    for (const auto& method : recursive::methods)
+        if (!method.adaptive && (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
+            methods.push_back(method);
+    return methods;
+}
+
+int converge(const std::string& file, const std::vector<std::string>& names, const std::vector<int>& steps, const std::string& folder) {
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    compare::StudyOptions options;
+    options.methods = methods_named(names);
+    if (!steps.empty()) options.steps = steps;
+    options.progress = progress;
+    const compare::Study study = compare::study(model, options);
+    const auto attribution = compare::attribute_gap(model, progress);
+    progress("");
+    fmt::print("{}", reports::study_tables(model, study, attribution));
+    if (!folder.empty()) {
+        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model), reports::provenance());
+        result["convergence"] = reports::study_json(study, attribution);
+        const std::filesystem::path base(folder);
+        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        reports::write_whole(base / "convergence.csv", reports::study_csv(study));
+        reports::write_whole(base / "attribution.csv", reports::attribution_csv(study, attribution));
+        fmt::print("Written: {0}/result.json, {0}/convergence.csv, {0}/attribution.csv\n", folder);
+    }
+    return study.conclusive() ? fine : could_not_judge;
+}
+
 // Says what CLI11 says, and after a word it does not know, the nearest one it does.
 int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
     std::string message = error.what();
@@ -130,7 +163,8 @@ int main(int argc, char** argv) {
     auto* inspect_command = app.add_subcommand("inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
     auto* solve_command = app.add_subcommand("solve", "Solve a scene one way and print the curves as CSV");
     auto* compare_command = app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
-    for (auto* command : {inspect_command, solve_command, compare_command})
+    auto* converge_command = app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
+    for (auto* command : {inspect_command, solve_command, compare_command, converge_command})
         command->add_option("SCENE", scene, "scene file (YAML)")->required();
     for (auto* command : {solve_command, compare_command})
         command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")->check(CLI::Range(1, 10'000'000));
@@ -139,6 +173,17 @@ int main(int argc, char** argv) {
     solve_command->add_option("-o,--output", output, "write the CSV to this file instead");
     compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv");
 
+    std::vector<std::string> rungs{"published"}, known_rungs{"all"};
+    for (const auto& rung : recursive::methods)
+        if (!rung.adaptive) known_rungs.emplace_back(rung.name);
+    std::vector<int> levels;
+    converge_command->add_option("--method", rungs, "published (default), closed, balanced, tangent, chord, midpoint, or all")
+        ->delimiter(',')
+        ->check(CLI::IsMember(known_rungs).description(""));
+    converge_command->add_option("--steps", levels, "step counts per branch, at least five, increasing (default: 75,150,...,2400)")
+        ->delimiter(',');
+    converge_command->add_option("-o,--output", output, "folder for result.json, convergence.csv and attribution.csv");
+
     try {
         app.parse(argc, argv);
         if (*inspect_command) return inspect(scene);
@@ -146,12 +191,16 @@ int main(int argc, char** argv) {
             const auto leg = static_cast<compare::Leg>(std::ranges::find(methods, method) - methods.begin());
             return solve(scene, leg, steps, output);
         }
-        return compare_legs(scene, steps, output);
+        if (*compare_command) return compare_legs(scene, steps, output);
+        return converge(scene, rungs, levels, output);
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
         return explain(app, error, argc, argv);
     } catch (const SceneError& error) {
+        fmt::print(stderr, "elastocheck: {}\n", error.what());
+        return bad_input;
+    } catch (const std::invalid_argument& error) {
         fmt::print(stderr, "elastocheck: {}\n", error.what());
         return bad_input;
     } catch (const reports::FileError& error) {

@@ -107,6 +107,23 @@ TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
     EXPECT_TRUE(contains(said.err, "recursive: diverged: branch 'up': at load factor")) << said.err;
 }
 
+TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
+    const Folder folder;
+    const Said said = elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
+                                       (folder.path / "out").string());
+    EXPECT_EQ(said.code, 0) << said.err;
+    for (const char* part : {"method 'published' at equal load", "method 'tangent' at equal travel", "|Φ|, eq. (31)",
+                             "whole = lever + axis + load + rest", "conclusive"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
+    EXPECT_EQ(result["convergence"]["branches"][0]["methods"].size(), 2u);
+    EXPECT_EQ(result["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"), "lift,published,at equal load,nose_z,mm,320,"));
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
+    EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20").code, 2);
+    EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method tangnt").code, 2);
+}
+
 TEST(Command, BadInputExitsWith2AndWritesNothing) {
     const Folder folder;
     const auto bad = folder.write("bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");

@@ -1,0 +1,91 @@
+// Where the error of a stepping method comes from: its steps, its formulation, or the reference.
+//
+//   value(N) - truth = [value(N) - own limit]  +  [own limit - reference]  +  [reference - truth]
+//                       step error                formulation gap             reference uncertainty
+//
+// The own limit is Richardson's, per channel (convergence.hpp). Read at equal load and at equal travel. |Φ| of eq. (31)
+// stands beside them: it falls with the steps whatever the method converges to.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/channels.hpp"
+#include "compare/convergence.hpp"
+#include "models/equilibrium_path.hpp"
+#include "models/model.hpp"
+#include "recursive/method.hpp"
+
+namespace elastocheck::compare {
+
+struct StudyOptions {
+    std::vector<recursive::Method> methods{recursive::Method{}};    // fixed-step ones
+    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};          // per branch, increasing, at least five
+    std::function<void(std::string_view)> progress = {};
+};
+
+// One channel of one method over one branch, in the channel's unit.
+struct ChannelStudy {
+    StepConvergence end;                 // at the end of the branch
+    std::vector<double> step_error_end;  // per level: value - own limit, signed
+    std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
+    double gap = 0;                      // own limit - reference at the end, signed
+    double gap_max = 0, gap_rms = 0;     // over the branch
+    double gap_exponent = 0;             // of |gap| over the load (equal load) or travel; NaN where it is at its floor
+    double uncertainty = 0;              // largest difference of the references over the branch
+    double range = 0;                    // of the reference over the branch
+};
+
+struct MethodStudy {
+    std::string method;
+    std::vector<Outcome> outcomes;           // per level
+    std::vector<double> constraint_error;    // |Φ| at the end, eq. (31), per level
+    OrderFit constraint_order;               // at which it falls
+    std::vector<ChannelStudy> equal_load;    // one per main channel; empty when a level did not converge
+    std::vector<ChannelStudy> equal_travel;  // the same; empty where travel cannot be read
+    std::string not_studied;                 // why there is nothing, empty when there is
+};
+
+struct BranchStudy {
+    std::string branch;
+    std::vector<MethodStudy> methods;
+};
+
+struct Study {
+    std::vector<int> steps;
+    std::vector<Channel> channels;  // the main ones
+    std::vector<BranchStudy> branches;
+    std::vector<std::string> inconclusive;  // references that failed or disagree
+
+    bool conclusive() const;  // and something was studied
+};
+
+// Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
+Study study(const Model& model, const StudyOptions& options = {});
+
+// ---- What the formulation gap is made of.
+//
+// The published recursion never turns what is stored. Three things can be made to follow the bodies (recursive/method.hpp): the
+// lever of the stored elastic force, its axis and law, and the lever of the load. Every combination has a limit of its own;
+// with all three it is equilibrium. A term's contribution is its mean effect over all orders of adding it (Shapley), so the
+// three add up to the whole gap exactly.
+
+struct GapShare {
+    double whole = 0;                         // gap of the recursion in which nothing follows, signed
+    double lever = 0, axis = 0, load = 0;     // contributions; whole = lever + axis + load + rest
+    double rest = 0;                          // what is left with all three: 0 within `band`
+    double band = 0;                          // uncertainty of the limits and the reference
+    std::vector<double> combinations;         // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
+};
+
+struct BranchAttribution {
+    std::string branch;
+    std::vector<GapShare> equal_load, equal_travel;  // per main channel; empty where it cannot be read
+    std::string not_attributed;
+};
+
+std::vector<BranchAttribution> attribute_gap(const Model& model, const std::function<void(std::string_view)>& progress = {});
+
+}  // namespace elastocheck::compare

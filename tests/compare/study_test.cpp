@@ -1,0 +1,153 @@
+// Step error, formulation gap and reference uncertainty are three things, and the gap has named parts.
+#include "compare/study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/compile.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+StudyOptions options(std::vector<std::string_view> names = {"published"}) {
+    StudyOptions o;
+    o.methods.clear();
+    for (const auto name : names) o.methods.push_back(*recursive::find_method(name));
+    o.steps = {50, 100, 200, 400, 800};
+    return o;
+}
+
+template <class F>
+double root(F&& f, double low, double high) {
+    for (int k = 0; k < 200; ++k) {
+        const double middle = (low + high) / 2;
+        (f(middle) < 0 ? low : high) = middle;
+    }
+    return low;
+}
+
+TEST(Study, SeparatesStepErrorFromFormulationGap) {
+    // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both by hand.
+    const Study s = study(compile(support::scene("pinned_bar")), options());
+    const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5), truth = std::atan(0.5);
+    const auto& z = s.branches[0].methods[0].equal_load[2];
+    EXPECT_EQ(s.channels[2].name, "tip_z");
+    EXPECT_EQ(z.end.behaviour, Behaviour::converging);
+    EXPECT_NEAR(z.end.order, 1, 0.05);
+    const double gap = 500 * (std::sin(own) - std::sin(truth));
+    EXPECT_NEAR(z.gap, gap, z.end.band);
+    EXPECT_NEAR(z.gap, gap, 1e-3 * std::abs(gap));
+    EXPECT_NEAR(z.step_error_end[0] / z.step_error_end[1], 2, 0.1);
+    // At equal travel a bar has nothing left to be wrong about.
+    EXPECT_LE(std::abs(s.branches[0].methods[0].equal_travel[0].gap), 1e-6);
+}
+
+TEST(Study, APublishedRecursionWithoutStoredLeversHasNoGap) {
+    const Study s = study(compile(support::scene("pendulum")), options());
+    for (const auto& branch : s.branches)
+        for (const auto& channel : branch.methods[0].equal_load) EXPECT_LE(std::abs(channel.gap), channel.end.band + 1e-9);
+}
+
+TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
+    const Study s = study(compile(support::scene("bushing_pair")), options({"published", "balanced", "tangent", "chord", "midpoint"}));
+    const double orders[] = {1, 1, 2, 3, 3};
+    for (std::size_t m = 0; m < 5; ++m) {
+        const auto& nose = s.branches[0].methods[m].equal_load[2];
+        if (nose.end.behaviour == Behaviour::converging) {
+            EXPECT_NEAR(nose.end.order, orders[m], 0.15) << s.branches[0].methods[m].method;
+        } else {
+            EXPECT_EQ(nose.end.behaviour, Behaviour::round_off_floor) << s.branches[0].methods[m].method;
+        }
+        if (m > 0) {
+            EXPECT_LE(std::abs(nose.gap), nose.end.band + 1e-9) << s.branches[0].methods[m].method;
+        }
+    }
+    EXPECT_GT(std::abs(s.branches[0].methods[0].equal_load[2].gap), 0.05);
+}
+
+TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
+    const Study s = study(compile(support::scene("mcpherson")), options());
+    for (const auto& branch : s.branches) {
+        const auto& m = branch.methods[0];
+        EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
+        EXPECT_LT(m.constraint_error.back(), 1e-4);           // [m]: falling with the steps
+        EXPECT_GT(std::abs(m.equal_load[2].gap), 1.0);        // [mm]: not falling
+        EXPECT_LE(m.equal_load[2].uncertainty, 1e-6);
+        EXPECT_GT(m.equal_load[2].gap_exponent, 1.2);
+    }
+}
+
+TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
+    for (const char* name : {"mcpherson", "bushing_pair", "pinned_bar", "two_spring_arch"}) {
+        for (const auto& branch : attribute_gap(compile(support::scene(name)))) {
+            ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
+            for (const auto* reading : {&branch.equal_load, &branch.equal_travel})
+                for (const auto& share : *reading) {
+                    EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10) << name;
+                    EXPECT_LE(std::abs(share.rest), share.band) << name;
+                }
+        }
+    }
+}
+
+TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
+    // On the strut the load acts at the body's origin; on the bar it has a lever.
+    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_load) EXPECT_LE(std::abs(share.load), 1e-9);
+    EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_load[2].load), 1.0);
+}
+
+TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
+    Scene scene = support::scene("pendulum");
+    for (auto& branch : scene.branches) branch.to *= 2;
+    const Study s = study(compile(scene), options());
+    for (const auto& branch : s.branches) {
+        EXPECT_NE(branch.methods[0].not_studied.find("diverged"), std::string::npos) << branch.methods[0].not_studied;
+        EXPECT_TRUE(branch.methods[0].equal_load.empty());
+    }
+    EXPECT_FALSE(s.conclusive());
+}
+
+TEST(Study, WithoutReferencesNothingIsConcluded) {
+    Scene scene = support::scene("two_spring_arch");
+    scene.branches[0].to = -300;
+    const Study s = study(compile(scene), options());
+    EXPECT_FALSE(s.conclusive());
+    ASSERT_FALSE(s.inconclusive.empty());
+    EXPECT_FALSE(Study{}.conclusive());
+    scene.branches[0].to = nan;
+    EXPECT_FALSE(study(compile(scene), options()).conclusive());
+}
+
+TEST(Study, FewerThanFiveLevelsOrUnorderedOnesAreRefused) {
+    const Model model = compile(support::scene("single_bushing"));
+    for (const std::vector<int>& steps : {std::vector<int>{10, 20, 40, 80}, {10, 20, 40, 80, 80}, {0, 1, 2, 3, 4}, {5, 4, 3, 2, 1}}) {
+        StudyOptions o = options();
+        o.steps = steps;
+        EXPECT_THROW((void)study(model, o), std::invalid_argument);
+    }
+}
+
+TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
+    const Model model = compile(support::scene("bushing_pair"));
+    StudyOptions other = options();
+    other.steps = {37, 61, 100, 173, 300, 555};
+    const auto a = study(model, options()).branches[0].methods[0].equal_load[2], b = study(model, other).branches[0].methods[0].equal_load[2];
+    EXPECT_NEAR(a.end.limit, b.end.limit, a.end.band + b.end.band);
+    EXPECT_NEAR(a.gap, b.gap, 1e-4 * std::abs(a.gap));
+}
+
+TEST(Study, IsTheSameFromRunToRun) {
+    const Model model = compile(support::scene("mcpherson"));
+    const auto a = study(model, options()), b = study(model, options());
+    for (std::size_t c = 0; c < a.channels.size(); ++c) {
+        EXPECT_EQ(a.branches[0].methods[0].equal_load[c].gap, b.branches[0].methods[0].equal_load[c].gap);
+        EXPECT_EQ(a.branches[0].methods[0].equal_travel[c].end.limit, b.branches[0].methods[0].equal_travel[c].end.limit);
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
