@@ -16,12 +16,15 @@ std::string share(double value, double range) {
     if (!(range > 1e-9)) return "-";
     if (value < 1e-9) return "0";
     const double percent = 100 * value / range;
-    return percent < 0.001 ? "<0.001 %" : fmt::format("{:.2g} %", percent);
+    if (percent < 0.001) return "<0.001 %";
+    return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
 // A deviation with its sign; below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's.
 std::string signed_value(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3g}", value); }
-std::string value_or_zero(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:.2g}", value); }
+std::string value_or_zero(double value) {
+    return std::abs(value) < 1e-9 ? "0" : value < 10 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
 
 // The channels worth a line: every main one, and of each joint the force and the moment component that deviates most.
 std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Reading& reading) {
@@ -47,8 +50,8 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
     const auto& load = branch.deviation.equal_load;
     const auto& travel = branch.deviation.equal_travel;
     const auto& doubt = branch.uncertainty.equal_load;
-    if (load.channels.empty()) {
-        fmt::format_to(out, "  nothing compared: {}\n", load.not_compared);
+    if (load.channels.empty() || doubt.channels.empty()) {
+        fmt::format_to(out, "  nothing compared: {}\n", load.channels.empty() ? load.not_compared : doubt.not_compared);
         return;
     }
     fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal load",

@@ -87,6 +87,20 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
     EXPECT_FALSE(result["verdict"]["reasons"].empty());
 }
 
+TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
+    // The mount's sideways preload turning with the strut: in equilibrium, but no minimum of the energy.
+    const Folder folder;
+    std::string scene = text_of(scenes + "/mcpherson_preload.yaml");
+    scene.replace(scene.find("bodies: [ground, strut], at: strut_top"), 38, "bodies: [strut, ground], at: strut_top");
+    const auto preload = scene.find("preload: [", scene.find("K2_strut_mount"));
+    scene.replace(preload, scene.find(']', preload) + 1 - preload, "preload: [-76.9309197398, 813.830593499, -3796.67069248]");
+    const Said said = elastocheck_says("compare " + folder.write("unstable.yaml", scene));
+    EXPECT_EQ(said.code, 3);
+    EXPECT_TRUE(contains(said.out, "energy leg: branch lost: branch 'jounce', load factor 0: the equilibrium stops being a minimum"))
+        << said.out;
+    EXPECT_TRUE(contains(said.out, "nothing compared: a curve is empty")) << said.out;
+}
+
 TEST(Command, SolvePrintsOneLegAsCsv) {
     for (const char* method : {"recursive", "equilibrium", "energy"}) {
         const Said said = elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4 --method " + method);

@@ -56,6 +56,27 @@ TEST(Outcomes, SolvesUpToTheLimitPoint) {
     }
 }
 
+// The same when it is not a load but a preload that pushes: a long soft spring pulls the apex down by 150 or
+// by 300 N before the branch starts.
+TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
+    for (const double pull : {150.0, 300.0}) {
+        Scene scene = arch(0.08);
+        scene.elastics.push_back(
+            {"pull", AxialSpring{{0, Vector3d::Zero()}, {ground, {0, 0, -5}}, 100, 5.08 - pull / 100}});
+        const double loads[] = {0};
+        const auto path = solve(scene, 0, loads);
+        if (pull > limit_load(0.08)) {
+            EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+            EXPECT_TRUE(path.points.empty());
+        } else {
+            ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+            const double z = path.points[0].poses[0].r.z();
+            EXPECT_NEAR(2e5 * (1 - std::hypot(0.3, 0.08) / std::hypot(0.3, z)) * z, -pull + 100 * (0.08 - z),
+                        1e-8);
+        }
+    }
+}
+
 // A column of one spring and a sideways one: straight up to P = k L, where standing straight stops being a
 // minimum.
 TEST(Outcomes, BucklingIsNotPassedOver) {

@@ -1,0 +1,374 @@
+#include "compare/trade.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "compare/timing.hpp"
+#include "recursive/solve.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double angle_per_length = 1.745;  // of the adaptive method's tolerances [rad/m]: 0.001 deg beside 0.01 mm
+
+bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
+double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }  // NaN is larger than anything
+Accuracy worse(const Accuracy& a, const Accuracy& b) { return {worse(a.mm, b.mm), worse(a.deg, b.deg)}; }
+Accuracy plus(const Accuracy& a, const Accuracy& b) { return {a.mm + b.mm, a.deg + b.deg}; }
+
+// ---- one configuration
+
+std::vector<double> loads_of(const Branch& branch, int points) {
+    std::vector<double> loads;
+    for (int k = 0; k <= points; ++k) loads.push_back(branch.to * k / points);
+    return loads;
+}
+
+EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint& with, int points) {
+    switch (with.leg) {
+        case Leg::recursive:
+            return recursive::solve(model, branch,
+                                    {.method = *recursive::find_method(with.method),
+                                     .steps = with.steps > 0 ? with.steps : points,
+                                     .record = points,
+                                     .length_tolerance = with.own_tolerance,
+                                     .angle_tolerance = angle_per_length * with.own_tolerance});
+        case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
+        case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
+    }
+    return {};
+}
+
+// The distance of b from a, both along `branch`; `stride` points of a are one of b. NaN unless both are complete.
+Accuracy distance(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& a, const EquilibriumPath& b,
+                  std::size_t stride = 1, int* compared = nullptr) {
+    if (a.outcome != Outcome::converged || b.outcome != Outcome::converged || b.points.empty() ||
+        a.points.size() != (b.points.size() - 1) * stride + 1)
+        return {nan, nan};
+    Accuracy worst;
+    for (std::size_t k = 0; k < b.points.size(); ++k) {
+        const Equilibrium &p = a.points[k * stride], &q = b.points[k];
+        // The same load factor as two divisions write it.
+        if (!(std::abs(p.load - q.load) <= 1e-14 * std::abs(b.points.back().load))) return {nan, nan};
+        const auto u = evaluate(model, p), v = evaluate(model, q);
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            if (!channels[c].main) continue;
+            double& side = channels[c].unit == Unit::deg ? worst.deg : worst.mm;
+            side = worse(side, std::abs(v[c] - u[c]));
+            if (compared != nullptr) ++*compared;
+        }
+    }
+    return worst;
+}
+
+// Two references may agree to the last bit by luck; values of this size know no more than a few units of it.
+Accuracy rounding_of(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& path) {
+    Accuracy largest;
+    for (const auto& point : path.points) {
+        const auto values = evaluate(model, point);
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            if (!channels[c].main) continue;
+            double& side = channels[c].unit == Unit::deg ? largest.deg : largest.mm;
+            side = worse(side, 4 * std::numeric_limits<double>::epsilon() * std::abs(values[c]));
+        }
+    }
+    return largest;
+}
+
+std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
+    std::vector<TradePoint> all;
+    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
+    const double unknowns = coordinates(model) + constraint_rows(model);
+    const double per_step = std::pow(unknowns, 3) * static_cast<double>(model.branches.size());
+    for (const auto& method : recursive::methods) {
+        const std::string label(method.name);
+        if (method.adaptive) {
+            for (int digits = 3; digits <= 9; ++digits)
+                all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
+            continue;
+        }
+        const auto affordable = [&](int steps) { return steps <= options.most_steps && steps * per_step <= options.work_budget; };
+        for (int steps = options.points; steps == options.points || affordable(steps); steps *= 2)
+            all.push_back({.method = label, .steps = steps});
+    }
+    all.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
+    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
+    return all;
+}
+
+// ---- ranking
+
+void rank(Trade& trade) {
+    const double least = share_of(trade.tolerance, trade.uncertainty);
+    for (auto& point : trade.points) {
+        point.share = share_of(trade.tolerance, point.error);
+        if (point.again) point.not_ranked = "the same leg again: noise of the time";
+        else if (point.outcome != Outcome::converged) point.not_ranked = name(point.outcome);
+        else if (!std::isfinite(point.share)) point.not_ranked = "no number";
+        else if (!(point.share > least)) point.not_ranked = "below the reference uncertainty";
+        point.ranked = point.not_ranked.empty();
+    }
+    const auto price = [](const TradePoint& point, std::size_t kind) {
+        return kind == 0   ? static_cast<double>(point.work.solves)
+               : kind == 1 ? static_cast<double>(point.work.factorisations + point.work.evaluations)
+                           : point.ratio;
+    };
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        std::vector<WorkError> flat;
+        for (const auto& point : trade.points) flat.push_back({price(point, kind), point.ranked ? point.share : nan});
+        const auto front = pareto_front(flat);
+        for (std::size_t k = 0; k < front.size(); ++k) trade.points[k].on_front[kind] = front[k];
+    }
+}
+
+// ---- recommendation
+
+bool good_enough(const Trade& trade, const Accuracy& error) {
+    return within(share_of(trade.tolerance, plus(error, trade.uncertainty)), 1);
+}
+
+bool same_ladder(const TradePoint& a, const TradePoint& b) { return a.leg == b.leg && a.method == b.method && a.again == b.again; }
+
+// Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at steps too few to
+// show that the method is unstable, is good by luck.
+bool eligible(const Trade& trade, std::size_t k) {
+    if (trade.points[k].again) return false;
+    for (std::size_t finer = k; finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]); ++finer) {
+        const TradePoint& point = trade.points[finer];
+        if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
+    }
+    return std::isfinite(trade.points[k].ratio);
+}
+
+// The cheapest by time; within the noise the one with fewer factorisations, then fewer solves.
+std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::size_t>& candidates) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto k : candidates) least = std::min(least, trade.points[k].ratio);
+    std::optional<std::size_t> best;
+    for (const auto k : candidates) {
+        if (!(trade.points[k].ratio <= least * (1 + trade.noise))) continue;
+        const auto key = [&](std::size_t i) {
+            const Work& work = trade.points[i].work;
+            return std::tuple{work.factorisations, work.solves, work.evaluations};
+        };
+        if (!best || key(k) < key(*best)) best = k;
+    }
+    return best;
+}
+
+// Between the rungs h/2 and 2h a law C·h^p puts the geometric mean at the middle one; at an end of the ladder the two next
+// rungs say where it ought to be. By this factor the law misses, and by as much the error may be elsewhere.
+double misfit(double error, double neighbour, double other, bool between) {
+    const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
+    return std::max(error / expected, expected / error);
+}
+
+void band(const Trade& trade, Recommendation& found) {
+    const auto k = static_cast<std::ptrdiff_t>(found.point);
+    const Accuracy &e = trade.points[found.point].error, &u = trade.uncertainty;
+    found.expected = e;
+    const auto usable = [&](std::ptrdiff_t i) {
+        return i >= 0 && i < static_cast<std::ptrdiff_t>(trade.points.size()) &&
+               same_ladder(trade.points[found.point], trade.points[static_cast<std::size_t>(i)]) &&
+               trade.points[static_cast<std::size_t>(i)].ranked;
+    };
+    std::ptrdiff_t a = k, b = k;
+    if (!trade.points[found.point].ranked) found.band_from = "below the reference uncertainty: only that is known";
+    else if (usable(k - 1) && usable(k + 1)) a = k - 1, b = k + 1, found.band_from = "from the rungs on either side";
+    else if (usable(k + 1) && usable(k + 2)) a = k + 1, b = k + 2, found.band_from = "from the two finer rungs";
+    else if (usable(k - 1) && usable(k - 2)) a = k - 1, b = k - 2, found.band_from = "from the two coarser rungs";
+    else found.band_from = "no two neighbouring rungs above the reference uncertainty: only that is known";
+    const auto one = [&](double Accuracy::*unit) {
+        double factor = 1;
+        if (a != b)
+            factor = misfit(e.*unit, trade.points[static_cast<std::size_t>(a)].error.*unit,
+                            trade.points[static_cast<std::size_t>(b)].error.*unit, a == k - 1 && b == k + 1);
+        if (!std::isfinite(factor)) factor = 1;
+        found.low.*unit = std::max(0.0, e.*unit / factor - u.*unit);
+        found.high.*unit = e.*unit * factor + u.*unit;
+    };
+    one(&Accuracy::mm);
+    one(&Accuracy::deg);
+}
+
+// Run again, at output points it was not chosen by: finer ones, and those of a branch that ends half a step earlier, against a
+// reference that gets there by thirds of its steps.
+Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const TradePoint& point, int points, int& compared) {
+    int finer = 7 * points;
+    if (point.steps > 0) {
+        finer = points;
+        while (2 * finer <= std::min(point.steps, 100)) finer *= 2;
+    }
+    const TradePoint reference{.leg = point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
+    Accuracy worst;
+    for (const auto& branch : model.branches)
+        for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer)}) {
+            Branch shorter = branch;
+            shorter.to *= end;
+            worst = worse(worst, distance(model, channels, solve(model, shorter, reference, 3 * finer),
+                                          solve(model, shorter, point, finer), 3, &compared));
+        }
+    return worst;
+}
+
+void recommend(const Model& model, const std::vector<Channel>& channels, Trade& trade) {
+    std::vector<std::size_t> candidates;
+    for (std::size_t k = 0; k < trade.points.size(); ++k)
+        if (eligible(trade, k)) candidates.push_back(k);
+    while (const auto k = cheapest(trade, candidates)) {
+        Recommendation found;
+        found.point = *k;
+        found.confirmed = confirm(model, channels, trade.points[*k], trade.points_per_branch, found.confirmed_numbers);
+        if (found.confirmed_numbers > 0 && good_enough(trade, found.confirmed)) {
+            band(trade, found);
+            trade.recommendation = found;
+            return;
+        }
+        trade.rejected.push_back(fmt::format("{}: {:.3g} mm and {:.3g} deg when run again", describe(trade.points[*k]),
+                                             found.confirmed.mm, found.confirmed.deg));
+        std::erase(candidates, *k);
+    }
+}
+
+}  // namespace
+
+Tolerance parse_tolerance(std::string_view text) {
+    const auto refuse = [&](std::string_view why) {
+        throw std::invalid_argument(fmt::format(
+            "tolerance '{}': {}; allowed: a length in mm, an angle in deg or both, each above 0, such as 0.01mm,0.001deg", text, why));
+    };
+    const auto trim = [](std::string_view word) {
+        while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+        while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
+        return word;
+    };
+    Tolerance result;
+    bool mm = false, deg = false;
+    for (std::string_view rest = text;;) {
+        const auto comma = rest.find(',');
+        const std::string_view word = trim(rest.substr(0, comma));
+        if (word.empty()) refuse("a number with its unit is missing");
+        double value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error == std::errc::invalid_argument) refuse(fmt::format("'{}' does not begin with a number", word));
+        if (error != std::errc{} || !std::isfinite(value) || !(value > 0))
+            refuse(fmt::format("'{}' is not a finite number above 0", word));
+        const std::string_view unit = trim(word.substr(static_cast<std::size_t>(end - word.data())));
+        if (unit != "mm" && unit != "deg")
+            refuse(unit.empty() ? fmt::format("'{}' has no unit", word) : fmt::format("'{}' is not a unit of it", unit));
+        bool& given = unit == "mm" ? mm : deg;
+        if (given) refuse(fmt::format("{} is given twice", unit));
+        given = true;
+        (unit == "mm" ? result.mm : result.deg) = value;
+        if (comma == rest.npos) return result;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+double share_of(const Tolerance& tolerance, const Accuracy& error) {
+    // What is not asked for does not count, whatever it is, but for a NaN.
+    const double mm = std::isinf(tolerance.mm) ? 0 * error.mm : error.mm / tolerance.mm;
+    const double deg = std::isinf(tolerance.deg) ? 0 * error.deg : error.deg / tolerance.deg;
+    return worse(mm, deg);
+}
+
+std::string describe(const TradePoint& point) {
+    if (point.leg != Leg::recursive) return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
+    if (point.steps == 0) return fmt::format("{} at {:.0e} m", point.method, point.own_tolerance);
+    return fmt::format("{}, {} steps", point.method, point.steps);
+}
+
+std::vector<bool> pareto_front(std::span<const WorkError> points) {
+    const auto finite = [](const WorkError& p) { return std::isfinite(p.work) && std::isfinite(p.error); };
+    const auto dominates = [](const WorkError& a, const WorkError& b) {
+        return a.work <= b.work && a.error <= b.error && (a.work < b.work || a.error < b.error);
+    };
+    std::vector<bool> front;
+    for (const auto& point : points)
+        front.push_back(finite(point) && std::ranges::none_of(points, [&](const WorkError& other) {
+                            return finite(other) && dominates(other, point);
+                        }));
+    return front;
+}
+
+Trade trade(const Model& model, const TradeOptions& options) {
+    if (options.points < 1 || options.rounds < 1) throw std::invalid_argument("trade: points and rounds must be positive");
+    const auto tell = [&](std::string_view what) {
+        if (options.progress) options.progress(what);
+    };
+    const auto all_channels = channels(model);
+    Trade result;
+    result.points_per_branch = options.points;
+    result.rounds = options.rounds;
+    for (const auto& channel : all_channels) result.angles = result.angles || (channel.main && channel.unit == Unit::deg);
+    result.tolerance = options.tolerance;
+    if (!result.angles) result.tolerance.deg = std::numeric_limits<double>::infinity();
+
+    if (model.branches.empty()) result.inconclusive.push_back("the scene has no branch");
+    if (std::isinf(result.tolerance.mm) && std::isinf(result.tolerance.deg))
+        result.inconclusive.push_back("only an angle is asked for, and the scene has none");
+    if (!result.inconclusive.empty()) return result;
+
+    std::vector<EquilibriumPath> truth;
+    const TradePoint equilibrium{.leg = Leg::equilibrium}, energy{.leg = Leg::energy};
+    for (const auto& branch : model.branches) {
+        tell(fmt::format("{}: the references", branch.name));
+        truth.push_back(solve(model, branch, equilibrium, options.points));
+        const auto other = solve(model, branch, energy, options.points);
+        for (const auto& [leg, path] : {std::pair{Leg::equilibrium, &std::as_const(truth.back())}, std::pair{Leg::energy, &other}})
+            if (path->outcome != Outcome::converged)
+                result.inconclusive.push_back(fmt::format("{}: {} leg: {}: {}", branch.name, name(leg), name(path->outcome), path->detail));
+        result.uncertainty = worse(result.uncertainty, worse(distance(model, all_channels, truth.back(), other),
+                                                             rounding_of(model, all_channels, truth.back())));
+    }
+
+    result.points = configurations(model, options);
+    std::vector<std::function<void()>> jobs;
+    std::vector<std::size_t> timed;
+    for (std::size_t k = 0; k < result.points.size(); ++k) {
+        TradePoint& point = result.points[k];
+        tell(describe(point));
+        for (std::size_t b = 0; b < model.branches.size(); ++b) {
+            const auto path = solve(model, model.branches[b], point, options.points);
+            point.work.solves += path.counts.iterations;
+            point.work.factorisations += path.counts.factorisations;
+            point.work.evaluations += path.counts.evaluations;
+            point.error = worse(point.error, distance(model, all_channels, truth[b], path));
+            if (path.outcome != Outcome::converged && point.outcome == Outcome::converged) {
+                point.outcome = path.outcome;
+                point.detail = path.detail;
+            }
+        }
+        if (point.outcome != Outcome::converged) continue;
+        timed.push_back(k);
+        jobs.emplace_back([&model, &options, point] {
+            for (const auto& branch : model.branches) (void)solve(model, branch, point, options.points);
+        });
+    }
+
+    if (result.points.front().outcome == Outcome::converged) {
+        tell("times");
+        const Times times = take_turns(jobs, options.rounds);
+        for (std::size_t j = 0; j < timed.size(); ++j) {
+            TradePoint& point = result.points[timed[j]];
+            point.work.seconds = median(times[j]);
+            point.ratio = median(ratios(times[j], times.front()));
+        }
+        result.noise = noise_of(ratios(times.back(), times.front()));
+    }
+    rank(result);
+    tell("the recommendation, again");
+    if (result.inconclusive.empty()) recommend(model, all_channels, result);
+    return result;
+}
+
+}  // namespace elastocheck::compare
