@@ -64,8 +64,8 @@ void fill(const PerpendicularDirections& c, const Chart& chart, const Rows& rows
     rows.add_row(c.j.body, Vector3d::Zero(), j.u.cross(i.u));
 }
 
-// Φ = (D·D - ℓ²)/(2ℓ), a length that is regular everywhere:  δΦ = D·(δp_i - δp_j)/ℓ;  Φ - Φ_c = ΔD·(D +
-// D_c)/(2ℓ)
+// Φ = (D·D - ℓ²)/(2ℓ), a length that is regular everywhere:  δΦ = D·(δp_i - δp_j)/ℓ
+// Φ - Φ_c = ΔD·(D + D_c)/(2ℓ)
 void fill(const DistanceBetween& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);

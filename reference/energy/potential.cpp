@@ -17,10 +17,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// One element in its chart. The law is U = ½ eᵀ K e + bᵀ e (a constant is dropped), so with the stress σ_c =
-// K e_c + b
+// One element in its chart. The law is U = ½ eᵀ K e + bᵀ e (a constant is dropped), so that
 //
-//   U - U_c = δᵀ (σ_c + ½ K δ),   ∂U/∂e = σ_c + K δ,   δ = e - e_c.
+//   U - U_c = δᵀ (σ_c + ½ K δ),   ∂U/∂e = σ_c + K δ,   δ = e - e_c,   stress σ_c = K e_c + b.
 template <int N>
 struct Element {
     BodyId i, j;

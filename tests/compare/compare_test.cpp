@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "models/compile.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "recursive/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -42,8 +42,9 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
 }
 
 TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
-    // At 1 N nothing has turned yet, and eq. (24) is the tangent of the true equations.
+    // At 1 N nothing has turned yet, and where nothing is preloaded eq. (24) is the tangent of the true equations.
     for (const auto& name : support::scene_names()) {
+        if (name == "mcpherson_preload") continue;
         Scene scene = support::scene(name);
         // The tangent is off by the order of the rotation: 1 N turns the pendulum by 7e-4 rad and is 0.5 % of what the shallow
         // arch can bear, so for these two it is not small.
@@ -59,6 +60,19 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
             }
             EXPECT_LE(std::sqrt(apart / moved), 1e-4) << name << " " << branch.name;
         }
+    }
+}
+
+TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
+    // What is stored at the design position has a stiffness, which eq. (24) leaves out: the wheel rate is off from the start.
+    Scene scene = support::scene("mcpherson_preload");
+    for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
+    const Model model = compile(scene);
+    for (const auto& branch : model.branches) {
+        const LegRun fast = run(model, branch, Leg::recursive), truth = run(model, branch, Leg::equilibrium);
+        EXPECT_NEAR(fast.curve.travel[1] / truth.curve.travel[1], 1.103, 0.002) << branch.name;
+        const auto consistent = recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 1});
+        EXPECT_NEAR(curve(model, branch, consistent.points).travel[1] / truth.curve.travel[1], 1, 1e-4) << branch.name;
     }
 }
 
