@@ -1,11 +1,13 @@
 // The arithmetic as a part of the price: float, double, long double over the step count.
 //
-// More steps shrink the step error until round-off is all that is left; a method that adds up increments then gets worse
-// again, one that starts each step from the true residual stays where it is. Read at the end of the first branch:
+// More steps shrink the step error until round-off is all that is left; a method that adds up increments then
+// gets worse again, one that starts each step from the true residual stays where it is. Read at the end of
+// the first branch:
 //
-//   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no reference, so nothing but
-//               the arithmetic bounds it; for the published method it is the paper's own error norm
-//   error       from the equilibrium leg, which bounds it at its own uncertainty; for the published method at its gap
+//   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no
+//   reference,
+//               so nothing but the arithmetic bounds it; for the published method it is the paper's own norm
+//   error       from the equilibrium leg, bounded by its uncertainty; for the published method by its gap
 #pragma once
 
 #include <functional>
@@ -29,9 +31,10 @@ struct PrecisionLevel {
 
 // Where more steps stop helping.
 struct Floor {
-    double least = 0;      // smallest value over the steps; NaN of none
-    int useful_steps = 0;  // from here on no step count halves the value; 0 when there is no number
-    bool reached = false;  // there were finer ones
+    double least = 0;  // smallest value over the steps; NaN of none
+    // No finer step count brings the value below a third of that here and keeps it there. 0: no number.
+    int useful_steps = 0;
+    bool reached = false;    // there were finer ones
     bool reference = false;  // the value there lies within the reference uncertainty, which explains it
 };
 
@@ -61,7 +64,8 @@ struct PrecisionStudy {
 // Throws std::invalid_argument for a method that is unknown or chooses its own steps.
 PrecisionStudy precision_study(const Model& model, const PrecisionOptions& options = {});
 
-// Of values over steps, fewest first; those that are not finite are passed over.
+// Of values over steps, fewest first; those that are not finite are passed over, those below the uncertainty
+// are equal.
 Floor floor_of(const std::vector<int>& steps, const std::vector<double>& values, double uncertainty = 0);
 
 }  // namespace elastocheck::compare

@@ -13,7 +13,8 @@ Times take_turns(std::span<const std::function<void()>> jobs, int rounds) {
         for (std::size_t k = 0; k < jobs.size(); ++k) {
             const auto start = std::chrono::steady_clock::now();
             jobs[k]();
-            times[k].push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+            times[k].push_back(
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         }
     return times;
 }
@@ -27,7 +28,8 @@ double median(std::vector<double> values) {
 
 std::vector<double> ratios(const std::vector<double>& times, const std::vector<double>& base) {
     std::vector<double> result;
-    for (std::size_t k = 0; k < std::min(times.size(), base.size()); ++k) result.push_back(times[k] / base[k]);
+    for (std::size_t k = 0; k < std::min(times.size(), base.size()); ++k)
+        result.push_back(times[k] / base[k]);
     return result;
 }
 
@@ -36,7 +38,8 @@ double noise_of(const std::vector<double>& self_ratios) {
     std::vector<double> sorted = self_ratios;
     std::ranges::sort(sorted);
     const std::size_t quarter = sorted.size() / 4;
-    return std::max(std::abs(median(sorted) - 1), (sorted[sorted.size() - 1 - quarter] - sorted[quarter]) / 2);
+    return std::max(std::abs(median(sorted) - 1),
+                    (sorted[sorted.size() - 1 - quarter] - sorted[quarter]) / 2);
 }
 
 }  // namespace elastocheck::compare

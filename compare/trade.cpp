@@ -18,7 +18,8 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double angle_per_length = 1.745;  // of the adaptive method's tolerances [rad/m]: 0.001 deg beside 0.01 mm
+// Of the adaptive method's tolerances [rad/m]: 0.001 deg beside 0.01 mm.
+constexpr double angle_per_length = 1.745;
 
 bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }  // NaN is larger than anything
@@ -42,15 +43,18 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint
                                      .record = points,
                                      .length_tolerance = with.own_tolerance,
                                      .angle_tolerance = angle_per_length * with.own_tolerance});
-        case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
-        case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
+        case Leg::equilibrium:
+            return reference::equilibrium::solve(model, branch, loads_of(branch, points));
+        case Leg::energy:
+            return reference::energy::solve(model, branch, loads_of(branch, points));
     }
     return {};
 }
 
-// The distance of b from a, both along `branch`; `stride` points of a are one of b. NaN unless both are complete.
-Accuracy distance(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& a, const EquilibriumPath& b,
-                  std::size_t stride = 1, int* compared = nullptr) {
+// The distance of b from a, both along `branch`; `stride` points of a are one of b. NaN unless both are
+// complete.
+Accuracy distance(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& a,
+                  const EquilibriumPath& b, std::size_t stride = 1, int* compared = nullptr) {
     if (a.outcome != Outcome::converged || b.outcome != Outcome::converged || b.points.empty() ||
         a.points.size() != (b.points.size() - 1) * stride + 1)
         return {nan, nan};
@@ -96,9 +100,12 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
                 all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
             continue;
         }
-        const auto affordable = [&](int steps) { return steps <= options.most_steps && steps * per_step <= options.work_budget; };
-        for (int steps = options.points; steps == options.points || affordable(steps); steps *= 2)
-            all.push_back({.method = label, .steps = steps});
+        const auto affordable = [&](long steps) {
+            return steps <= options.most_steps &&
+                   static_cast<double>(steps) * per_step <= options.work_budget;
+        };
+        for (long steps = options.points; steps == options.points || affordable(steps); steps *= 2)
+            all.push_back({.method = label, .steps = static_cast<int>(steps)});
     }
     all.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
     all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
@@ -111,10 +118,16 @@ void rank(Trade& trade) {
     const double least = share_of(trade.tolerance, trade.uncertainty);
     for (auto& point : trade.points) {
         point.share = share_of(trade.tolerance, point.error);
-        if (point.again) point.not_ranked = "the same leg again: noise of the time";
-        else if (point.outcome != Outcome::converged) point.not_ranked = name(point.outcome);
-        else if (!std::isfinite(point.share)) point.not_ranked = "no number";
-        else if (!(point.share > least)) point.not_ranked = "below the reference uncertainty";
+        if (point.again)
+            point.not_ranked = "the same leg again: noise of the time";
+        else if (point.leg == Leg::equilibrium)
+            point.not_ranked = "what errors are read from";
+        else if (point.outcome != Outcome::converged)
+            point.not_ranked = name(point.outcome);
+        else if (!std::isfinite(point.share))
+            point.not_ranked = "no number";
+        else if (!(point.share > least))
+            point.not_ranked = "below the reference uncertainty";
         point.ranked = point.not_ranked.empty();
     }
     const auto price = [](const TradePoint& point, std::size_t kind) {
@@ -124,7 +137,8 @@ void rank(Trade& trade) {
     };
     for (std::size_t kind = 0; kind < 3; ++kind) {
         std::vector<WorkError> flat;
-        for (const auto& point : trade.points) flat.push_back({price(point, kind), point.ranked ? point.share : nan});
+        for (const auto& point : trade.points)
+            flat.push_back({price(point, kind), point.ranked ? point.share : nan});
         const auto front = pareto_front(flat);
         for (std::size_t k = 0; k < front.size(); ++k) trade.points[k].on_front[kind] = front[k];
     }
@@ -136,13 +150,16 @@ bool good_enough(const Trade& trade, const Accuracy& error) {
     return within(share_of(trade.tolerance, plus(error, trade.uncertainty)), 1);
 }
 
-bool same_ladder(const TradePoint& a, const TradePoint& b) { return a.leg == b.leg && a.method == b.method && a.again == b.again; }
+bool same_ladder(const TradePoint& a, const TradePoint& b) {
+    return a.leg == b.leg && a.method == b.method && a.again == b.again;
+}
 
-// Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at steps too few to
-// show that the method is unstable, is good by luck.
+// Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at
+// steps too few to show that the method is unstable, is good by luck.
 bool eligible(const Trade& trade, std::size_t k) {
     if (trade.points[k].again) return false;
-    for (std::size_t finer = k; finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]); ++finer) {
+    for (std::size_t finer = k;
+         finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]); ++finer) {
         const TradePoint& point = trade.points[finer];
         if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
     }
@@ -165,8 +182,9 @@ std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::s
     return best;
 }
 
-// Between the rungs h/2 and 2h a law C·h^p puts the geometric mean at the middle one; at an end of the ladder the two next
-// rungs say where it ought to be. By this factor the law misses, and by as much the error may be elsewhere.
+// Between the rungs h/2 and 2h a law C·h^p puts the geometric mean at the middle one; at an end of the ladder
+// the two next rungs say where it ought to be. By this factor the law misses, and by as much the error may be
+// elsewhere. The band also holds what the confirming run found.
 double misfit(double error, double neighbour, double other, bool between) {
     const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
     return std::max(error / expected, expected / error);
@@ -182,11 +200,16 @@ void band(const Trade& trade, Recommendation& found) {
                trade.points[static_cast<std::size_t>(i)].ranked;
     };
     std::ptrdiff_t a = k, b = k;
-    if (!trade.points[found.point].ranked) found.band_from = "below the reference uncertainty: only that is known";
-    else if (usable(k - 1) && usable(k + 1)) a = k - 1, b = k + 1, found.band_from = "from the rungs on either side";
-    else if (usable(k + 1) && usable(k + 2)) a = k + 1, b = k + 2, found.band_from = "from the two finer rungs";
-    else if (usable(k - 1) && usable(k - 2)) a = k - 1, b = k - 2, found.band_from = "from the two coarser rungs";
-    else found.band_from = "no two neighbouring rungs above the reference uncertainty: only that is known";
+    if (!trade.points[found.point].ranked)
+        found.band_from = "below the reference uncertainty: only that is known";
+    else if (usable(k - 1) && usable(k + 1))
+        a = k - 1, b = k + 1, found.band_from = "from the rungs on either side";
+    else if (usable(k + 1) && usable(k + 2))
+        a = k + 1, b = k + 2, found.band_from = "from the two finer rungs";
+    else if (usable(k - 1) && usable(k - 2))
+        a = k - 1, b = k - 2, found.band_from = "from the two coarser rungs";
+    else
+        found.band_from = "no two neighbouring rungs above the reference uncertainty: only that is known";
     const auto one = [&](double Accuracy::*unit) {
         double factor = 1;
         if (a != b)
@@ -194,15 +217,16 @@ void band(const Trade& trade, Recommendation& found) {
                             trade.points[static_cast<std::size_t>(b)].error.*unit, a == k - 1 && b == k + 1);
         if (!std::isfinite(factor)) factor = 1;
         found.low.*unit = std::max(0.0, e.*unit / factor - u.*unit);
-        found.high.*unit = e.*unit * factor + u.*unit;
+        found.high.*unit = std::max(e.*unit * factor, found.confirmed.*unit) + u.*unit;
     };
     one(&Accuracy::mm);
     one(&Accuracy::deg);
 }
 
-// Run again, at output points it was not chosen by: finer ones, and those of a branch that ends half a step earlier, against a
-// reference that gets there by thirds of its steps.
-Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const TradePoint& point, int points, int& compared) {
+// Run again, at output points it was not chosen by: finer ones, and those of a branch that ends half a step
+// earlier, against a reference that gets there by thirds of its steps.
+Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const TradePoint& point,
+                 int points, int& compared) {
     int finer = 7 * points;
     if (point.steps > 0) {
         finer = points;
@@ -227,14 +251,16 @@ void recommend(const Model& model, const std::vector<Channel>& channels, Trade& 
     while (const auto k = cheapest(trade, candidates)) {
         Recommendation found;
         found.point = *k;
-        found.confirmed = confirm(model, channels, trade.points[*k], trade.points_per_branch, found.confirmed_numbers);
+        found.confirmed =
+            confirm(model, channels, trade.points[*k], trade.points_per_branch, found.confirmed_numbers);
         if (found.confirmed_numbers > 0 && good_enough(trade, found.confirmed)) {
             band(trade, found);
             trade.recommendation = found;
             return;
         }
-        trade.rejected.push_back(fmt::format("{}: {:.3g} mm and {:.3g} deg when run again", describe(trade.points[*k]),
-                                             found.confirmed.mm, found.confirmed.deg));
+        trade.rejected.push_back(fmt::format("{}: {:.3g} mm and {:.3g} deg when run again",
+                                             describe(trade.points[*k]), found.confirmed.mm,
+                                             found.confirmed.deg));
         std::erase(candidates, *k);
     }
 }
@@ -243,8 +269,10 @@ void recommend(const Model& model, const std::vector<Channel>& channels, Trade& 
 
 Tolerance parse_tolerance(std::string_view text) {
     const auto refuse = [&](std::string_view why) {
-        throw std::invalid_argument(fmt::format(
-            "tolerance '{}': {}; allowed: a length in mm, an angle in deg or both, each above 0, such as 0.01mm,0.001deg", text, why));
+        throw std::invalid_argument(
+            fmt::format("tolerance '{}': {}; allowed: a length in mm, an angle in deg or both, each above 0, "
+                        "such as 0.01mm,0.001deg",
+                        text, why));
     };
     const auto trim = [](std::string_view word) {
         while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
@@ -259,12 +287,14 @@ Tolerance parse_tolerance(std::string_view text) {
         if (word.empty()) refuse("a number with its unit is missing");
         double value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error == std::errc::invalid_argument) refuse(fmt::format("'{}' does not begin with a number", word));
+        if (error == std::errc::invalid_argument)
+            refuse(fmt::format("'{}' does not begin with a number", word));
         if (error != std::errc{} || !std::isfinite(value) || !(value > 0))
             refuse(fmt::format("'{}' is not a finite number above 0", word));
         const std::string_view unit = trim(word.substr(static_cast<std::size_t>(end - word.data())));
         if (unit != "mm" && unit != "deg")
-            refuse(unit.empty() ? fmt::format("'{}' has no unit", word) : fmt::format("'{}' is not a unit of it", unit));
+            refuse(unit.empty() ? fmt::format("'{}' has no unit", word)
+                                : fmt::format("'{}' is not a unit of it", unit));
         bool& given = unit == "mm" ? mm : deg;
         if (given) refuse(fmt::format("{} is given twice", unit));
         given = true;
@@ -282,7 +312,8 @@ double share_of(const Tolerance& tolerance, const Accuracy& error) {
 }
 
 std::string describe(const TradePoint& point) {
-    if (point.leg != Leg::recursive) return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
+    if (point.leg != Leg::recursive)
+        return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
     if (point.steps == 0) return fmt::format("{} at {:.0e} m", point.method, point.own_tolerance);
     return fmt::format("{}, {} steps", point.method, point.steps);
 }
@@ -301,7 +332,8 @@ std::vector<bool> pareto_front(std::span<const WorkError> points) {
 }
 
 Trade trade(const Model& model, const TradeOptions& options) {
-    if (options.points < 1 || options.rounds < 1) throw std::invalid_argument("trade: points and rounds must be positive");
+    if (options.points < 1 || options.rounds < 1)
+        throw std::invalid_argument("trade: points and rounds must be positive");
     const auto tell = [&](std::string_view what) {
         if (options.progress) options.progress(what);
     };
@@ -309,7 +341,8 @@ Trade trade(const Model& model, const TradeOptions& options) {
     Trade result;
     result.points_per_branch = options.points;
     result.rounds = options.rounds;
-    for (const auto& channel : all_channels) result.angles = result.angles || (channel.main && channel.unit == Unit::deg);
+    for (const auto& channel : all_channels)
+        result.angles = result.angles || (channel.main && channel.unit == Unit::deg);
     result.tolerance = options.tolerance;
     if (!result.angles) result.tolerance.deg = std::numeric_limits<double>::infinity();
 
@@ -324,11 +357,14 @@ Trade trade(const Model& model, const TradeOptions& options) {
         tell(fmt::format("{}: the references", branch.name));
         truth.push_back(solve(model, branch, equilibrium, options.points));
         const auto other = solve(model, branch, energy, options.points);
-        for (const auto& [leg, path] : {std::pair{Leg::equilibrium, &std::as_const(truth.back())}, std::pair{Leg::energy, &other}})
+        for (const auto& [leg, path] :
+             {std::pair{Leg::equilibrium, &std::as_const(truth.back())}, std::pair{Leg::energy, &other}})
             if (path->outcome != Outcome::converged)
-                result.inconclusive.push_back(fmt::format("{}: {} leg: {}: {}", branch.name, name(leg), name(path->outcome), path->detail));
-        result.uncertainty = worse(result.uncertainty, worse(distance(model, all_channels, truth.back(), other),
-                                                             rounding_of(model, all_channels, truth.back())));
+                result.inconclusive.push_back(fmt::format("{}: {} leg: {}: {}", branch.name, name(leg),
+                                                          name(path->outcome), path->detail));
+        result.uncertainty =
+            worse(result.uncertainty, worse(distance(model, all_channels, truth.back(), other),
+                                            rounding_of(model, all_channels, truth.back())));
     }
 
     result.points = configurations(model, options);

@@ -1,12 +1,13 @@
 // The price of accuracy: what each method's error costs, and the cheapest one that is good enough.
 //
-// Every configuration (a method with a step count or a tolerance of its own, or a reference leg) produces the same output
-// points: `points` equal load increments of every branch. Its error is the worst over all branches, output points and main
-// channels, at equal load, from the equilibrium leg. Its price is counted in linear solves, in factorisations and residual
-// evaluations, and in time relative to the equilibrium leg, measured interleaved (timing.hpp).
+// Every configuration (a method with a step count or a tolerance of its own, or a reference leg) produces the
+// same output points: `points` equal load increments of every branch. Its error is the worst over all
+// branches, output points and main channels, at equal load, from the equilibrium leg. Its price is counted in
+// linear solves, in factorisations and residual evaluations, and in time relative to the equilibrium leg,
+// measured interleaved (timing.hpp).
 //
-// What can be said ends at the reference uncertainty u, the distance of the two reference legs: an error e is at most e + u, and
-// errors up to u cannot be told apart, hence not ranked.
+// What can be said ends at the reference uncertainty u, the distance of the two reference legs: an error e is
+// at most e + u, and errors up to u cannot be told apart, hence not ranked.
 #pragma once
 
 #include <array>
@@ -37,60 +38,64 @@ struct Tolerance {
     double deg = std::numeric_limits<double>::infinity();
 };
 
-// "0.01mm,0.001deg": a length, an angle or both, in any order. Throws std::invalid_argument that says what is allowed.
+// "0.01mm,0.001deg": a length, an angle or both, in any order. Throws std::invalid_argument that says what is
+// allowed.
 Tolerance parse_tolerance(std::string_view text);
 
 // max(mm / tolerance, deg / tolerance): up to 1 is good enough. NaN if either is.
 double share_of(const Tolerance& tolerance, const Accuracy& error);
 
 struct Work {
-    long solves = 0;          // back-substitutions
+    long solves = 0;  // back-substitutions
     long factorisations = 0;
-    long evaluations = 0;     // of the residual, or of energy and gradient
+    long evaluations = 0;                                       // of the residual, or of energy and gradient
     double seconds = std::numeric_limits<double>::quiet_NaN();  // median over the rounds
 };
 
 struct TradePoint {
     Leg leg = Leg::recursive;
-    std::string method = {};    // of the recursion, else the name of the leg
-    int steps = 0;              // per branch; 0 where the method chooses
-    double own_tolerance = 0;   // adaptive: the tolerance it is told [m]; else 0
-    bool again = false;         // the A/A row: the equilibrium leg, timed a second time
+    std::string method = {};               // of the recursion, else the name of the leg
+    int steps = 0;                         // per branch; 0 where the method chooses
+    double own_tolerance = 0;              // adaptive: the tolerance it is told [m]; else 0
+    bool again = false;                    // the A/A row: the equilibrium leg, timed a second time
     Outcome outcome = Outcome::converged;  // the first that is not converged, of any branch
     std::string detail = {};
-    Work work = {};                 // over all branches
+    Work work = {};                                           // over all branches
     double ratio = std::numeric_limits<double>::quiet_NaN();  // of time, to the equilibrium leg
-    Accuracy error = {};        // NaN unless converged
-    double share = 0;           // of the tolerance that the error takes
+    Accuracy error = {};                                      // NaN unless converged
+    double share = 0;                                         // of the tolerance that the error takes
     bool ranked = false;
     std::string not_ranked = {};  // why, empty when ranked
-    std::array<bool, 3> on_front{};  // no other ranked point is as good for less: solves; factorisations + evaluations; time
+    // No other ranked point is as good for less: solves; factorisations + evaluations; time.
+    std::array<bool, 3> on_front{};
 };
 
 struct Recommendation {
-    std::size_t point = 0;        // position in Trade::points
-    Accuracy expected, low, high; // band: misfit of the ladder's law error = C·steps^-p at this rung, and the uncertainty
-    std::string band_from;        // which rungs it rests on, in words
-    Accuracy confirmed;           // error found when it was run again
-    int confirmed_numbers = 0;    // compared then
+    std::size_t point = 0;  // position in Trade::points
+    // Band: how far the law error = C·steps^-p of the ladder misses this rung, what the confirming run found,
+    // the uncertainty.
+    Accuracy expected, low, high;
+    std::string band_from;      // which rungs it rests on, in words
+    Accuracy confirmed;         // error found when it was run again
+    int confirmed_numbers = 0;  // compared then
 };
 
 struct TradeOptions {
     Tolerance tolerance{0.01, 0.001};
-    int points = 10;              // output points per branch, beside load factor 0; the ladder starts with as many steps
+    int points = 10;  // output points per branch, beside load factor 0; the ladder starts with as many steps
     int most_steps = 2560;
-    double work_budget = 2e9;     // of one configuration: steps · branches · (unknowns)³
-    int rounds = 7;               // of timing
+    double work_budget = 5e8;  // of one configuration: steps · branches · (unknowns)³
+    int rounds = 7;            // of timing
     std::function<void(std::string_view)> progress = {};
 };
 
 struct Trade {
-    Tolerance tolerance;          // angles are not asked for where there are none
+    Tolerance tolerance;  // angles are not asked for where there are none
     int points_per_branch = 0;
     int rounds = 0;
     bool angles = false;
-    Accuracy uncertainty;         // NaN when a reference failed
-    double noise = 0;             // of time ratios, from the A/A row
+    Accuracy uncertainty;  // NaN when a reference failed
+    double noise = 0;      // of time ratios, from the A/A row
     std::vector<TradePoint> points;
     std::optional<Recommendation> recommendation;
     std::vector<std::string> rejected;      // would have been recommended, but the confirming run said no
@@ -102,8 +107,8 @@ Trade trade(const Model& model, const TradeOptions& options = {});
 // "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
 std::string describe(const TradePoint& point);
 
-// Which points are on the front of work against error: no other is as good in both and better in one. Equals stand
-// together. What is not finite is neither on it nor in the way of others.
+// Which points are on the front of work against error: no other is as good in both and better in one. Equals
+// stand together. What is not finite is neither on it nor in the way of others.
 struct WorkError {
     double work = 0, error = 0;
 };

@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "compare/compare.hpp"
+#include "compare/precision.hpp"
 #include "compare/study.hpp"
+#include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "models/scene_file.hpp"
 #include "models/scene_words.hpp"
@@ -22,6 +24,7 @@
 #include "reports/inspection.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/tables.hpp"
+#include "reports/trade_tables.hpp"
 
 namespace {
 
@@ -116,6 +119,29 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     return study.conclusive() ? fine : could_not_judge;
 }
 
+int trade(const std::string& file, const std::string& tolerance, const std::string& folder) {
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    compare::TradeOptions options;
+    options.tolerance = compare::parse_tolerance(tolerance);
+    options.progress = progress;
+    const compare::Trade trade = compare::trade(model, options);
+    const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
+    progress("");
+    fmt::print("{}\n{}", reports::trade_table(model, trade), reports::precision_table(precision));
+    if (!folder.empty()) {
+        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model), reports::provenance());
+        result["trade"] = reports::trade_json(trade);
+        result["precision"] = reports::precision_json(precision);
+        const std::filesystem::path base(folder);
+        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        reports::write_whole(base / "trade.csv", reports::trade_csv(trade));
+        reports::write_whole(base / "precision.csv", reports::precision_csv(precision));
+        fmt::print("Written: {0}/result.json, {0}/trade.csv, {0}/precision.csv\n", folder);
+    }
+    return trade.recommendation ? fine : could_not_judge;
+}
+
 // Says what CLI11 says, and after a word it does not know, the nearest one it does.
 int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
     std::string message = error.what();
@@ -142,9 +168,7 @@ int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
     return bad_input;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     CLI::App app{
         "Can I trust my suspension solver? One scene, solved three ways that share nothing but the scene:\n"
         "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy minimisation.",
@@ -158,13 +182,15 @@ int main(int argc, char** argv) {
     int steps = 0;
     std::string method = name(compare::Leg::recursive);
     std::vector<std::string> methods;
+    methods.reserve(compare::legs.size());
     for (const auto leg : compare::legs) methods.emplace_back(name(leg));
 
     auto* inspect_command = app.add_subcommand("inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
     auto* solve_command = app.add_subcommand("solve", "Solve a scene one way and print the curves as CSV");
     auto* compare_command = app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
     auto* converge_command = app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
-    for (auto* command : {inspect_command, solve_command, compare_command, converge_command})
+    auto* trade_command = app.add_subcommand("trade", "What accuracy costs: every method against both references, and a recommendation");
+    for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
         command->add_option("SCENE", scene, "scene file (YAML)")->required();
     for (auto* command : {solve_command, compare_command})
         command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")->check(CLI::Range(1, 10'000'000));
@@ -184,6 +210,10 @@ int main(int argc, char** argv) {
         ->delimiter(',');
     converge_command->add_option("-o,--output", output, "folder for result.json, convergence.csv and attribution.csv");
 
+    std::string tolerance = "0.01mm,0.001deg";
+    trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
+    trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv");
+
     try {
         app.parse(argc, argv);
         if (*inspect_command) return inspect(scene);
@@ -192,22 +222,31 @@ int main(int argc, char** argv) {
             return solve(scene, leg, steps, output);
         }
         if (*compare_command) return compare_legs(scene, steps, output);
-        return converge(scene, rungs, levels, output);
+        if (*converge_command) return converge(scene, rungs, levels, output);
+        return trade(scene, tolerance, output);
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
         return explain(app, error, argc, argv);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const auto fail = [](Exit code, const char* what) {
+        std::fprintf(stderr, "elastocheck: %s%s\n", code == bug ? "internal error: " : "", what);
+        return code;
+    };
+    try {
+        return run(argc, argv);
     } catch (const SceneError& error) {
-        fmt::print(stderr, "elastocheck: {}\n", error.what());
-        return bad_input;
-    } catch (const std::invalid_argument& error) {
-        fmt::print(stderr, "elastocheck: {}\n", error.what());
-        return bad_input;
+        return fail(bad_input, error.what());
     } catch (const reports::FileError& error) {
-        fmt::print(stderr, "elastocheck: {}\n", error.what());
-        return bad_input;
+        return fail(bad_input, error.what());
+    } catch (const std::invalid_argument& error) {
+        return fail(bad_input, error.what());
     } catch (const std::exception& error) {
-        fmt::print(stderr, "elastocheck: internal error: {}\n", error.what());
-        return bug;
+        return fail(bug, error.what());
     }
 }

@@ -1,1 +1,499 @@
+// The price of accuracy: what is recommended holds, and what cannot be judged is not ranked.
+#include "compare/trade.hpp"
+
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "compare/precision.hpp"
+#include "compare/timing.hpp"
+#include "models/compile.hpp"
+#include "recursive/solve.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "reports/trade_tables.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Model shipped(const std::string& name, double load = 1) {
+    Scene scene = support::scene(name);
+    for (auto& branch : scene.branches) branch.to *= load;
+    return compile(scene);
+}
+
+// Errors and counts do not depend on the rounds; tests of anything but time take few.
+TradeOptions quick(Tolerance tolerance, int most_steps = 160) {
+    TradeOptions options;
+    options.tolerance = tolerance;
+    options.most_steps = most_steps;
+    options.rounds = 2;
+    return options;
+}
+
+const TradePoint* find(const Trade& trade, std::string_view method, int steps) {
+    for (const auto& point : trade.points)
+        if (point.method == method && point.steps == steps) return &point;
+    return nullptr;
+}
+
+// The error of a recommendation solved anew at ten times as many steps and output points, without any of
+// trade.cpp.
+Accuracy solved_anew(const Model& model, const Trade& trade) {
+    const TradePoint& point = trade.points[trade.recommendation->point];
+    const int outputs = 10 * trade.points_per_branch;
+    recursive::Options options;
+    options.method = *recursive::find_method(point.method);
+    options.steps = point.steps > 0 ? 10 * point.steps : outputs;
+    options.record = outputs;
+    options.length_tolerance = point.own_tolerance;
+    options.angle_tolerance = 1.745 * point.own_tolerance;
+    const auto all = channels(model);
+    Accuracy worst;
+    for (const auto& branch : model.branches) {
+        std::vector<double> loads;
+        for (int k = 0; k <= outputs; ++k) loads.push_back(branch.to * k / outputs);
+        const auto fast = point.leg == Leg::recursive ? recursive::solve(model, branch, options)
+                          : point.leg == Leg::energy  ? reference::energy::solve(model, branch, loads)
+                                                      : reference::equilibrium::solve(model, branch, loads);
+        const auto truth = point.leg == Leg::equilibrium
+                               ? reference::energy::solve(model, branch, loads)
+                               : reference::equilibrium::solve(model, branch, loads);
+        EXPECT_EQ(fast.points.size(), truth.points.size());
+        for (std::size_t k = 0; k < std::min(fast.points.size(), truth.points.size()); ++k) {
+            const auto a = evaluate(model, fast.points[k]), b = evaluate(model, truth.points[k]);
+            for (std::size_t c = 0; c < all.size(); ++c)
+                if (all[c].main) {
+                    double& side = all[c].unit == Unit::deg ? worst.deg : worst.mm;
+                    if (!(std::abs(a[c] - b[c]) <= side)) side = std::abs(a[c] - b[c]);
+                }
+        }
+    }
+    return worst;
+}
+
+// ---- the tolerance
+
+TEST(Tolerance, IsReadInEitherOrderAndEitherOneAlone) {
+    for (const std::string text :
+         {"0.01mm,0.001deg", "0.001deg,0.01mm", " 1e-2 mm , 1e-3 deg ", "0.01 mm,.001deg"}) {
+        const Tolerance tolerance = parse_tolerance(text);
+        EXPECT_EQ(tolerance.mm, 0.01) << text;
+        EXPECT_EQ(tolerance.deg, 0.001) << text;
+    }
+    EXPECT_EQ(parse_tolerance("1e-2 mm").mm, 0.01);
+    EXPECT_EQ(parse_tolerance("1e-2 mm").deg, infinity);
+    EXPECT_EQ(parse_tolerance("2deg").deg, 2);
+    EXPECT_EQ(parse_tolerance("2deg").mm, infinity);
+}
+
+TEST(Tolerance, AnythingElseIsRefusedWithWhatIsAllowed) {
+    for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
+             {"", "missing"},           {",", "missing"},
+             {"0.01mm,", "missing"},    {"0.01", "no unit"},
+             {"0.01 m", "'m' is not"},  {"0.01mm0", "'mm0' is"},
+             {"0.01mm,1mm", "twice"},   {"1deg,2deg", "twice"},
+             {"0mm", "above 0"},        {"-1mm", "above 0"},
+             {"nanmm", "above 0"},      {"nan mm", "above 0"},
+             {"inf deg", "above 0"},    {"1e999mm", "above 0"},
+             {"1e-999mm", "above 0"},   {"mm", "begin with a number"},
+             {"+1mm", "begin with"},    {"0.01mm;1deg", "'mm;1deg'"},
+             {"1mm,2deg,3mm", "twice"}, {"0,01mm", "above 0"},
+             {"1,5mm", "no unit"}}) {
+        try {
+            (void)parse_tolerance(text);
+            ADD_FAILURE() << "'" << text << "' was read";
+        } catch (const std::invalid_argument& error) {
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("allowed: a length in mm, an angle in deg or both"),
+                      std::string::npos);
+        }
+    }
+}
+
+TEST(Tolerance, NoNumberIsNoShareOfIt) {
+    for (const Tolerance tolerance : {Tolerance{1, 1}, Tolerance{1, infinity}, Tolerance{infinity, 1}})
+        for (const Accuracy error : {Accuracy{nan, 0}, Accuracy{0, nan}, Accuracy{nan, nan}})
+            EXPECT_TRUE(std::isnan(share_of(tolerance, error)))
+                << tolerance.mm << " " << error.mm << " " << error.deg;
+    EXPECT_EQ(share_of({0.5, 2}, {1, 1}), 2);
+    EXPECT_EQ(share_of({0.5, infinity}, {1, 1e9}), 2);
+}
+
+// ---- the front
+
+TEST(Front, HasNoDominatedMemberAndLeavesNoOtherOut) {
+    std::mt19937 random(20);
+    for (int trial = 0; trial < 500; ++trial) {
+        std::vector<WorkError> points(1 + random() % 20);
+        const auto value = [&]() -> double {  // few different ones, so that there are ties
+            const auto k = random() % 10;
+            return k == 0 ? nan : k == 1 ? infinity : static_cast<double>(k);
+        };
+        for (auto& point : points) point = {value(), value()};
+        const auto front = pareto_front(points);
+        ASSERT_EQ(front.size(), points.size());
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const bool finite = std::isfinite(points[k].work) && std::isfinite(points[k].error);
+            bool dominated = false, by_member = false;
+            for (std::size_t l = 0; l < points.size(); ++l) {
+                const auto &a = points[l], &b = points[k];
+                const bool better = a.work <= b.work && a.error <= b.error &&
+                                    (a.work < b.work || a.error < b.error) && std::isfinite(a.work) &&
+                                    std::isfinite(a.error);
+                dominated = dominated || better;
+                by_member = by_member || (better && front[l]);
+            }
+            EXPECT_EQ(front[k], finite && !dominated) << "trial " << trial << " point " << k;
+            EXPECT_EQ(finite && !front[k], finite && by_member) << "trial " << trial << " point " << k;
+        }
+    }
+}
+
+TEST(Front, EqualsStandTogetherAndNoNumberIsInNobodysWay) {
+    EXPECT_EQ(pareto_front(std::vector<WorkError>{{1, 1}, {1, 1}, {2, 1}, {nan, 0}, {0, nan}, {0, infinity}}),
+              (std::vector<bool>{true, true, false, false, false, false}));
+    EXPECT_TRUE(pareto_front({}).empty());
+}
+
+// ---- times
+
+TEST(Timing, JobsTakeTurns) {
+    std::string order;
+    const std::vector<std::function<void()>> jobs{[&] { order += 'a'; }, [&] { order += 'b'; },
+                                                  [&] { order += 'c'; }};
+    const Times times = take_turns(jobs, 3);
+    EXPECT_EQ(order, "abcabcabc");
+    ASSERT_EQ(times.size(), 3u);
+    for (const auto& job : times) EXPECT_EQ(job.size(), 3u);
+}
+
+TEST(Timing, MedianAndNoiseOfAJobAgainstItself) {
+    EXPECT_EQ(median({3, 1, 2}), 2);
+    EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+    EXPECT_TRUE(std::isnan(median({})));
+    EXPECT_EQ(ratios({2, 6}, {1, 3}), (std::vector<double>{2, 2}));
+    EXPECT_EQ(noise_of({1, 1, 1}), 0);
+    EXPECT_DOUBLE_EQ(noise_of({1.25, 1.25, 1.25}),
+                     0.25);  // always slower in second place: an offset is noise as well
+    EXPECT_DOUBLE_EQ(noise_of({0.5, 1, 1.5}), 0.5);
+    EXPECT_TRUE(std::isnan(noise_of({})));
+}
+
+// ---- the trade
+
+TEST(Trade, RecommendationMeetsItsToleranceWhenSolvedAnewAtTenTimesThePoints) {
+    int recommended = 0;
+    for (const auto& name : {"pinned_bar", "pendulum", "two_spring_arch", "bushing_pair"})
+        for (const double mm : {1.0, 1e-2, 1e-4, 1e-6}) {
+            const Model model = shipped(name);
+            const Trade result = trade(model, quick({mm}));
+            if (!result.recommendation) continue;
+            const Accuracy found = solved_anew(model, result);
+            EXPECT_TRUE(std::isfinite(found.mm) && found.mm <= mm)
+                << name << " " << mm << " mm: " << describe(result.points[result.recommendation->point])
+                << " " << found.mm;
+            const auto& r = *result.recommendation;
+            EXPECT_TRUE(r.confirmed.mm <= mm && r.confirmed.mm <= r.high.mm)
+                << r.confirmed.mm << " " << r.high.mm;
+            EXPECT_TRUE(r.low.mm <= r.expected.mm && r.expected.mm <= r.high.mm)
+                << r.low.mm << " " << r.expected.mm;
+            EXPECT_GT(result.recommendation->confirmed_numbers, 100);
+            ++recommended;
+        }
+    EXPECT_EQ(recommended, 16);
+}
+
+TEST(Trade, RecommendationForTheMcPhersonMeetsLengthAndAngle) {
+    const Model model = shipped("mcpherson");
+    for (const Tolerance tolerance : {Tolerance{0.01, 0.001}, Tolerance{1, 1e-4}, Tolerance{1e-3, 1}}) {
+        const Trade result = trade(model, quick(tolerance, 320));
+        ASSERT_TRUE(result.recommendation);
+        const Accuracy found = solved_anew(model, result);
+        EXPECT_TRUE(found.mm <= tolerance.mm && found.deg <= tolerance.deg) << found.mm << " " << found.deg;
+        const auto& r = *result.recommendation;
+        EXPECT_TRUE(r.low.mm <= r.expected.mm && r.expected.mm <= r.high.mm)
+            << r.low.mm << " " << r.expected.mm << " " << r.high.mm;
+        EXPECT_TRUE(r.low.deg <= r.expected.deg && r.expected.deg <= r.high.deg);
+        EXPECT_LT(result.points[r.point].ratio, 1);
+    }
+}
+
+TEST(Trade, NothingIsRecommendedForAnImpossibleTolerance) {
+    for (const auto& name : {"pinned_bar", "mcpherson", "single_bushing"}) {
+        const Trade result = trade(shipped(name), quick({1e-15}, 40));
+        EXPECT_FALSE(result.recommendation) << name;
+        EXPECT_TRUE(result.inconclusive.empty());
+    }
+    const Trade angle = trade(shipped("mcpherson"), quick({1, 1e-16}, 40));
+    EXPECT_FALSE(angle.recommendation);
+}
+
+TEST(Trade, WhatDidNotConvergeIsListedAndNeverRanked) {
+    const Trade result = trade(shipped("pendulum", 2), quick({50}, 640));
+    for (const auto& method : {"published", "closed", "balanced"}) {
+        const TradePoint* point = find(result, method, 640);
+        ASSERT_NE(point, nullptr);
+        EXPECT_EQ(point->outcome, Outcome::diverged) << method;
+        EXPECT_FALSE(point->detail.empty());
+    }
+    int listed = 0;
+    for (const auto& point : result.points) {
+        if (point.outcome == Outcome::converged) continue;
+        ++listed;
+        EXPECT_FALSE(point.ranked || point.on_front[0] || point.on_front[1] || point.on_front[2])
+            << describe(point);
+        EXPECT_EQ(point.not_ranked, name(point.outcome));
+        EXPECT_TRUE(std::isnan(point.error.mm) && std::isnan(point.ratio)) << describe(point);
+    }
+    EXPECT_GE(listed, 3);
+}
+
+TEST(Trade, AMethodThatDivergesAtMoreStepsIsNotRecommendedAtFew) {
+    const Trade result = trade(shipped("pendulum", 2), quick({50}, 640));
+    EXPECT_LT(find(result, "published", 10)->error.mm, 50);  // good enough, by luck
+    ASSERT_TRUE(result.recommendation);
+    const TradePoint& chosen = result.points[result.recommendation->point];
+    for (const auto& method : {"published", "closed", "balanced"}) EXPECT_NE(chosen.method, method);
+}
+
+TEST(Trade, ErrorsThatCancelAreNotRecommended) {
+    // The published method's step error makes up for half of its formulation gap at ten steps, and for none
+    // at many.
+    const Trade result = trade(shipped("pinned_bar"), quick({4}));
+    EXPECT_LT(find(result, "published", 10)->error.mm, 4);
+    EXPECT_GT(find(result, "published", 160)->error.mm, 4);
+    ASSERT_TRUE(result.recommendation);
+    EXPECT_NE(result.points[result.recommendation->point].method, "published");
+    EXPECT_NE(result.points[result.recommendation->point].method, "closed");
+}
+
+TEST(Trade, BelowTheReferenceUncertaintyNothingIsRanked) {
+    // One bushing along its axis is linear: every method is exact, and which is most exact is noise.
+    const Trade linear = trade(shipped("single_bushing"), quick({0.001}, 40));
+    for (const auto& point : linear.points) {
+        EXPECT_FALSE(point.ranked) << describe(point) << " " << point.error.mm;
+        EXPECT_LE(point.error.mm, linear.uncertainty.mm);
+    }
+    ASSERT_TRUE(linear.recommendation);  // but good enough is known
+    EXPECT_GE(linear.recommendation->high.mm, linear.uncertainty.mm);
+
+    for (const auto& name : {"pinned_bar", "mcpherson"}) {
+        const Trade result = trade(shipped(name), quick({0.01, 0.001}, 40));
+        for (const auto& point : result.points)
+            EXPECT_FALSE(point.ranked && !(point.share > share_of(result.tolerance, result.uncertainty)))
+                << describe(point);
+    }
+}
+
+TEST(Trade, OnlyRankedPointsAreOnAFront) {
+    for (const auto& name : {"single_bushing", "pinned_bar", "mcpherson"}) {
+        const Trade result = trade(shipped(name), quick({0.01, 0.001}, 40));
+        for (const auto& point : result.points)
+            for (const bool on_front : point.on_front)
+                EXPECT_FALSE(on_front && !point.ranked) << name << " " << describe(point);
+    }
+}
+
+TEST(Trade, NothingIsRecommendedForLessThanTheReferencesKnow) {
+    // Every method is exact here, but the references vouch for no more than their own distance.
+    const Model model = shipped("single_bushing");
+    const double known = trade(model, quick({1}, 20)).uncertainty.mm;
+    const Trade result = trade(model, quick({known / 2}, 20));
+    EXPECT_LT(find(result, "tangent", 20)->error.mm, known / 2);
+    EXPECT_FALSE(result.recommendation);
+}
+
+TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
+    // Between its ten output points the adaptive method is 1 % further off than at them.
+    const Model model = shipped("mcpherson");
+    const auto error = [](const Trade& result) {
+        for (const auto& point : result.points)
+            if (point.own_tolerance == 1e-5) return point.error.mm;
+        return nan;
+    };
+    TradeOptions options = quick({0.01}, 10);
+    options.tolerance.mm = 1.003 * error(trade(model, options));
+    options.rounds = 7;
+    const Trade result = trade(model, options);
+    ASSERT_FALSE(result.rejected.empty());
+    EXPECT_NE(result.rejected.front().find("adaptive at 1e-0"), std::string::npos) << result.rejected.front();
+    ASSERT_TRUE(result.recommendation);
+    EXPECT_LE(result.recommendation->confirmed.mm, options.tolerance.mm);
+    EXPECT_NE(result.points[result.recommendation->point].own_tolerance, 1e-5);
+}
+
+TEST(Trade, ReferencesThatFailLeaveNothingToJudge) {
+    const Trade result = trade(shipped("two_spring_arch", 1.5), quick({1}, 20));  // the limit is at -211.5 N
+    ASSERT_FALSE(result.inconclusive.empty());
+    EXPECT_NE(result.inconclusive.front().find("equilibrium leg: branch lost"), std::string::npos)
+        << result.inconclusive.front();
+    EXPECT_FALSE(result.recommendation);
+    for (const auto& point : result.points) EXPECT_FALSE(point.ranked) << describe(point);
+}
+
+TEST(Trade, ASceneWithoutAnglesIgnoresTheirTolerance) {
+    const Trade both = trade(shipped("pinned_bar"), quick({0.01, 1e-30}, 20));
+    EXPECT_FALSE(both.angles);
+    EXPECT_TRUE(both.recommendation);
+    const Trade angle = trade(shipped("pinned_bar"), quick({infinity, 1}, 20));
+    EXPECT_FALSE(angle.recommendation);
+    ASSERT_EQ(angle.inconclusive.size(), 1u);
+    EXPECT_NE(angle.inconclusive.front().find("only an angle is asked for"), std::string::npos);
+}
+
+TEST(Trade, CountsAndErrorsAreTheSameFromRunToRun) {
+    for (const auto& name : {"mcpherson", "pendulum"}) {
+        const Trade a = trade(shipped(name), quick({0.01}, 40)), b = trade(shipped(name), quick({0.01}, 40));
+        ASSERT_EQ(a.points.size(), b.points.size());
+        for (std::size_t k = 0; k < a.points.size(); ++k) {
+            const TradePoint &p = a.points[k], &q = b.points[k];
+            EXPECT_EQ(p.work.solves, q.work.solves) << describe(p);
+            EXPECT_EQ(p.work.factorisations, q.work.factorisations) << describe(p);
+            EXPECT_EQ(p.work.evaluations, q.work.evaluations) << describe(p);
+            if (p.outcome == Outcome::converged) {
+                EXPECT_EQ(p.error.mm, q.error.mm) << describe(p);
+                EXPECT_EQ(p.error.deg, q.error.deg) << describe(p);
+            }
+            EXPECT_EQ(p.outcome, q.outcome);
+            EXPECT_EQ(p.ranked, q.ranked);
+            EXPECT_EQ(p.on_front[0], q.on_front[0]);
+            EXPECT_EQ(p.on_front[1], q.on_front[1]);
+        }
+    }
+}
+
+TEST(Trade, WorkGrowsWithTheStepsByWhatAMethodCostsAStep) {
+    const Trade result = trade(shipped("pinned_bar"), quick({0.01}, 80));
+    for (const int steps : {10, 20, 40, 80}) {  // two branches
+        EXPECT_EQ(find(result, "published", steps)->work.solves, 2 * steps);
+        EXPECT_EQ(find(result, "published", steps)->work.factorisations, 2 * steps);
+        EXPECT_EQ(find(result, "chord", steps)->work.solves, 4 * steps);
+        EXPECT_EQ(find(result, "chord", steps)->work.factorisations, 2 * steps);
+        EXPECT_EQ(find(result, "midpoint", steps)->work.factorisations, 4 * steps);
+    }
+    EXPECT_EQ(find(result, "published", 160), nullptr);
+}
+
+TEST(Trade, TheWorkBudgetEndsTheLadderButNeverBeforeItBegins) {
+    TradeOptions options = quick({0.01}, 2560);
+    options.work_budget = 0;
+    const Trade result = trade(shipped("pinned_bar"), options);
+    EXPECT_NE(find(result, "tangent", 10), nullptr);
+    EXPECT_EQ(find(result, "tangent", 20), nullptr);
+}
+
+TEST(Trade, TheEquilibriumLegIsTimedTwiceAndStandsAtOne) {
+    const Trade result = trade(shipped("pinned_bar"), quick({0.01}, 20));
+    EXPECT_EQ(result.points.front().ratio, 1);
+    const TradePoint& again = result.points.back();
+    EXPECT_TRUE(again.again);
+    EXPECT_TRUE(std::isfinite(again.ratio) && again.ratio > 0);
+    EXPECT_TRUE(std::isfinite(result.noise) && result.noise >= std::abs(again.ratio - 1));
+    EXPECT_EQ(again.work.factorisations, result.points.front().work.factorisations);
+}
+
+// ---- the arithmetic
+
+TEST(Precision, FloorOfFloatIsAboveThatOfDoubleIsAboveThatOfLongDouble) {
+    PrecisionOptions options;
+    options.most_steps = 10240;
+    const PrecisionStudy study = precision_study(shipped("pinned_bar"), options);
+    ASSERT_EQ(study.series.size(), 9u);
+    for (std::size_t s = 0; s < 9; s += 3) {
+        const auto &f = study.series[s], &d = study.series[s + 1], &l = study.series[s + 2];
+        EXPECT_GT(f.constraint.least, 1e3 * d.constraint.least) << f.method;
+        EXPECT_GT(d.constraint.least, 10 * l.constraint.least) << f.method;
+        if (f.method == "published") continue;  // its error is its formulation gap in any arithmetic
+        EXPECT_GT(f.mm.least, 1e3 * d.mm.least) << f.method;
+        EXPECT_GE(d.mm.least, l.mm.least)
+            << f.method;  // outputs are doubles: beyond these there is nothing to see
+        EXPECT_TRUE(f.mm.reached) << f.method;
+        EXPECT_FALSE(f.mm.reference) << f.method;
+        EXPECT_LE(f.mm.useful_steps, d.mm.useful_steps) << f.method;
+    }
+}
+
+TEST(Precision, SumsInFloatGetWorseAgainAndSumsInDoubleDoNotYet) {
+    PrecisionOptions options;
+    options.methods = {"published"};
+    options.most_steps = 40960;
+    const PrecisionStudy study = precision_study(shipped("pendulum"), options);
+    const auto &f = study.series[0], &d = study.series[1];
+    EXPECT_TRUE(f.constraint.reached);
+    EXPECT_GT(f.levels.back().constraint, 3 * f.constraint.least);
+    EXPECT_FALSE(d.constraint.reached);
+    EXPECT_EQ(d.constraint.useful_steps, 40960);
+    EXPECT_EQ(d.levels.back().constraint, d.constraint.least);
+}
+
+TEST(Precision, FloorIsWhereMoreStepsStopHelping) {
+    const std::vector<int> steps{10, 40, 160, 640, 2560};
+    const auto check = [&](std::vector<double> values, int useful, bool reached, bool reference = false) {
+        const Floor floor = floor_of(steps, values, 1e-9);
+        EXPECT_EQ(floor.useful_steps, useful) << values[0];
+        EXPECT_EQ(floor.reached, reached) << values[0];
+        EXPECT_EQ(floor.reference, reference) << values[0];
+    };
+    check({1, 1. / 4, 1. / 16, 1. / 64, 1. / 256}, 2560, false);
+    check({1, 1e-2, 1e-4, 2e-4, 8e-4}, 160, true);          // down and up again
+    check({1, 1e-2, 1e-2, 1e-4, 1e-2}, 40, true);           // one lucky rounding is no progress
+    check({1, 1e-4, 1e-8, 1e-10, 1e-14}, 640, true, true);  // the reference ends here
+    check({1, 1e-4, 1e-4, 2e-4, 1e-7}, 40, true);           // nor at the very end
+    check({1, 1, 1, 1, 1}, 10, true);
+    check({nan, 1e-1, nan, 1e-3, nan}, 640, false);
+    EXPECT_EQ(floor_of(steps, {nan, nan, nan, nan, nan}).useful_steps, 0);
+    EXPECT_TRUE(std::isnan(floor_of(steps, {nan, nan, nan, nan, nan}).least));
+}
+
+TEST(Precision, AMethodWithStepsOfItsOwnIsRefused) {
+    PrecisionOptions options;
+    options.methods = {"adaptive"};
+    EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
+    options.methods = {"publshed"};
+    EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
+}
+
+// ---- as it is read
+
+TEST(TradeTables, TextCsvAndJsonSayTheSame) {
+    const Model model = shipped("pendulum", 2);
+    const Trade result = trade(model, quick({0.01, 0.001}, 640));
+    ASSERT_TRUE(result.recommendation);
+    const std::string text = reports::trade_table(model, result), csv = reports::trade_csv(result);
+    EXPECT_NE(text.find("the same 10 output points"), std::string::npos);
+    EXPECT_NE(text.find("For 0.01 mm: " + describe(result.points[result.recommendation->point])),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("diverged"), std::string::npos);
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), result.points.size() + 1);
+    const auto json = nlohmann::ordered_json::parse(reports::trade_json(result).dump());
+    EXPECT_EQ(json["points"].size(), result.points.size());
+    EXPECT_TRUE(json["tolerance"]["deg"].is_null());
+    EXPECT_EQ(json["recommendation"]["position"], result.recommendation->point);
+    for (std::size_t k = 0; k < result.points.size(); ++k)
+        EXPECT_EQ(json["points"][k]["error"]["mm"].is_null(), std::isnan(result.points[k].error.mm)) << k;
+
+    const Trade none = trade(model, quick({1e-15}, 10));
+    EXPECT_NE(reports::trade_table(model, none).find("nothing here reaches it"), std::string::npos);
+    EXPECT_TRUE(reports::trade_json(none)["recommendation"].is_null());
+}
+
+TEST(TradeTables, PrecisionIsOneRowALevel) {
+    PrecisionOptions options;
+    options.most_steps = 160;
+    const PrecisionStudy study = precision_study(shipped("pinned_bar"), options);
+    const std::string csv = reports::precision_csv(study);
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 3 * 3 * 3);
+    EXPECT_EQ(reports::precision_json(study)["series"].size(), 9u);
+    EXPECT_NE(reports::precision_table(study).find("long double"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
