@@ -1,0 +1,172 @@
+// The ladder: each rung's order to the truth, and where a rung must say no.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/compile.hpp"
+#include "recursive/diagnosis.hpp"
+#include "recursive/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::Vector3d;
+
+Method rung(const char* name) { return *find_method(name); }
+
+// Largest distance of any body's origin [m], or of the orientation of a body without an idle mode [rad], over the recorded
+// points. Along an idle mode nothing is determined.
+double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath& b) {
+    EXPECT_EQ(a.points.size(), b.points.size());
+    std::vector<bool> idle(model.bodies.size(), false);
+    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
+    double worst = 0;
+    for (std::size_t k = 0; k < std::min(a.points.size(), b.points.size()); ++k)
+        for (std::size_t body = 0; body < idle.size(); ++body) {
+            const Pose &in_a = a.points[k].poses[body], &in_b = b.points[k].poses[body];
+            worst = std::max({worst, (in_a.r - in_b.r).norm(), idle[body] ? 0 : in_a.p.angularDistance(in_b.p)});
+        }
+    return worst;
+}
+
+// The branch to round-off: a rung of order 3 with many steps, whose residuals confirm that it is equilibrium.
+EquilibriumPath truth(const Model& model, const Branch& branch) {
+    const auto path = solve(model, branch, {.method = rung("chord"), .steps = 12000, .record = 10});
+    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+    const auto left = residuals(model, branch, path.points.back());
+    EXPECT_LE(std::max(left.force, left.moment), 1e-4);
+    EXPECT_LE(left.length, 1e-12);
+    return path;
+}
+
+TEST(Methods, EachRungHasItsOrderToTheTruth) {
+    for (const char* name : {"mcpherson", "mcpherson_preload", "pinned_bar", "bushing_pair", "two_spring_arch"}) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const auto exact = truth(model, branch);
+            for (const auto& method : methods) {
+                if (method.adaptive) continue;
+                const auto error = [&](int steps) {
+                    const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 10});
+                    EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << method.name << ": " << path.detail;
+                    return apart(model, path, exact);
+                };
+                // Fine enough for the leading term to lead, coarse enough to stay above round-off.
+                const int steps = method.formal_order == 2 ? 4000 : method.formal_order == 3 ? 500 : 1000;
+                const double coarse = error(steps), fine = error(2 * steps);
+                if (fine < 1e-11) continue;
+                EXPECT_NEAR(std::log2(coarse / fine), method.formal_order, method.formal_order > 0 ? 0.15 : 0.12)
+                    << name << " " << branch.name << " " << method.name << ": " << coarse << " " << fine;
+            }
+        }
+    }
+}
+
+TEST(Methods, ClosingTheConstraintsMakesTheirErrorFallTwiceAsFastAndNothingElse) {
+    const Model model = compile(support::scene("mcpherson"));
+    const auto Phi = [&](const char* name, int steps) {
+        return solve(model, model.branches[0], {.method = rung(name), .steps = steps}).points.back().constraint_error;
+    };
+    EXPECT_NEAR(std::log2(Phi("published", 300) / Phi("published", 600)), 1, 0.05);
+    EXPECT_NEAR(std::log2(Phi("closed", 300) / Phi("closed", 600)), 2, 0.05);
+}
+
+TEST(Methods, RecordedPointsAreThoseOfTheFullRun) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const auto& method : methods) {
+        if (method.adaptive) continue;
+        const auto full = solve(model, model.branches[0], {.method = method, .steps = 60});
+        const auto some = solve(model, model.branches[0], {.method = method, .steps = 60, .record = 12});
+        ASSERT_EQ(some.points.size(), 13u);
+        for (std::size_t k = 0; k < 13; ++k) {
+            EXPECT_EQ(some.points[k].load, full.points[5 * k].load);
+            EXPECT_EQ(some.points[k].poses[1].r, full.points[5 * k].poses[1].r);
+            EXPECT_EQ(some.points[k].reactions[0].force, full.points[5 * k].reactions[0].force);
+        }
+    }
+}
+
+TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
+            for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+                const auto path = solve(model, branch, {.method = rung("adaptive"), .steps = 150, .length_tolerance = tolerance,
+                                                        .angle_tolerance = tolerance});
+                ASSERT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
+                EXPECT_LE(apart(model, path, exact), tolerance + 1e-9) << name << " " << branch.name << " " << tolerance;
+            }
+        }
+    }
+}
+
+TEST(Methods, AdaptiveTakesFewSolvesForHundredsOfPoints) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const auto& branch : model.branches) {
+        const auto path = solve(model, branch, {.method = rung("adaptive"), .steps = 300});  // 0.01 mm, 0.001 deg
+        EXPECT_EQ(path.points.size(), 301u);
+        EXPECT_LE(path.counts.factorisations, 20);
+    }
+}
+
+TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
+    // Gap attribution starts from the published sum; with all three terms its limit is equilibrium.
+    const Model model = compile(support::scene("bushing_pair"));
+    const auto exact = truth(model, model.branches[0]);
+    Method method;
+    method.follow = everything;
+    const auto coarse = solve(model, model.branches[0], {.method = method, .steps = 200, .record = 10}),
+               fine = solve(model, model.branches[0], {.method = method, .steps = 400, .record = 10});
+    EXPECT_NEAR(std::log2(apart(model, coarse, exact) / apart(model, fine, exact)), 1, 0.1);
+}
+
+TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
+    // With hardly any steps a rung may be off by millimetres or say no; an error beyond twice the motion itself would be absurd.
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 3000, .record = 1});
+            double moved = 0;
+            for (std::size_t body = 0; body < model.bodies.size(); ++body)
+                moved = std::max({moved, (exact.points[1].poses[body].r - exact.points[0].poses[body].r).norm(),
+                                  exact.points[1].poses[body].p.angularDistance(exact.points[0].poses[body].p)});
+            for (const auto& method : methods)
+                for (const int steps : {1, 2, 3, 5, 10}) {
+                    const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 1});
+                    if (path.outcome != Outcome::converged) continue;
+                    const double error = apart(model, path, exact);
+                    EXPECT_LE(error, 2 * moved) << name << " " << branch.name << " " << method.name << " " << steps;
+                }
+        }
+    }
+}
+
+TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
+    const Model model = compile(support::scene("pinned_bar"));
+    const auto Phi = [&](Precision precision) {
+        return solve(model, model.branches[0], {.steps = 20000, .record = 1, .precision = precision}).points.back().constraint_error;
+    };
+    const double single = Phi(Precision::single), twofold = Phi(Precision::twofold), extended = Phi(Precision::extended);
+    EXPECT_GT(single, 1e3 * twofold);
+    EXPECT_GT(twofold, 10 * extended);
+}
+
+TEST(Methods, EveryRungGivesTheSameBitsEachTime) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const auto& method : methods) {
+        const auto a = solve(model, model.branches[1], {.method = method, .steps = 40}),
+                   b = solve(model, model.branches[1], {.method = method, .steps = 40});
+        for (std::size_t k = 0; k < a.points.size(); ++k) EXPECT_EQ(a.points[k].poses[1].r, b.points[k].poses[1].r);
+    }
+}
+
+TEST(Methods, AreFoundByName) {
+    for (const auto& method : methods) EXPECT_EQ(find_method(method.name)->name, method.name);
+    EXPECT_FALSE(find_method("tangnt"));
+    EXPECT_EQ(Options{}.method.name, "published");
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive
