@@ -21,6 +21,7 @@ struct March {
     State<Real> q;            // qⁿ
     State<Real> before;       // qⁿ⁻¹
     Vector<Real> lambda;      // λⁿ⁻¹, total
+    Vector<Real> lambda_half; // halfway to λⁿ
     Real a = 0;               // load factor of qⁿ
     SaddlePoint<Real> system;
 
@@ -38,7 +39,7 @@ struct March {
         system.weight.setOnes(n + m);
         for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
         for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
-        for (auto* v : {&lambda, &lower, &Phi}) v->setZero(m);
+        for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
         assemble<Real>(model, q, system.M, Phi);
         prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space);

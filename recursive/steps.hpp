@@ -81,9 +81,9 @@ Outcome step(March<Real>& s, Real next) {
         // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix from half a step ahead, now for (Δq, Δλ).
         s.dq = s.x.head(n) / 2;
         advance(s.q, s.dq);
-        const Vector<Real> lambda_half = (s.lambda + s.x.tail(m)) / 2;
+        s.lambda_half = (s.lambda + s.x.tail(m)) / 2;
         s.upper.noalias() -= s.system.M.topRightCorner(n, m) * s.lambda;
-        if (const Outcome outcome = factorise_at(s, s.q, lambda_half, next); outcome != Outcome::converged) return outcome;
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda_half, next); outcome != Outcome::converged) return outcome;
         s.q = s.before;
         back_substitute(s);
         s.lambda += s.x.tail(m);

@@ -1,0 +1,223 @@
+// The consistent tangent against differences of the residual it is the derivative of.
+#include "recursive/tangent.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "recursive/assembly.hpp"
+#include "tests/recursive/random.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::Vector3d;
+using Long = long double;
+
+constexpr BodyId bodies = 2;
+const std::vector<std::pair<BodyId, BodyId>> sides{{0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
+
+// Everything ∂G/∂q depends on.
+struct Case {
+    Model model;
+    Branch branch;
+    std::vector<Pose> poses;
+    Vector<double> lambda;
+    double a = 0.7;
+};
+
+Case anywhere(Random& random) {
+    Case c;
+    c.model.bodies.resize(bodies);
+    for (int b = 0; b < bodies; ++b) c.poses.push_back(random.pose());
+    return c;
+}
+
+void add(Case& c, const ConstraintKind& kind, Random& random) {
+    c.model.constraints.push_back({0, kind});
+    c.lambda = Vector<double>::NullaryExpr(constraint_rows(c.model), [&] { return random(-1e3, 1e3); });
+}
+
+Marker marker(BodyId body, Random& random) { return {body, random.vector(), random.rotation()}; }
+
+Bushing bushing(BodyId i, BodyId j, Random& random) {
+    Bushing e{marker(i, random), marker(j, random), random.stiffness(), {}};
+    e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
+    return e;
+}
+
+// Turns body j (or body i, where j is ground) until the relative rotation of the markers is θ.
+void turn_to(const Vector3d& theta, const Bushing& e, std::vector<Pose>& poses) {
+    const auto of = [&](BodyId b) { return b == ground ? Eigen::Quaterniond::Identity() : poses[static_cast<std::size_t>(b)].p; };
+    const Eigen::Quaterniond turn = exponential<double>(theta), I = e.i.A_local, J = e.j.A_local;
+    if (e.j.body != ground) poses[static_cast<std::size_t>(e.j.body)].p = of(e.i.body) * I * turn * J.conjugate();
+    else poses[static_cast<std::size_t>(e.i.body)].p = J * turn.conjugate() * I.conjugate();
+}
+
+template <class Real>
+Vector<Real> G(const Case& c, const State<Real>& q) {
+    Vector<Real> f, Phi(constraint_rows(c.model)), part;
+    const Vector<Real> lambda = c.lambda.cast<Real>();
+    elastic_force<Real>(c.model, q, f);
+    constraint_force<Real>(c.model, q, lambda, part, Phi);
+    f += part;
+    external_force<Real>(c.model, c.branch, static_cast<Real>(c.a), q, part);
+    return f - part;
+}
+
+template <class Real>
+Matrix<Real> tangent(const Case& c) {
+    Matrix<Real> T = Matrix<Real>::Zero(6 * bodies, 6 * bodies);
+    const Vector<Real> lambda = c.lambda.cast<Real>();
+    add_consistent_tangent<Real>(c.model, c.branch, static_cast<Real>(c.a), state_of<Real>(c.poses), lambda, T);
+    return T;
+}
+
+// (8 (G(h) - G(-h)) - (G(2h) - G(-2h))) / 12h, of order h⁴.
+Matrix<Long> differences(const Case& c) {
+    Matrix<Long> T(6 * bodies, 6 * bodies);
+    const Long h = 1e-4L;
+    for (int k = 0; k < 6 * bodies; ++k) {
+        const auto at = [&](Long share) {
+            State<Long> q = state_of<Long>(c.poses);
+            const Vector<Long> dq = share * h * Vector<Long>::Unit(6 * bodies, k);
+            advance(q, dq);
+            return G<Long>(c, q);
+        };
+        T.col(k) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+    }
+    return T;
+}
+
+// The largest difference of any entry, as a share of the largest entry.
+double apart(const Matrix<Long>& a, const Matrix<Long>& b) {
+    const Long size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    return size > 0 ? static_cast<double>((a - b).cwiseAbs().maxCoeff() / size) : 0;
+}
+
+void expect_derivative(const Case& c, const std::string& what, double limit = 1e-12) {
+    Eigen::Index row = 0, column = 0;
+    const Matrix<Long> T = tangent<Long>(c), D = differences(c);
+    (T - D).cwiseAbs().maxCoeff(&row, &column);
+    EXPECT_LE(apart(T, D), limit) << what << ": worst at (" << row << ", " << column << "): " << static_cast<double>(T(row, column))
+                                  << " instead of " << static_cast<double>(D(row, column));
+    EXPECT_LE(apart(tangent<double>(c).cast<Long>(), T), 1e-11) << what << ": double is not the same as long double";
+}
+
+TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (int trial = 0; trial < 20; ++trial) {
+            Case c = anywhere(random);
+            c.model.elastics.push_back({"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, 3e4, random(0.1, 3)}});
+            // The fifth derivative of a direction grows as ℓ⁻⁵ when the random ends come close.
+            const auto& e = std::get<AxialSpring>(c.model.elastics[0].kind);
+            const State<double> q = state_of<double>(c.poses);
+            if ((q[i].r + q[i].lever(e.i.s_local) - q[j].r - q[j].lever(e.j.s_local)).norm() < 0.3) continue;
+            expect_derivative(c, fmt::format("bodies {} {}", i, j));
+        }
+}
+
+TEST(Tangent, OfABushingIsTheDerivativeOfItsForceAtAnyAngle) {
+    const double at_switch = std::sqrt(1e-3);  // where the series for small angles end
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (const double angle : {0.0, 1e-9, 1e-4, 0.01, at_switch * (1 - 1e-9), at_switch * (1 + 1e-9), 0.04, 0.3, 1.0, 2.5}) {
+            Case c = anywhere(random);
+            const Bushing e = bushing(i, j, random);
+            turn_to(angle * random.unit(), e, c.poses);
+            c.model.elastics.push_back({"bushing", e});
+            expect_derivative(c, fmt::format("bodies {} {}, {} rad", i, j, angle));
+        }
+}
+
+TEST(Tangent, OfEveryConstraintIsTheDerivativeOfItsForce) {
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (int trial = 0; trial < 10; ++trial) {
+            const Point at_i{i, random.vector()}, at_j{j, random.vector()};
+            const Direction u_i{i, random.unit()}, u_j{j, random.unit()};
+            const std::pair<const char*, ConstraintKind> kinds[] = {{"coincident points", CoincidentPoints{at_i, at_j}},
+                                                                    {"point in plane", PointInPlane{at_i, at_j, u_j}},
+                                                                    {"perpendicular", PerpendicularDirections{u_i, u_j}},
+                                                                    {"distance", DistanceBetween{at_i, at_j, random(0.1, 2)}}};
+            Case all = anywhere(random);
+            for (const auto& [name, kind] : kinds) {
+                Case c = anywhere(random);
+                add(c, kind, random);
+                expect_derivative(c, fmt::format("{} on {} {}", name, i, j));
+                add(all, kind, random);
+            }
+            expect_derivative(all, fmt::format("all on {} {}", i, j));  // each with its own λ
+        }
+}
+
+TEST(Tangent, OfLoadsIsTheDerivativeOfTheirMoments) {
+    Random random;
+    for (BodyId body = 0; body < bodies; ++body)
+        for (const double a : {0.0, 0.7, -3000.0}) {
+            Case c = anywhere(random);
+            c.a = a;
+            c.model.static_loads = {{"weight", DeadForce{{body, random.vector()}, random.vector(600)}},
+                                    {"torque", DeadMoment{body, random.vector(50)}}};
+            c.branch.loads = {{"push", DeadForce{{body, random.vector()}, random.unit()}}, {"turn", DeadMoment{1 - body, random.unit()}}};
+            expect_derivative(c, fmt::format("body {}, a = {}", body, a));
+        }
+}
+
+Case everything_at_once(Random& random) {
+    Case c = anywhere(random);
+    for (const auto& [i, j] : sides) {
+        c.model.elastics.push_back({"bushing", bushing(i, j, random)});
+        c.model.elastics.push_back({"spring", AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, 3e4, 0.3}});
+        const Point at_i{i, random.vector()}, at_j{j, random.vector()};
+        add(c, CoincidentPoints{at_i, at_j}, random);
+        add(c, PointInPlane{at_i, at_j, {j, random.unit()}}, random);
+        add(c, PerpendicularDirections{{i, random.unit()}, {j, random.unit()}}, random);
+        add(c, DistanceBetween{at_i, at_j, 0.7}, random);
+    }
+    c.model.static_loads = {{"weight", DeadForce{{0, random.vector()}, random.vector(600)}}};
+    c.branch.loads = {{"push", DeadForce{{1, random.vector()}, random.vector(1e3)}}};
+    return c;
+}
+
+TEST(Tangent, OfEverythingTogetherIsTheDerivativeOfTheResidual) {
+    Random random;
+    for (int trial = 0; trial < 10; ++trial) expect_derivative(everything_at_once(random), fmt::format("trial {}", trial), 1e-10);
+}
+
+TEST(Tangent, IsSymmetricUpToTheMomentLeftOver) {
+    // Of a potential V, increments Δπ in ground axes: ∂(∂V/∂π)/∂π is symmetric up to the commutator of two rotations, so
+    // that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which equilibrium makes zero. No differences are involved.
+    Random random;
+    for (int trial = 0; trial < 20; ++trial) {
+        const Case c = everything_at_once(random);
+        const Vector<Long> left = G<Long>(c, state_of<Long>(c.poses));
+        Matrix<Long> T = tangent<Long>(c);
+        Matrix<Long> skew = T - T.transpose();
+        for (int b = 0; b < bodies; ++b) {
+            const Vector3<Long> moment = left.segment<3>(6 * b + 3);
+            skew.block<3, 3>(6 * b + 3, 6 * b + 3) += tilde(moment);
+        }
+        EXPECT_LE(static_cast<double>(skew.cwiseAbs().maxCoeff() / T.cwiseAbs().maxCoeff()), 1e-16);
+    }
+}
+
+TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
+    Random random;
+    for (const auto& [i, j] : sides) {
+        Case c = anywhere(random);
+        Bushing e = bushing(i, j, random);
+        e.preload.setZero();
+        turn_to(Vector3d::Zero(), e, c.poses);
+        const State<double> q = state_of<double>(c.poses);  // move one marker onto the other
+        const Vector3d D = q[j].r + q[j].lever(e.j.s_local) - q[i].r - q[i].lever(e.i.s_local);
+        if (j != ground) c.poses[static_cast<std::size_t>(j)].r -= D;
+        else c.poses[static_cast<std::size_t>(i)].r += D;
+        c.model.elastics.push_back({"bushing", e});
+        const Matrix<double> K = stiffness<double>(c.model, state_of<double>(c.poses));
+        EXPECT_LE(apart(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13) << i << " " << j;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive
