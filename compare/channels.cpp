@@ -88,7 +88,9 @@ Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibr
         result.load.push_back(point.load);
         result.values.push_back(evaluate(model, point));
         if (has_travel)
-            result.travel.push_back(millimetres * direction.normalized().dot(position(point, *leading) - position(points.front(), *leading)));
+            result.travel.push_back(
+                millimetres *
+                direction.normalized().dot(position(point, *leading) - position(points.front(), *leading)));
     }
     return result;
 }

@@ -17,16 +17,16 @@ const char* symbol(Unit unit);
 struct Channel {
     std::string name;  // "toe", "wheel_centre_y", "tip_z", "tie_rod.force_x"
     Unit unit = Unit::mm;
-    bool main = true;   // false: joint reactions, kept out of the short tables
-    int joint = -1;     // of a reaction: position in Model::joints
+    bool main = true;  // false: joint reactions, kept out of the short tables
+    int joint = -1;    // of a reaction: position in Model::joints
 };
 
 // The channels of a model, in order:
 //   wheel_centre_x, _y, _z   position of the wheel centre, ground axes
 //   toe      = atan2(e_x, side·e_y), positive toe-in            e = unit spin axis pointing outboard
-//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; per wheel, never the axle total
-//   PROBE_x, _y, _z          position of a probe
-//   JOINT.force_x ... moment_z   wrench of a joint on its first body, about the joint's point, ground axes
+//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; per wheel, never
+//   the axle total PROBE_x, _y, _z          position of a probe JOINT.force_x ... moment_z   wrench of a
+//   joint on its first body, about the joint's point, ground axes
 std::vector<Channel> channels(const Model& model);
 
 // Their values at one equilibrium, same order.
@@ -39,8 +39,8 @@ struct Curve {
     std::vector<std::vector<double>> values;  // [point][channel]
 };
 
-// Travel: displacement of the wheel centre (or the first probe) since load factor 0, along the resultant force of the
-// branch. For a vertical load that is wheel travel. A branch of moments alone has none.
+// Travel: displacement of the wheel centre (or the first probe) since load factor 0, along the resultant
+// force of the branch. For a vertical load that is wheel travel. A branch of moments alone has none.
 Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points);
 
 }  // namespace elastocheck::compare

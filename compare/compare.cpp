@@ -26,38 +26,47 @@ Residuals judge(Leg judge, const Model& model, const Branch& branch, const Equil
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 Residuals worse(const Residuals& a, const Residuals& b) {
-    return {worse(a.length, b.length), worse(a.direction, b.direction), worse(a.force, b.force), worse(a.moment, b.moment)};
+    return {worse(a.length, b.length), worse(a.direction, b.direction), worse(a.force, b.force),
+            worse(a.moment, b.moment)};
 }
 
 bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
 
 // Why the references do not count as one truth on this branch.
-std::vector<std::string> disagreements(const Comparison& all, const BranchComparison& branch, const Agreement& bound) {
+std::vector<std::string> disagreements(const Comparison& all, const BranchComparison& branch,
+                                       const Agreement& bound) {
     std::vector<std::string> reasons;
     for (const auto& run : branch.runs)
         if (run.path.outcome != Outcome::converged)
-            reasons.push_back(fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.path.outcome), run.path.detail));
+            reasons.push_back(fmt::format("{} leg: {}: {}", name(run.leg),
+                                          elastocheck::name(run.path.outcome), run.path.detail));
     if (!reasons.empty()) return reasons;
 
     const auto& reading = branch.uncertainty.equal_load;
     double largest_force = 0;
     for (std::size_t c = 0; c < all.channels.size(); ++c)
         if (!all.channels[c].main && all.unique[c])
-            for (const auto& point : branch.runs[1].curve.values) largest_force = worse(largest_force, std::abs(point[c]));
+            for (const auto& point : branch.runs[1].curve.values)
+                largest_force = worse(largest_force, std::abs(point[c]));
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!all.unique[c]) continue;
         const Unit unit = all.channels[c].unit;
-        const double limit = unit == Unit::mm ? bound.length : unit == Unit::deg ? bound.angle : bound.wrench * largest_force;
+        const double limit = unit == Unit::mm    ? bound.length
+                             : unit == Unit::deg ? bound.angle
+                                                 : bound.wrench * largest_force;
         if (!within(reading.channels[c].max, limit))
-            reasons.push_back(fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
-                                          all.channels[c].name, reading.channels[c].max, symbol(unit), limit));
+            reasons.push_back(
+                fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
+                            all.channels[c].name, reading.channels[c].max, symbol(unit), limit));
     }
-    for (const auto& [run, other] : {std::pair{&branch.runs[1], Leg::energy}, std::pair{&branch.runs[2], Leg::equilibrium}}) {
+    for (const auto& [run, other] :
+         {std::pair{&branch.runs[1], Leg::energy}, std::pair{&branch.runs[2], Leg::equilibrium}}) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
         if (!within(r.force, bound.residual_force) || !within(r.moment, bound.residual_force) ||
             !within(1e3 * r.length, bound.residual_length))
-            reasons.push_back(fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
-                                          name(run->leg), r.force, r.moment, 1e3 * r.length, name(other)));
+            reasons.push_back(fmt::format(
+                "the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
+                name(run->leg), r.force, r.moment, 1e3 * r.length, name(other)));
     }
     return reasons;
 }
@@ -112,7 +121,8 @@ Comparison compare(const Model& model, const Options& options) {
     Comparison result;
     result.channels = channels(model);
     std::vector<bool> redundant(model.joints.size(), false);
-    for (const auto& r : recursive::diagnose(model).redundant) redundant[static_cast<std::size_t>(r.joint)] = true;
+    for (const auto& r : recursive::diagnose(model).redundant)
+        redundant[static_cast<std::size_t>(r.joint)] = true;
     const bool any_redundant = std::ranges::find(redundant, true) != redundant.end();
     // A redundant joint shares its load with those it repeats, so no reaction of the model can be relied on.
     for (const auto& channel : result.channels) result.unique.push_back(channel.joint < 0 || !any_redundant);

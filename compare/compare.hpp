@@ -38,20 +38,21 @@ struct Pair {
 
 struct BranchComparison {
     std::string branch;
-    std::vector<LegRun> runs;                 // in the order of `legs`
-    Pair deviation;                        // the recursion against the equilibrium leg
-    Pair cross_check;                      // the recursion against the energy leg
-    Pair uncertainty;                      // the energy leg against the equilibrium leg
-    std::vector<std::string> inconclusive; // why this branch cannot be judged; empty when it can
+    std::vector<LegRun> runs;               // in the order of `legs`
+    Pair deviation;                         // the recursion against the equilibrium leg
+    Pair cross_check;                       // the recursion against the energy leg
+    Pair uncertainty;                       // the energy leg against the equilibrium leg
+    std::vector<std::string> inconclusive;  // why this branch cannot be judged; empty when it can
 };
 
 struct Comparison {
     std::vector<Channel> channels;
-    std::vector<bool> unique;  // per channel; the reaction of a redundant joint is not determined, so never compared
+    std::vector<bool>
+        unique;  // per channel; the reaction of a redundant joint is not determined, so never compared
     std::vector<BranchComparison> branches;
-    int compared = 0;          // numbers compared in all
+    int compared = 0;  // numbers compared in all
 
-    bool conclusive() const;   // every leg converged, the references agree, something was compared
+    bool conclusive() const;  // every leg converged, the references agree, something was compared
 };
 
 // When the references count as one truth. The bound on wrenches is a share of the largest one in the branch.
@@ -64,7 +65,7 @@ struct Agreement {
 };
 
 struct Options {
-    int steps = 0;                                       // 0: as each branch says
+    int steps = 0;  // 0: as each branch says
     Agreement agreement;
     std::function<void(std::string_view)> progress = {};  // told what is being solved
 };

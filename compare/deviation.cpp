@@ -74,7 +74,8 @@ Reading at_equal_load(const Curve& a, const Curve& b) {
     std::vector<Tally> tallies(a.values.front().size());
     for (std::size_t k = 0; k < std::min(a.load.size(), b.load.size()); ++k) {
         if (a.load[k] != b.load[k]) return nothing("the curves are not at the same loads");
-        for (std::size_t c = 0; c < tallies.size(); ++c) tallies[c].add(b.values[k][c] - a.values[k][c], a.load[k]);
+        for (std::size_t c = 0; c < tallies.size(); ++c)
+            tallies[c].add(b.values[k][c] - a.values[k][c], a.load[k]);
     }
     return finish(tallies, a);
 }
@@ -82,22 +83,27 @@ Reading at_equal_load(const Curve& a, const Curve& b) {
 double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at, int nodes) {
     const auto n = static_cast<std::ptrdiff_t>(x.size());
     const bool up = x.back() > x.front();
-    const auto above = std::lower_bound(x.begin(), x.end(), at, [&](double u, double v) { return up ? u < v : u > v; });
+    const auto above =
+        std::lower_bound(x.begin(), x.end(), at, [&](double u, double v) { return up ? u < v : u > v; });
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(nodes, n);
     const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(above - x.begin() - count / 2, 0, n - count);
     double sum = 0;  // Lagrange
     for (std::ptrdiff_t k = first; k < first + count; ++k) {
         double basis = 1;
         for (std::ptrdiff_t l = first; l < first + count; ++l)
-            if (l != k) basis *= (at - x[static_cast<std::size_t>(l)]) / (x[static_cast<std::size_t>(k)] - x[static_cast<std::size_t>(l)]);
+            if (l != k)
+                basis *= (at - x[static_cast<std::size_t>(l)]) /
+                         (x[static_cast<std::size_t>(k)] - x[static_cast<std::size_t>(l)]);
         sum += basis * y[static_cast<std::size_t>(k)];
     }
     return sum;
 }
 
 Reading at_equal_travel(const Curve& a, const Curve& b) {
-    if (a.travel.empty() || b.travel.empty()) return nothing("the branch has no travel: its loads are moments");
-    if (!strictly_monotone(a.travel) || !strictly_monotone(b.travel)) return nothing("travel is not monotone in the load");
+    if (a.travel.empty() || b.travel.empty())
+        return nothing("the branch has no travel: its loads are moments");
+    if (!strictly_monotone(a.travel) || !strictly_monotone(b.travel))
+        return nothing("travel is not monotone in the load");
     const auto [low, high] = std::minmax(b.travel.front(), b.travel.back());
     std::vector<Tally> tallies(a.values.front().size());
     int outside = 0;

@@ -1,7 +1,7 @@
 // How far two curves are apart, read at equal load and at equal travel.
 //
-// Both readings are true and differ: an error along the path of motion (a wrong rate) shows at equal load and vanishes at
-// equal travel; an error across it shows in both.
+// Both readings are true and differ: an error along the path of motion (a wrong rate) shows at equal load and
+// vanishes at equal travel; an error across it shows in both.
 #pragma once
 
 #include <string>
@@ -12,14 +12,15 @@
 namespace elastocheck::compare {
 
 struct Deviation {
-    double max = 0;             // largest |b - a|, in the channel's unit
-    double signed_max = 0;      // b - a where it is largest
-    double at = 0;              // there: load factor, or travel [mm]
-    double end = 0;             // b - a at the last compared point, signed
+    double max = 0;         // largest |b - a|, in the channel's unit
+    double signed_max = 0;  // b - a where it is largest
+    double at = 0;          // there: load factor, or travel [mm]
+    double end = 0;         // b - a at the last compared point, signed
     double rms = 0;
-    double range = 0;           // of the channel over curve a
-    double interpolation = 0;   // equal travel: how uncertain the interpolation of b is, largest over the points
-    int compared = 0;           // numbers compared; 0 means nothing was
+    double range = 0;  // of the channel over curve a
+    double interpolation =
+        0;             // equal travel: how uncertain the interpolation of b is, largest over the points
+    int compared = 0;  // numbers compared; 0 means nothing was
 };
 
 struct Reading {

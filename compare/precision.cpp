@@ -31,12 +31,9 @@ Accuracy distance(const std::vector<Channel>& channels, const std::vector<double
 
 const char* name(recursive::Precision precision) {
     switch (precision) {
-        case recursive::Precision::single:
-            return "float";
-        case recursive::Precision::twofold:
-            return "double";
-        case recursive::Precision::extended:
-            return "long double";
+        case recursive::Precision::single: return "float";
+        case recursive::Precision::twofold: return "double";
+        case recursive::Precision::extended: return "long double";
     }
     return "";
 }

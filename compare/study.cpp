@@ -15,10 +15,10 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double round_off = 1e-9;       // [mm], [deg]: differences below are the arithmetic's
-constexpr int stations = 30;             // along a branch, where curves are read
+constexpr double round_off = 1e-9;  // [mm], [deg]: differences below are the arithmetic's
+constexpr int stations = 30;        // along a branch, where curves are read
 constexpr int reference_points = 300;
-constexpr double agreement = 1e-6;       // [mm], [deg]: of the references
+constexpr double agreement = 1e-6;  // [mm], [deg]: of the references
 
 enum class Abscissa { load, travel };
 
@@ -27,14 +27,17 @@ std::vector<double> at_stations(const Curve& curve, std::size_t channel, Absciss
     const auto& x = abscissa == Abscissa::load ? curve.load : curve.travel;
     std::vector<double> y, values;
     for (const auto& point : curve.values) y.push_back(point[channel]);
-    for (int s = 1; s <= stations; ++s) values.push_back(s == stations && x.back() == end ? y.back() : interpolate(x, y, end * s / stations, 6));
+    for (int s = 1; s <= stations; ++s)
+        values.push_back(s == stations && x.back() == end ? y.back()
+                                                          : interpolate(x, y, end * s / stations, 6));
     return values;
 }
 
 bool strictly_monotone(const std::vector<double>& x) {
     if (x.size() < 2) return false;
     const bool up = x[1] > x[0];
-    return std::ranges::adjacent_find(x, [&](double a, double b) { return up ? !(b > a) : !(b < a); }) == x.end();
+    return std::ranges::adjacent_find(x, [&](double a, double b) { return up ? !(b > a) : !(b < a); }) ==
+           x.end();
 }
 
 // The largest travel that every curve reaches, or the load at the end; NaN where travel cannot be read.
@@ -62,7 +65,8 @@ References solve_references(const Model& model, const Branch& branch) {
     const auto second = reference::energy::solve(model, branch, loads);
     for (const auto& [leg, path] : {std::pair{"equilibrium", &first}, {"energy", &second}})
         if (path->outcome != Outcome::converged)
-            references.failure = fmt::format("{} leg: {}: {}", leg, elastocheck::name(path->outcome), path->detail);
+            references.failure =
+                fmt::format("{} leg: {}: {}", leg, elastocheck::name(path->outcome), path->detail);
     references.equilibrium = curve(model, branch, first.points);
     references.energy = curve(model, branch, second.points);
     return references;
@@ -87,20 +91,24 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return d;
 }
 
-// The own limit at every station: Richardson's, of its own where the sequence there converges, else the finest value.
-std::vector<double> own_limit(const std::vector<int>& steps, const std::vector<std::vector<double>>& levels, double formal) {
+// The own limit at every station: Richardson's, of its own where the sequence there converges, else the
+// finest value.
+std::vector<double> own_limit(const std::vector<int>& steps, const std::vector<std::vector<double>>& levels,
+                              double formal) {
     std::vector<double> limit;
     for (std::size_t s = 0; s < levels.front().size(); ++s) {
         std::vector<Level> sequence;
-        for (std::size_t l = 0; l < levels.size(); ++l) sequence.push_back({static_cast<double>(steps[l]), levels[l][s]});
+        for (std::size_t l = 0; l < levels.size(); ++l)
+            sequence.push_back({static_cast<double>(steps[l]), levels[l][s]});
         const auto c = step_convergence(sequence, formal, {round_off, 0});
         limit.push_back(c.behaviour == Behaviour::converging ? c.limit : levels.back()[s]);
     }
     return limit;
 }
 
-ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels, const References& references,
-                           std::size_t channel, double formal, Abscissa abscissa, double end) {
+ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels,
+                           const References& references, std::size_t channel, double formal,
+                           Abscissa abscissa, double end) {
     ChannelStudy result;
     const auto truth = at_stations(references.equilibrium, channel, abscissa, end);
     result.uncertainty = largest(difference(at_stations(references.energy, channel, abscissa, end), truth));
@@ -127,7 +135,8 @@ ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curv
     result.gap_max = largest(gap);
     result.gap_rms = rms(gap);
     std::vector<Level> growth;  // of the far half, where it is largest
-    for (int s = stations / 2; s < stations; ++s) growth.push_back({static_cast<double>(s + 1), gap[static_cast<std::size_t>(s)]});
+    for (int s = stations / 2; s < stations; ++s)
+        growth.push_back({static_cast<double>(s + 1), gap[static_cast<std::size_t>(s)]});
     const double floor = std::max({10 * result.end.band, 10 * result.uncertainty, 10 * round_off});
     result.gap_exponent = result.gap_max > floor ? -order_of(growth, floor).order : nan;
     return result;
@@ -175,11 +184,13 @@ Study study(const Model& model, const StudyOptions& options) {
             std::vector<Curve> levels;
             std::vector<Level> Phi;
             for (const int steps : options.steps) {
-                if (options.progress) options.progress(fmt::format("{}: {} with {} steps", branch.name, method.name, steps));
+                if (options.progress)
+                    options.progress(fmt::format("{}: {} with {} steps", branch.name, method.name, steps));
                 const auto path = recursive::solve(model, branch, {.method = method, .steps = steps});
                 m.outcomes.push_back(path.outcome);
                 if (path.outcome != Outcome::converged) {
-                    m.not_studied = fmt::format("with {} steps: {}: {}", steps, elastocheck::name(path.outcome), path.detail);
+                    m.not_studied = fmt::format("with {} steps: {}: {}", steps,
+                                                elastocheck::name(path.outcome), path.detail);
                     m.constraint_error.push_back(nan);
                     continue;
                 }
@@ -197,12 +208,14 @@ Study study(const Model& model, const StudyOptions& options) {
                     if (std::isnan(end)) continue;
                     auto& reading = abscissa == Abscissa::load ? m.equal_load : m.equal_travel;
                     for (const std::size_t c : shown)
-                        reading.push_back(study_channel(options.steps, levels, references, c, formal, abscissa, end));
+                        reading.push_back(
+                            study_channel(options.steps, levels, references, c, formal, abscissa, end));
                 }
                 for (std::size_t k = 0; k < m.equal_load.size(); ++k)
                     if (!(m.equal_load[k].uncertainty <= agreement))
-                        result.inconclusive.push_back(fmt::format("{}: the references disagree on {} by {:.2g}", branch.name,
-                                                                  result.channels[k].name, m.equal_load[k].uncertainty));
+                        result.inconclusive.push_back(
+                            fmt::format("{}: the references disagree on {} by {:.2g}", branch.name,
+                                        result.channels[k].name, m.equal_load[k].uncertainty));
             }
             b.methods.push_back(std::move(m));
         }
@@ -211,7 +224,8 @@ Study study(const Model& model, const StudyOptions& options) {
     return result;
 }
 
-std::vector<BranchAttribution> attribute_gap(const Model& model, const std::function<void(std::string_view)>& progress) {
+std::vector<BranchAttribution> attribute_gap(const Model& model,
+                                             const std::function<void(std::string_view)>& progress) {
     const std::vector<int> steps{300, 600, 1200, 2400};
     const auto shown = main_channels(channels(model));
     std::vector<BranchAttribution> result;
@@ -246,22 +260,26 @@ std::vector<BranchAttribution> attribute_gap(const Model& model, const std::func
                 for (unsigned bits = 0; bits < 8; ++bits) {
                     const auto s = study_channel(steps, levels[bits], references, c, 1, abscissa, end);
                     share.combinations.push_back(s.gap);
-                    // At the round-off floor the limit is the finest value; where nothing can be said the spread is the band.
+                    // At the round-off floor the limit is the finest value; where nothing can be said the
+                    // spread is the band.
                     const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
-                    share.band = std::max(share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
+                    share.band =
+                        std::max(share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
                 }
                 const auto& g = share.combinations;
                 // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both (1/3).
                 const auto effect = [&](unsigned term) {
                     const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3), t = 1u << term;
-                    return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 + (g[a | b] - g[7]) / 3;
+                    return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 +
+                           (g[a | b] - g[7]) / 3;
                 };
                 share.whole = g[0];
                 share.lever = effect(0);
                 share.axis = effect(1);
                 share.load = effect(2);
                 share.rest = g[7];
-                (abscissa == Abscissa::load ? attribution.equal_load : attribution.equal_travel).push_back(share);
+                (abscissa == Abscissa::load ? attribution.equal_load : attribution.equal_travel)
+                    .push_back(share);
             }
         }
         result.push_back(std::move(attribution));

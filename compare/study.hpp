@@ -3,8 +3,8 @@
 //   value(N) - truth = [value(N) - own limit]  +  [own limit - reference]  +  [reference - truth]
 //                       step error                formulation gap             reference uncertainty
 //
-// The own limit is Richardson's, per channel (convergence.hpp). Read at equal load and at equal travel. |Φ| of eq. (31)
-// stands beside them: it falls with the steps whatever the method converges to.
+// The own limit is Richardson's, per channel (convergence.hpp). Read at equal load and at equal travel. |Φ|
+// of eq. (31) stands beside them: it falls with the steps whatever the method converges to.
 #pragma once
 
 #include <functional>
@@ -21,21 +21,21 @@
 namespace elastocheck::compare {
 
 struct StudyOptions {
-    std::vector<recursive::Method> methods{recursive::Method{}};    // fixed-step ones
-    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};          // per branch, increasing, at least five
+    std::vector<recursive::Method> methods{recursive::Method{}};  // fixed-step ones
+    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};        // per branch, increasing, at least five
     std::function<void(std::string_view)> progress = {};
 };
 
 // One channel of one method over one branch, in the channel's unit.
 struct ChannelStudy {
-    StepConvergence end;                 // at the end of the branch
-    std::vector<double> step_error_end;  // per level: value - own limit, signed
+    StepConvergence end;                                 // at the end of the branch
+    std::vector<double> step_error_end;                  // per level: value - own limit, signed
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
-    double gap = 0;                      // own limit - reference at the end, signed
-    double gap_max = 0, gap_rms = 0;     // over the branch
-    double gap_exponent = 0;             // of |gap| over the load (equal load) or travel; NaN where it is at its floor
-    double uncertainty = 0;              // largest difference of the references over the branch
-    double range = 0;                    // of the reference over the branch
+    double gap = 0;                                      // own limit - reference at the end, signed
+    double gap_max = 0, gap_rms = 0;                     // over the branch
+    double gap_exponent = 0;  // of |gap| over the load (equal load) or travel; NaN where it is at its floor
+    double uncertainty = 0;   // largest difference of the references over the branch
+    double range = 0;         // of the reference over the branch
 };
 
 struct MethodStudy {
@@ -67,17 +67,17 @@ Study study(const Model& model, const StudyOptions& options = {});
 
 // ---- What the formulation gap is made of.
 //
-// The published recursion never turns what is stored. Three things can be made to follow the bodies (recursive/method.hpp): the
-// lever of the stored elastic force, its axis and law, and the lever of the load. Every combination has a limit of its own;
-// with all three it is equilibrium. A term's contribution is its mean effect over all orders of adding it (Shapley), so the
-// three add up to the whole gap exactly.
+// The published recursion never turns what is stored. Three things can be made to follow the bodies
+// (recursive/method.hpp): the lever of the stored elastic force, its axis and law, and the lever of the load.
+// Every combination has a limit of its own; with all three it is equilibrium. A term's contribution is its
+// mean effect over all orders of adding it (Shapley), so the three add up to the whole gap exactly.
 
 struct GapShare {
-    double whole = 0;                         // gap of the recursion in which nothing follows, signed
-    double lever = 0, axis = 0, load = 0;     // contributions; whole = lever + axis + load + rest
-    double rest = 0;                          // what is left with all three: 0 within `band`
-    double band = 0;                          // uncertainty of the limits and the reference
-    std::vector<double> combinations;         // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
+    double whole = 0;                      // gap of the recursion in which nothing follows, signed
+    double lever = 0, axis = 0, load = 0;  // contributions; whole = lever + axis + load + rest
+    double rest = 0;                       // what is left with all three: 0 within `band`
+    double band = 0;                       // uncertainty of the limits and the reference
+    std::vector<double> combinations;      // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
 };
 
 struct BranchAttribution {
@@ -86,6 +86,7 @@ struct BranchAttribution {
     std::string not_attributed;
 };
 
-std::vector<BranchAttribution> attribute_gap(const Model& model, const std::function<void(std::string_view)>& progress = {});
+std::vector<BranchAttribution> attribute_gap(const Model& model,
+                                             const std::function<void(std::string_view)>& progress = {});
 
 }  // namespace elastocheck::compare

@@ -43,10 +43,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint
                                      .record = points,
                                      .length_tolerance = with.own_tolerance,
                                      .angle_tolerance = angle_per_length * with.own_tolerance});
-        case Leg::equilibrium:
-            return reference::equilibrium::solve(model, branch, loads_of(branch, points));
-        case Leg::energy:
-            return reference::energy::solve(model, branch, loads_of(branch, points));
+        case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
+        case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
     }
     return {};
 }

@@ -14,10 +14,11 @@ struct Wrench {
 };
 
 struct Equilibrium {
-    double load = 0;                // load factor a of the branch
-    std::vector<Pose> poses;        // one per Model::bodies
-    std::vector<Wrench> reactions;  // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
-    double constraint_error = 0;    // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
+    double load = 0;          // load factor a of the branch
+    std::vector<Pose> poses;  // one per Model::bodies
+    std::vector<Wrench>
+        reactions;  // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
+    double constraint_error = 0;  // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
 };
 
 enum class Outcome {
@@ -32,8 +33,8 @@ enum class Outcome {
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
 
-// How far a state is from satisfying a leg's own equations: the largest absolute entries. Every leg can judge any state,
-// its own or another's, so nobody has to grade himself.
+// How far a state is from satisfying a leg's own equations: the largest absolute entries. Every leg can judge
+// any state, its own or another's, so nobody has to grade himself.
 struct Residuals {
     double length = 0;     // constraints that are lengths [m]
     double direction = 0;  // constraints that are cosines of directions [-]

@@ -18,8 +18,8 @@ namespace elastocheck {
 //   fixed          coincident points + x_i ⟂ y_j, x_i ⟂ z_j, y_i ⟂ z_j         6
 //   distance 1 · in-plane 1 · in-line 2 · perpendicular 1 · parallel 2
 //
-// `bodies` gives the design orientation, needed where a direction across an axis is not part of the joint: the
-// perpendicular directions of a translational joint are perpendicular at the design pose.
+// `bodies` gives the design orientation, needed where a direction across an axis is not part of the joint:
+// the perpendicular directions of a translational joint are perpendicular at the design pose.
 std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body>& bodies);
 
 }  // namespace elastocheck

@@ -1,7 +1,7 @@
 // A model: the scene as compiled, which is all that a leg ever sees.
 //
-// Two things happen between scene and model, once: joints are lowered to four basic constraints (lowering.hpp), and what
-// cannot influence an asked-for output is left out (compile.cpp).
+// Two things happen between scene and model, once: joints are lowered to four basic constraints
+// (lowering.hpp), and what cannot influence an asked-for output is left out (compile.cpp).
 #pragma once
 
 #include <optional>
@@ -15,10 +15,20 @@
 namespace elastocheck {
 
 // The basic constraints (Nikravesh 1988), as statements. Each leg writes its own equations for them.
-struct CoincidentPoints        { Point i, j; };                       // p_i = p_j                     3 rows
-struct PointInPlane            { Point i, j; Direction normal_j; };   // n_j · (p_i - p_j) = 0         1 row
-struct PerpendicularDirections { Direction i, j; };                   // u_i · u_j = 0                 1 row
-struct DistanceBetween         { Point i, j; double length = 0; };    // |p_i - p_j| = length          1 row
+struct CoincidentPoints {
+    Point i, j;
+};  // p_i = p_j                     3 rows
+struct PointInPlane {
+    Point i, j;
+    Direction normal_j;
+};  // n_j · (p_i - p_j) = 0         1 row
+struct PerpendicularDirections {
+    Direction i, j;
+};  // u_i · u_j = 0                 1 row
+struct DistanceBetween {
+    Point i, j;
+    double length = 0;
+};  // |p_i - p_j| = length          1 row
 
 using ConstraintKind = std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections, DistanceBetween>;
 struct Constraint {

@@ -9,8 +9,8 @@
 
 namespace elastocheck {
 
-// A named way out from the design position: f_ext(a) = static loads + a · (sum of `loads`), a from 0 to `to` in `steps`
-// equal increments. The paper's example is two branches, to +3000 and to -3000, 300 steps each.
+// A named way out from the design position: f_ext(a) = static loads + a · (sum of `loads`), a from 0 to `to`
+// in `steps` equal increments. The paper's example is two branches, to +3000 and to -3000, 300 steps each.
 struct Branch {
     std::string name;
     std::vector<Load> loads;  // per unit of the load factor a
@@ -20,8 +20,9 @@ struct Branch {
 
 struct Wheel {
     BodyId body = ground;
-    Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();      // [m]
-    Eigen::Vector3d contact_local = Eigen::Vector3d::Zero();     // contact patch at the design pose, a point of the body [m]
+    Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();  // [m]
+    Eigen::Vector3d contact_local =
+        Eigen::Vector3d::Zero();  // contact patch at the design pose, a point of the body [m]
     Eigen::Vector3d spin_axis_local = Eigen::Vector3d::UnitY();  // unit, pointing outboard
     int side = +1;                                               // +1 left, -1 right
 };

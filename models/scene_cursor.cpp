@@ -38,14 +38,10 @@ void Cursor::fail(const std::string& what) const { reader::fail(*file, value->li
 
 std::string Cursor::found() const {
     switch (value->kind) {
-        case Value::Kind::nothing:
-            return "nothing";
-        case Value::Kind::scalar:
-            return quote(value->text);
-        case Value::Kind::list:
-            return fmt::format("a list of {}", value->items.size());
-        case Value::Kind::map:
-            return "a map";
+        case Value::Kind::nothing: return "nothing";
+        case Value::Kind::scalar: return quote(value->text);
+        case Value::Kind::list: return fmt::format("a list of {}", value->items.size());
+        case Value::Kind::map: return "a map";
     }
     return "";
 }

@@ -38,15 +38,16 @@ void assemble(const Model& model, const State<Real>& q, Matrix<Real>& M, Vector<
 
 // The same with the consistent tangent ∂G/∂q in place of K (tangent.hpp).
 template <class Real>
-void assemble_consistent(const Model& model, const Branch& branch, Real a, const State<Real>& q, const Vector<Real>& lambda,
-                         Matrix<Real>& M, Vector<Real>& Phi) {
+void assemble_consistent(const Model& model, const Branch& branch, Real a, const State<Real>& q,
+                         const Vector<Real>& lambda, Matrix<Real>& M, Vector<Real>& Phi) {
     assemble_constraints<Real>(model, q, M, Phi);
     add_consistent_tangent<Real>(model, branch, a, q, lambda, M);
 }
 
 // Φ_qᵀ λ [6nb] and Φ(q), without the matrix.
 template <class Real>
-void constraint_force(const Model& model, const State<Real>& q, const Vector<Real>& lambda, Vector<Real>& f, Vector<Real>& Phi) {
+void constraint_force(const Model& model, const State<Real>& q, const Vector<Real>& lambda, Vector<Real>& f,
+                      Vector<Real>& Phi) {
     f.setZero(coordinates(model));
     for_each_row<Real>(model, q, [&](int k, const Row<Real>& row) {
         if (row.i != ground) f.template segment<6>(6 * row.i) += lambda[k] * row.on_i;

@@ -5,17 +5,17 @@
 //   Δp = Δr - s̃ Δπ,   Δu = -ũ Δπ for a direction u,   so   n·Δp = n·Δr + (s × n)·Δπ .
 //
 //   coincident points          Φ = p_i - p_j
-//   point in plane             Φ = n_j·d,  d = p_i - p_j        n_j turns with body j: its lever reaches to p_i
-//   perpendicular directions   Φ = u_i·u_j
-//   distance between           Φ = (d·d - ℓ²) / (2ℓ)            scaled so that Φ is a length and |Φ_q,r| is 1 on the surface
+//   point in plane             Φ = n_j·d,  d = p_i - p_j        n_j turns with body j: its lever reaches to
+//   p_i perpendicular directions   Φ = u_i·u_j distance between           Φ = (d·d - ℓ²) / (2ℓ) scaled so
+//   that Φ is a length and |Φ_q,r| is 1 on the surface
 #pragma once
 
 #include "recursive/state.hpp"
 
 namespace elastocheck::recursive {
 
-// One scalar constraint: its value and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ). A multiplier λ on it puts
-// the generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
+// One scalar constraint: its value and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ). A multiplier
+// λ on it puts the generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
 template <class Real>
 struct Row {
     BodyId i = ground, j = ground;

@@ -19,7 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // on rows of unit length
 
-// The root mean square lever of everything that is attached to a body: invariant under motions of the ground frame.
+// The root mean square lever of everything that is attached to a body: invariant under motions of the ground
+// frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
@@ -58,11 +59,13 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
     return Q.rightCols(columns - qr.rank());
 }
 
-// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size count alike.
+// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size
+// count alike.
 MatrixXd elastic_rows(const Model& model, const State<double>& q) {
     std::vector<VectorXd> rows;
     for (const auto& elastic : model.elastics) {
-        const auto e = std::visit([&](const auto& kind) { return element_stiffness<double>(kind, q); }, elastic.kind);
+        const auto e =
+            std::visit([&](const auto& kind) { return element_stiffness<double>(kind, q); }, elastic.kind);
         const Eigen::Matrix<double, 6, 1> s = e.K.diagonal().cwiseMax(0).cwiseSqrt();
         const Eigen::Matrix<double, 6, 1> inverse = s.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
         const Matrix6<double> C = inverse.asDiagonal() * e.K * inverse.asDiagonal();
@@ -114,35 +117,42 @@ Vector3d shown(const Vector3d& u) {
 }
 
 // "rotation about ..." or "translation along ..." of the twist (v, w) of a body at r.
-std::string describe(const Model& model, const State<double>& q, BodyId body, const Vector3d& v, const Vector3d& w,
-                     double length) {
+std::string describe(const Model& model, const State<double>& q, BodyId body, const Vector3d& v,
+                     const Vector3d& w, double length) {
     const std::string& name = model.bodies[static_cast<std::size_t>(body)].name;
     if (w.norm() * length < 1e-6 * v.norm()) {
         const Vector3d u = shown(v.normalized());
         return fmt::format("{}: translation along ({:.3f}, {:.3f}, {:.3f})", name, u.x(), u.y(), u.z());
     }
-    const Vector3d foot = q[body].r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
+    const Vector3d foot =
+        q[body].r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
     const Vector3d u = w.normalized();
     std::vector<std::string> on_axis;
     const auto look = [&](const std::string& what, const auto& point) {
         if constexpr (requires { point.s_local; }) {
             if (point.body != body) return;
             const Vector3d p = q[body].r + q[body].lever(point.s_local);
-            if ((p - foot).cross(u).norm() < 1e-6 * length && std::ranges::find(on_axis, what) == on_axis.end())
+            if ((p - foot).cross(u).norm() < 1e-6 * length &&
+                std::ranges::find(on_axis, what) == on_axis.end())
                 on_axis.push_back(what);
         }
     };
     for (const auto& c : model.constraints)
-        std::visit([&](const auto& e) { look(model.joints[static_cast<std::size_t>(c.joint)].name, e.i),
-                                        look(model.joints[static_cast<std::size_t>(c.joint)].name, e.j); }, c.kind);
+        std::visit(
+            [&](const auto& e) {
+                look(model.joints[static_cast<std::size_t>(c.joint)].name, e.i),
+                    look(model.joints[static_cast<std::size_t>(c.joint)].name, e.j);
+            },
+            c.kind);
     for (const auto& e : model.elastics)
         std::visit([&](const auto& kind) { look(e.name, kind.i), look(e.name, kind.j); }, e.kind);
     const double pitch = v.dot(w) / w.squaredNorm();  // [m/rad]
     const char* motion = std::abs(pitch) < 1e-6 * length ? "rotation" : "screw motion";
     if (on_axis.size() >= 2)
-        return fmt::format("{}: {} about the line through '{}' and '{}'", name, motion, on_axis.front(), on_axis.back());
-    return fmt::format("{}: {} about the axis ({:.3f}, {:.3f}, {:.3f}) through ({:.4f}, {:.4f}, {:.4f}) m", name, motion,
-                       shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
+        return fmt::format("{}: {} about the line through '{}' and '{}'", name, motion, on_axis.front(),
+                           on_axis.back());
+    return fmt::format("{}: {} about the axis ({:.3f}, {:.3f}, {:.3f}) through ({:.4f}, {:.4f}, {:.4f}) m",
+                       name, motion, shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
 }
 
 // κ₂ without the `nullity` smallest singular values.
@@ -180,7 +190,8 @@ Diagnosis diagnose(const Model& model) {
             if (c.joint == joint) k += rows(c.kind);
         const int rank = rank_of(Phi_q.topRows(k));
         const int repeated = (k - first) - (rank - rank_before);
-        const bool contradicts = k > first && !(Phi.segment(first, k - first).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, L));
+        const bool contradicts =
+            k > first && !(Phi.segment(first, k - first).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, L));
         if (repeated > 0) result.redundant.push_back({joint, repeated, contradicts});
         rank_before = rank;
     }
@@ -197,7 +208,8 @@ Diagnosis diagnose(const Model& model) {
         mode.dq = (idle(largest, c) < 0 ? -1 : 1) * (physical.asDiagonal() * idle.col(c));
         (void)idle.col(c).reshaped(6, nb).colwise().norm().maxCoeff(&largest);
         mode.body = static_cast<BodyId>(largest);
-        mode.description = describe(model, q, mode.body, mode.dq.segment<3>(6 * largest), mode.dq.segment<3>(6 * largest + 3), L);
+        mode.description = describe(model, q, mode.body, mode.dq.segment<3>(6 * largest),
+                                    mode.dq.segment<3>(6 * largest + 3), L);
         result.idle.push_back(mode);
     }
 
@@ -205,7 +217,8 @@ Diagnosis diagnose(const Model& model) {
     result.null_space.setZero(n + m, idle.cols() + redundant.cols());
     result.null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
     if (redundant.cols() > 0)  // λ of the unscaled rows
-        result.null_space.bottomRightCorner(m, redundant.cols()) = row_norm.cwiseInverse().asDiagonal() * redundant;
+        result.null_space.bottomRightCorner(m, redundant.cols()) =
+            row_norm.cwiseInverse().asDiagonal() * redundant;
 
     // f_ext(0) - f_elast, projected on what the constraints leave free.
     VectorXd f(n);

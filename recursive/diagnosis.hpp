@@ -1,8 +1,10 @@
-// What the design position tells before anything is solved: rank, redundant constraints, idle modes, conditioning.
+// What the design position tells before anything is solved: rank, redundant constraints, idle modes,
+// conditioning.
 //
-// Rank is a question of geometry, not of stiffness: it is judged on rows of unit length, in coordinates (Δr, L Δπ) with L a
-// characteristic length, so neither the unit of length nor a rate of 1e12 N/m can hide an equation. An idle mode is a
-// Δq that no constraint and no elastic element notices: a null vector of the stacked rows
+// Rank is a question of geometry, not of stiffness: it is judged on rows of unit length, in coordinates (Δr,
+// L Δπ) with L a characteristic length, so neither the unit of length nor a rate of 1e12 N/m can hide an
+// equation. An idle mode is a Δq that no constraint and no elastic element notices: a null vector of the
+// stacked rows
 //
 //   ⎡ Φ_q           ⎤
 //   ⎣ √K_e B_e, ... ⎦     one block per elastic element, Bᵀ K_e B its stiffness (elastic.hpp)
@@ -16,15 +18,15 @@
 namespace elastocheck::recursive {
 
 struct IdleMode {
-    BodyId body = ground;         // the body that moves most
-    Eigen::VectorXd dq;           // [6nb], unit in (Δr, L Δπ)
-    std::string description;      // "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'"
+    BodyId body = ground;     // the body that moves most
+    Eigen::VectorXd dq;       // [6nb], unit in (Δr, L Δπ)
+    std::string description;  // "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'"
 };
 
 struct Redundancy {
-    int joint = 0;                // position in Model::joints
-    int rows = 0;                 // how many of its rows repeat what the joints before it already hold
-    bool contradicts = false;     // whether Φ ≠ 0 there: the joints cannot all be met
+    int joint = 0;             // position in Model::joints
+    int rows = 0;              // how many of its rows repeat what the joints before it already hold
+    bool contradicts = false;  // whether Φ ≠ 0 there: the joints cannot all be met
 };
 
 struct Diagnosis {
@@ -33,10 +35,12 @@ struct Diagnosis {
     int rank = 0;                 // of Φ_q
     double length = 1;            // L, characteristic lever of the model [m]
     double constraint_error = 0;  // largest |Φ| at the design position [m] or [-]
-    double imbalance = 0;         // largest force [N] (or moment/L) that is left at load factor 0 at the design position
+    double imbalance =
+        0;  // largest force [N] (or moment/L) that is left at load factor 0 at the design position
     std::vector<Redundancy> redundant;
     std::vector<IdleMode> idle;
-    Eigen::MatrixXd null_space;   // of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d]
+    Eigen::MatrixXd
+        null_space;  // of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d]
 
     int degrees_of_freedom() const { return coordinates - rank; }
 };
@@ -45,8 +49,8 @@ Diagnosis diagnose(const Model& model);
 
 // κ₂ of eq. (24) at the design position, idle and redundant directions left out.
 struct Conditioning {
-    double raw = 0;          // as it stands: depends on the unit of length; shown because it is what others see
-    double equilibrated = 0; // rows and columns scaled to unit size
+    double raw = 0;  // as it stands: depends on the unit of length; shown because it is what others see
+    double equilibrated = 0;  // rows and columns scaled to unit size
 };
 Conditioning conditioning(const Model& model, const Diagnosis& diagnosis);
 

@@ -1,21 +1,23 @@
 // Elastic elements: the stiffness matrix of eqs. (8)-(20), and the force of the full nonlinear law.
 //
-// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen from body i,
+// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen from body
+// i,
 //
 //   Δe = ⎧ Δr_j' - Δr_i' ⎫ = B ⎧ Δq_i ⎫ ,   B = ⎡ -I   s̃_i   I   -s̃_j ⎤      Δr' = Δr - s̃ Δπ
 //        ⎩ Δπ_j  - Δπ_i  ⎭     ⎩ Δq_j ⎭         ⎣  0   -I    0    I   ⎦
 //
-// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections (design.md 3.1): its sign, so
-// that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block row, third and fourth
-// block. Written out,
+// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections (design.md 3.1):
+// its sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block
+// row, third and fourth block. Written out,
 //
 //   ⎡ K_ii  K_ij ⎤   ⎡  K_T         -K_T s̃_i              -K_T          K_T s̃_j            ⎤
 //   ⎣ K_ji  K_jj ⎦ = ⎢  s̃_i K_T     -s̃_i K_T s̃_i + K_R    -s̃_i K_T      s̃_i K_T s̃_j - K_R  ⎥      (19)
 //                    ⎢ -K_T          K_T s̃_i               K_T         -K_T s̃_j            ⎥
 //                    ⎣ -s̃_j K_T      s̃_j K_T s̃_i - K_R     s̃_j K_T     -s̃_j K_T s̃_j + K_R  ⎦
 //
-// The levers s_i, s_j are the paper's, each to its own attachment point. Where the two points have drifted apart by D this
-// leaves out the moment D × F that the law has: part of the published method's formulation gap, kept on purpose.
+// The levers s_i, s_j are the paper's, each to its own attachment point. Where the two points have drifted
+// apart by D this leaves out the moment D × F that the law has: part of the published method's formulation
+// gap, kept on purpose.
 #pragma once
 
 #include "recursive/state.hpp"
@@ -27,40 +29,51 @@ template <class Real>
 struct ElementStiffness {
     BodyId i = ground, j = ground;
     Vector3<Real> s_i, s_j;
-    Matrix6<Real> K;  // of (translation, rotation) of j relative to i [N/m  N; N  N·m]
+    Matrix6<Real> K;         // of (translation, rotation) of j relative to i [N/m  N; N  N·m]
     bool rotational = true;  // whether anything outside K_T is there
 };
 
 template <class Real>
 ElementStiffness<Real> element_stiffness(const AxialSpring& e, const State<Real>& q) {
-    ElementStiffness<Real> k{e.i.body, e.j.body, q[e.i.body].lever(e.i.s_local), q[e.j.body].lever(e.j.s_local),
-                             Matrix6<Real>::Zero(), false};
+    ElementStiffness<Real> k{e.i.body,
+                             e.j.body,
+                             q[e.i.body].lever(e.i.s_local),
+                             q[e.j.body].lever(e.j.s_local),
+                             Matrix6<Real>::Zero(),
+                             false};
     const Vector3<Real> n = (q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i).normalized();
-    k.K.template topLeftCorner<3, 3>() = static_cast<Real>(e.k) * n * n.transpose();  // (8), (10): one axis, along the spring
+    k.K.template topLeftCorner<3, 3>() =
+        static_cast<Real>(e.k) * n * n.transpose();  // (8), (10): one axis, along the spring
     return k;
 }
 
 template <class Real>
 ElementStiffness<Real> element_stiffness(const Bushing& e, const State<Real>& q) {
-    ElementStiffness<Real> k{e.i.body, e.j.body, q[e.i.body].lever(e.i.s_local), q[e.j.body].lever(e.j.s_local),
-                             {},       !e.K.template rightCols<3>().isZero(0)};
+    ElementStiffness<Real> k{e.i.body,
+                             e.j.body,
+                             q[e.i.body].lever(e.i.s_local),
+                             q[e.j.body].lever(e.j.s_local),
+                             {},
+                             !e.K.template rightCols<3>().isZero(0)};
     const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
     const Matrix6<Real> K_local = e.K.cast<Real>();
     for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b)  // K_T = A_i K_T' A_iᵀ, K_R = A_i K_R' A_iᵀ                                (10)-(11)
+        for (int b = 0; b < 2; ++b)  // K_T = A_i K_T' A_iᵀ, K_R = A_i K_R' A_iᵀ (10)-(11)
             k.K.template block<3, 3>(3 * a, 3 * b).noalias() =
                 A_i * K_local.template block<3, 3>(3 * a, 3 * b) * A_i.transpose();
     return k;
 }
 
-// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top left corner.
+// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top left
+// corner.
 template <class Real, class Target>
 void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
     // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b).
     const Matrix3<Real> K_T = e.K.template topLeftCorner<3, 3>(), C = e.K.template topRightCorner<3, 3>(),
                         K_R = e.K.template bottomRightCorner<3, 3>();
     const Matrix3<Real> tilde_i = tilde(e.s_i), tilde_j = tilde(e.s_j);
-    const auto add = [&](BodyId a, BodyId b, const Matrix3<Real>& tilde_a, const Matrix3<Real>& tilde_b, Real sign) {
+    const auto add = [&](BodyId a, BodyId b, const Matrix3<Real>& tilde_a, const Matrix3<Real>& tilde_b,
+                         Real sign) {
         if (a == ground || b == ground) return;
         const Matrix3<Real> K_Ts = C - K_T * tilde_b;  // force per rotation of b
         Matrix3<Real> moment = tilde_a * K_Ts;
@@ -88,7 +101,8 @@ Matrix<Real> stiffness(const Model& model, const State<Real>& q) {
 // ---- The law itself: f_elast(q) = ∂U/∂q, which K Δq linearises at an unloaded design position.
 //
 // Spring:  f = k (ℓ - ℓ₀) n along its axis n.
-// Bushing: with F' = ∂U/∂d, M' = ∂U/∂θ in marker axes, F = A_i F' and δd = A_iᵀ (δp_j - δp_i - δπ_i × D), D = p_j - p_i,
+// Bushing: with F' = ∂U/∂d, M' = ∂U/∂θ in marker axes, F = A_i F' and δd = A_iᵀ (δp_j - δp_i - δπ_i × D), D =
+// p_j - p_i,
 //   on j: ( F, s_j × F + M )   on i: ( -F, -(s_i + D) × F - M )   M = A_i J(θ)⁻ᵀ M'
 // where δθ = J(θ)⁻¹ A_iᵀ (δπ_j - δπ_i), J the left Jacobian of the rotation group:
 //   J(θ)⁻¹ = I - ½ θ̃ + c(θ) θ̃²,  c = (1 - (θ/2) cot(θ/2)) / θ².
@@ -100,8 +114,10 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
     Eigen::Quaternion<Real> p(R);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit there.
-    const Real factor = sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
+    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit
+    // there.
+    const Real factor =
+        sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
     return factor * p.vec();
 }
 
@@ -110,7 +126,8 @@ template <class Real>
 Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     using std::tan;
     const Real t2 = theta.squaredNorm();
-    // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it nothing cancels badly.
+    // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it nothing
+    // cancels badly.
     Real c;
     if (t2 < Real(1e-3)) {
         c = Real(1) / 12 + t2 * (Real(1) / 720 + t2 * (Real(1) / 30240 + t2 * (Real(1) / 1209600)));
@@ -122,8 +139,9 @@ Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     return Matrix3<Real>::Identity() - t / 2 + c * (t * t);
 }
 
-// The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and where its line of action passes: levers from
-// both origins to p_j (bushing: the frame rides on i, so it is p_j for both) or to either end of a spring.
+// The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and where its line of action
+// passes: levers from both origins to p_j (bushing: the frame rides on i, so it is p_j for both) or to either
+// end of a spring.
 template <class Real>
 struct ElementForce {
     Vector3<Real> F, M;
@@ -135,7 +153,8 @@ ElementForce<Real> element_force(const AxialSpring& e, const State<Real>& q) {
     const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
     const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
     const Real length = D.norm();
-    return {static_cast<Real>(e.k) * (length - static_cast<Real>(e.free_length)) / length * D, Vector3<Real>::Zero(), s_i, s_j};
+    return {static_cast<Real>(e.k) * (length - static_cast<Real>(e.free_length)) / length * D,
+            Vector3<Real>::Zero(), s_i, s_j};
 }
 
 template <class Real>
@@ -148,7 +167,8 @@ ElementForce<Real> element_force(const Bushing& e, const State<Real>& q) {
     strain << A_i.transpose() * D, logarithm<Real>(A_i.transpose() * A_j);
     const Vector6<Real> stress = e.K.cast<Real>() * strain + e.preload.cast<Real>();
     const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(strain.template tail<3>());
-    return {A_i * stress.template head<3>(), A_i * (J_inverse.transpose() * stress.template tail<3>()), s_i + D, s_j};
+    return {A_i * stress.template head<3>(), A_i * (J_inverse.transpose() * stress.template tail<3>()),
+            s_i + D, s_j};
 }
 
 // Adds (F, s × F + M) on body j and its opposite on body i to f [6nb].
@@ -169,7 +189,9 @@ template <class Real>
 void elastic_force(const Model& model, const State<Real>& q, Vector<Real>& f) {
     f.setZero(coordinates(model));
     for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { add_element_force<Real>(e.i.body, e.j.body, element_force<Real>(e, q), f); }, elastic.kind);
+        std::visit(
+            [&](const auto& e) { add_element_force<Real>(e.i.body, e.j.body, element_force<Real>(e, q), f); },
+            elastic.kind);
 }
 template <class Real>
 Vector<Real> elastic_force(const Model& model, const State<Real>& q) {

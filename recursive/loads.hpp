@@ -5,7 +5,8 @@
 
 namespace elastocheck::recursive {
 
-// Adds factor · (sum of loads) to f_ext [6nb]. A force at a body point has a lever s = A s' that moves with the body.
+// Adds factor · (sum of loads) to f_ext [6nb]. A force at a body point has a lever s = A s' that moves with
+// the body.
 template <class Real>
 void add_loads(const std::vector<Load>& loads, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
     for (const auto& load : loads) {
@@ -23,7 +24,8 @@ void add_loads(const std::vector<Load>& loads, Real factor, const State<Real>& q
 
 // f_ext(q, a) = static loads + a · branch loads.
 template <class Real>
-void external_force(const Model& model, const Branch& branch, Real a, const State<Real>& q, Vector<Real>& f_ext) {
+void external_force(const Model& model, const Branch& branch, Real a, const State<Real>& q,
+                    Vector<Real>& f_ext) {
     f_ext.setZero(coordinates(model));
     add_loads<Real>(model.static_loads, Real(1), q, f_ext);
     add_loads<Real>(branch.loads, a, q, f_ext);

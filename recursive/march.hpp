@@ -15,29 +15,36 @@ struct March {
     const Model& model;
     const Branch& branch;
     const Method& method;
-    double length;            // L of the diagnosis [m]
+    double length;  // L of the diagnosis [m]
     Counts counts;
 
-    State<Real> q;            // qⁿ
-    State<Real> before;       // qⁿ⁻¹
-    Vector<Real> lambda;      // λⁿ⁻¹, total
-    Vector<Real> lambda_half; // halfway to λⁿ
-    Real a = 0;               // load factor of qⁿ
+    State<Real> q;             // qⁿ
+    State<Real> before;        // qⁿ⁻¹
+    Vector<Real> lambda;       // λⁿ⁻¹, total
+    Vector<Real> lambda_half;  // halfway to λⁿ
+    Real a = 0;                // load factor of qⁿ
     SaddlePoint<Real> system;
 
-    Vector<Real> applied;     // f_ext as far as the method lets it follow, at (qⁿ, aⁿ⁺¹)
-    Vector<Real> stored;      // f_elast as far as the method lets it follow, at qⁿ
-    std::vector<ElementForce<Real>> element;  // of each elastic element, where stored forces are kept by element
+    Vector<Real> applied;  // f_ext as far as the method lets it follow, at (qⁿ, aⁿ⁺¹)
+    Vector<Real> stored;   // f_elast as far as the method lets it follow, at qⁿ
+    std::vector<ElementForce<Real>>
+        element;  // of each elastic element, where stored forces are kept by element
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int swings = 0;           // steps in a row that reversed the one before and were larger
+    int swings = 0;  // steps in a row that reversed the one before and were larger
 
     March(const Model& model_, const Branch& branch_, const Method& method_, const Diagnosis& diagnosis)
-        : model(model_), branch(branch_), method(method_), length(diagnosis.length), q(design_state<Real>(model)), before(q) {
+        : model(model_),
+          branch(branch_),
+          method(method_),
+          length(diagnosis.length),
+          q(design_state<Real>(model)),
+          before(q) {
         const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
         system.M.setZero(n + m, n + m);
         system.weight.setOnes(n + m);
-        for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
+        for (int b = 0; b < n / 6; ++b)
+            system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
         for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
         for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
@@ -59,7 +66,8 @@ Real load_on_idle_modes(const March<Real>& s) {
     return worst;
 }
 
-// How far the held motions are from idle, and the held combinations from redundant, at q: 0 for exactly so, up to 1.
+// How far the held motions are from idle, and the held combinations from redundant, at q: 0 for exactly so,
+// up to 1.
 //   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
 //   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
 template <class Real>
@@ -69,8 +77,10 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     for (int c = 0; c < system.idle; ++c) {
         Real energy = 0, single = 0;
         for (const auto& elastic : s.model.elastics) {
-            const auto e = std::visit([&](const auto& kind) { return element_stiffness<Real>(kind, q); }, elastic.kind);
-            const Real k_T = e.K.template topLeftCorner<3, 3>().trace(), k_R = e.K.template bottomRightCorner<3, 3>().trace();
+            const auto e =
+                std::visit([&](const auto& kind) { return element_stiffness<Real>(kind, q); }, elastic.kind);
+            const Real k_T = e.K.template topLeftCorner<3, 3>().trace(),
+                       k_R = e.K.template bottomRightCorner<3, 3>().trace();
             Vector6<Real> de = Vector6<Real>::Zero();
             const auto end = [&](BodyId b, const Vector3<Real>& lever, Real sign) {
                 if (b == ground) return;
@@ -78,7 +88,8 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
                 const Vector3<Real> v = z.template head<3>(), w = z.template tail<3>();
                 de.template head<3>() += sign * (v - lever.cross(w));
                 de.template tail<3>() += sign * w;
-                single += k_T * (v.squaredNorm() + static_cast<Real>(s.length * s.length) * w.squaredNorm()) + k_R * w.squaredNorm();
+                single += k_T * (v.squaredNorm() + static_cast<Real>(s.length * s.length) * w.squaredNorm()) +
+                          k_R * w.squaredNorm();
             };
             end(e.i, e.s_i, -1);
             end(e.j, e.s_j, +1);
@@ -95,13 +106,15 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     return worst;
 }
 
-// Stored forces that do not follow are turned with one step's delay: where their stiffness k_g exceeds the elements' k a
-// step answers Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., reverses the last one and outgrows it, and more steps only give it more room.
-// The linearisation itself, eq. (6), means nothing for a rotation of a radian in one step.
+// Stored forces that do not follow are turned with one step's delay: where their stiffness k_g exceeds the
+// elements' k a step answers Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., reverses the last one and outgrows it, and more
+// steps only give it more room. The linearisation itself, eq. (6), means nothing for a rotation of a radian
+// in one step.
 template <class Real>
 bool has_diverged(March<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
-    const bool swung = (weighted * s.last.array()).sum() < 0 && weighted.matrix().squaredNorm() > s.last.squaredNorm();
+    const bool swung =
+        (weighted * s.last.array()).sum() < 0 && weighted.matrix().squaredNorm() > s.last.squaredNorm();
     s.swings = swung ? s.swings + 1 : 0;
     s.last = weighted;
     Real turn = 0;
@@ -112,14 +125,17 @@ bool has_diverged(March<Real>& s) {
 // Assembles and factorises the method's matrix at (q, λ) with the load factor a, and judges it.
 template <class Real>
 Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda, Real a) {
-    if (s.method.consistent) assemble_consistent<Real>(s.model, s.branch, a, q, lambda, s.system.M, s.Phi);
-    else assemble<Real>(s.model, q, s.system.M, s.Phi);
+    if (s.method.consistent)
+        assemble_consistent<Real>(s.model, s.branch, a, q, lambda, s.system.M, s.Phi);
+    else
+        assemble<Real>(s.model, q, s.system.M, s.Phi);
     const Real pivot_ratio = factorise(s.system);
     ++s.counts.factorisations;
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
-    // What is idle or redundant where the constraints are met blurs with the constraint error (and with rounding): strain and
-    // a load's share on it grow in proportion. More than that is real, and holding it would be a quiet wrong number.
+    // What is idle or redundant where the constraints are met blurs with the constraint error (and with
+    // rounding): strain and a load's share on it grow in proportion. More than that is real, and holding it
+    // would be a quiet wrong number.
     const Real rounding = 1e7 * std::numeric_limits<Real>::epsilon();
     const Real blur = s.Phi.norm() / static_cast<Real>(std::min(1.0, s.length));
     if (!(strain_of_held(s, q) <= rounding + Real(1e-3) + 100 * blur)) return Outcome::singular;
@@ -146,8 +162,8 @@ void back_substitute(March<Real>& s) {
 }
 
 template <class Real>
-void record(March<Real>& s, const State<Real>& q, const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load,
-            Equilibrium& point) {
+void record(March<Real>& s, const State<Real>& q, const State<Real>& where_lambda_acts,
+            const Vector<Real>& lambda, double load, Equilibrium& point) {
     point.load = load;
     for (std::size_t b = 0; b < point.poses.size(); ++b) {
         point.poses[b].r = q[static_cast<BodyId>(b)].r.template cast<double>();
@@ -161,7 +177,8 @@ void record(March<Real>& s, const State<Real>& q, const State<Real>& where_lambd
 
 // Recorded points to be, so that the stepping allocates nothing.
 inline void make_room(const Model& model, int points, EquilibriumPath& path) {
-    const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()), std::vector<Wrench>(model.joints.size()), 0};
+    const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()),
+                            std::vector<Wrench>(model.joints.size()), 0};
     path.points.assign(static_cast<std::size_t>(points), blank);
 }
 

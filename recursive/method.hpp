@@ -11,8 +11,8 @@
 //   midpoint    the same, matrix taken half a step ahead         ∂(forces)/∂q    2       3
 //   adaptive    chord, with the step size from its own error estimate
 //
-// A method that starts each step from the true residual does not accumulate: its error at a point is the error of the last
-// step, so an order p in one step is the order p at the end.
+// A method that starts each step from the true residual does not accumulate: its error at a point is the
+// error of the last step, so an order p in one step is the order p at the end.
 #pragma once
 
 #include <array>
@@ -21,11 +21,13 @@
 
 namespace elastocheck::recursive {
 
-// What of the forces stored by earlier steps turns with the bodies. The published sum turns nothing but the load's lever.
+// What of the forces stored by earlier steps turns with the bodies. The published sum turns nothing but the
+// load's lever.
 struct Follow {
-    bool lever = false;  // the stored force of an element acts at the present position of its attachment points
-    bool axis = false;   // ... and points where the element's law says now, as large as it says
-    bool load = true;    // the load already applied acts at the present position of its point
+    bool lever =
+        false;  // the stored force of an element acts at the present position of its attachment points
+    bool axis = false;  // ... and points where the element's law says now, as large as it says
+    bool load = true;   // the load already applied acts at the present position of its point
 
     friend bool operator==(const Follow&, const Follow&) = default;
 };
@@ -47,9 +49,24 @@ inline constexpr std::array methods{
     Method{.name = "closed", .closed = true},
     Method{.name = "balanced", .follow = everything, .closed = true, .formal_order = 1},
     Method{.name = "tangent", .follow = everything, .closed = true, .consistent = true, .formal_order = 2},
-    Method{.name = "chord", .follow = everything, .closed = true, .consistent = true, .corrections = 1, .formal_order = 3},
-    Method{.name = "midpoint", .follow = everything, .closed = true, .consistent = true, .midpoint = true, .formal_order = 3},
-    Method{.name = "adaptive", .follow = everything, .closed = true, .consistent = true, .corrections = 1, .adaptive = true,
+    Method{.name = "chord",
+           .follow = everything,
+           .closed = true,
+           .consistent = true,
+           .corrections = 1,
+           .formal_order = 3},
+    Method{.name = "midpoint",
+           .follow = everything,
+           .closed = true,
+           .consistent = true,
+           .midpoint = true,
+           .formal_order = 3},
+    Method{.name = "adaptive",
+           .follow = everything,
+           .closed = true,
+           .consistent = true,
+           .corrections = 1,
+           .adaptive = true,
            .formal_order = 3},
 };
 

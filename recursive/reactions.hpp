@@ -6,10 +6,12 @@
 
 namespace elastocheck::recursive {
 
-// f_ext = f_elast + Φ_qᵀ λ, so what the joint puts on its body i is -(Φ_qᵀ λ)_i, a force with a moment about the body's
-// origin; moved here to the joint's point, p = r + s:  M_p = M_r - s × F. Ground is a body like any other.
+// f_ext = f_elast + Φ_qᵀ λ, so what the joint puts on its body i is -(Φ_qᵀ λ)_i, a force with a moment about
+// the body's origin; moved here to the joint's point, p = r + s:  M_p = M_r - s × F. Ground is a body like
+// any other.
 template <class Real>
-void joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>& lambda, std::vector<Wrench>& wrenches) {
+void joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>& lambda,
+                    std::vector<Wrench>& wrenches) {
     for (auto& wrench : wrenches) wrench = {};
     int k = 0;
     for (const auto& constraint : model.constraints) {

@@ -33,7 +33,9 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
             worse(result.moment, f[6 * b + 3 + c]);
         }
     }
-    for_each_row<double>(model, q, [&](int, const Row<double>& row) { worse(row.length ? result.length : result.direction, row.Phi); });
+    for_each_row<double>(model, q, [&](int, const Row<double>& row) {
+        worse(row.length ? result.length : result.direction, row.Phi);
+    });
     return result;
 }
 

@@ -3,19 +3,19 @@
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩ 0 ⎭      [(6nb + m) × (6nb + m)]      (24)
 //
-// The raw matrix mixes N/m, N·m and pure numbers, so it is scaled symmetrically to M̂ = D M D with unit rows (Ruiz) before
-// anything is judged on it. D holds powers of two: scaling changes no digit.
+// The raw matrix mixes N/m, N·m and pure numbers, so it is scaled symmetrically to M̂ = D M D with unit rows
+// (Ruiz) before anything is judged on it. D holds powers of two: scaling changes no digit.
 //
-// A motion z that nothing resists (idle mode), or a combination y of constraints that says nothing new, makes M singular in
-// a direction that is known beforehand (diagnosis.hpp). It is held by bordering,
+// A motion z that nothing resists (idle mode), or a combination y of constraints that says nothing new, makes
+// M singular in a direction that is known beforehand (diagnosis.hpp). It is held by bordering,
 //
 // ⎡ M̂   b ⎤ ⎧ x̂ ⎫   ⎧ f̂ ⎫                       ⎡ M̂   b ⎤ ⎧ n ⎫   ⎧ 0 ⎫
 // ⎣ bᵀ  0 ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭    and, for next time,  ⎣ bᵀ  0 ⎦ ⎩ ν ⎭ = ⎩ 1 ⎭      b = (W² z, 0) or (0, y)
 //
-// with the same factors. bᵀ x = 0 is what singles out the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ of minimum
-// norm. n is the null vector of the present configuration and gives z (y) for the next step. Only the Δq part of an idle n
-// is kept (and the λ part of a redundant one): the other part is the constraint error that the published method leaves, and
-// feeding it back grows it.
+// with the same factors. bᵀ x = 0 is what singles out the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ
+// of minimum norm. n is the null vector of the present configuration and gives z (y) for the next step. Only
+// the Δq part of an idle n is kept (and the λ part of a redundant one): the other part is the constraint
+// error that the published method leaves, and feeding it back grows it.
 #pragma once
 
 #include <Eigen/LU>
@@ -59,8 +59,10 @@ void orthonormalise(SaddlePoint<Real>& system) {
     const auto W2 = system.weight.array().square();
     for (int c = 0; c < system.borders(); ++c) {
         auto z = system.held.col(c);
-        if (c < system.idle) z.tail(system.m).setZero();
-        else z.head(system.n).setZero();
+        if (c < system.idle)
+            z.tail(system.m).setZero();
+        else
+            z.head(system.n).setZero();
         for (int b = 0; b < c; ++b) {
             const Real overlap = (z.array() * W2 * system.held.col(b).array()).sum();
             z -= overlap * system.held.col(b);
@@ -69,8 +71,8 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// Fixes the scaling from the matrix now in M, and what to hold: `idle` modes first, then redundant combinations, in the
-// columns of `null_space` [(n+m) × d].
+// Fixes the scaling from the matrix now in M, and what to hold: `idle` modes first, then redundant
+// combinations, in the columns of `null_space` [(n+m) × d].
 template <class Real>
 void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space) {
     system.scale = equilibration<Real>(system.M);
@@ -84,9 +86,11 @@ void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
     system.lu = Eigen::PartialPivLU<Matrix<Real>>(size);
 }
 
-// x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is allocated.
+// x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is
+// allocated.
 template <class Real>
-void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower, Vector<Real>& x) {
+void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower,
+                     Vector<Real>& x) {
     const int N = system.n + system.m;
     auto rhs = system.rhs.col(0);
     rhs.head(system.n) = f;
@@ -97,8 +101,8 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
     x = system.scale.asDiagonal() * system.x.col(0).head(N);
 }
 
-// Factorises the matrix now in M and renews what is held. Nothing is allocated. Returns the smallest over the largest pivot
-// of the scaled, bordered matrix; the caller judges it.
+// Factorises the matrix now in M and renews what is held. Nothing is allocated. Returns the smallest over the
+// largest pivot of the scaled, bordered matrix; the caller judges it.
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
     const int N = system.n + system.m, d = system.borders();

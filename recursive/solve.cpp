@@ -17,13 +17,15 @@ std::string words(const Diagnosis& diagnosis, Outcome outcome, double load) {
     } else if (outcome == Outcome::singular && diagnosis.null_space.cols() > 0) {
         detail += ": the matrix lost rank, or what was idle or redundant at the design position no longer is";
     } else if (outcome == Outcome::diverged) {
-        detail += ": the stored forces turn stiffer than the elements are, the recursion is unstable from here on";
+        detail +=
+            ": the stored forces turn stiffer than the elements are, the recursion is unstable from here on";
     }
     return detail;
 }
 
 template <class Real>
-EquilibriumPath march(const Model& model, const Branch& branch, const Options& options, const Diagnosis& diagnosis) {
+EquilibriumPath march(const Model& model, const Branch& branch, const Options& options,
+                      const Diagnosis& diagnosis) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
     March<Real> s(model, branch, options.method, diagnosis);
@@ -46,13 +48,15 @@ EquilibriumPath march(const Model& model, const Branch& branch, const Options& o
 
     if (const Outcome outcome = settle(s); outcome != Outcome::converged) return finish(outcome, 0);
     if (options.method.adaptive) {
-        const Outcome outcome = adapt(s, options.length_tolerance, options.angle_tolerance, branch.to, path, reached);
+        const Outcome outcome =
+            adapt(s, options.length_tolerance, options.angle_tolerance, branch.to, path, reached);
         return finish(outcome, static_cast<double>(s.a));
     }
     keep(0);
     for (int k = 1; k <= N; ++k) {
         const double load = branch.to * k / N;
-        if (const Outcome outcome = step(s, static_cast<Real>(load)); outcome != Outcome::converged) return finish(outcome, load);
+        if (const Outcome outcome = step(s, static_cast<Real>(load)); outcome != Outcome::converged)
+            return finish(outcome, load);
         if (static_cast<long>(k) * points % N == 0) keep(load);
     }
     return finish(Outcome::converged, branch.to);
@@ -65,8 +69,9 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
     if (!(diagnosis.constraint_error <= 1e-9)) {
         EquilibriumPath path;
         path.outcome = Outcome::inconsistent_constraints;
-        path.detail = fmt::format("branch '{}': the joints are not closed at the design position, |Φ| = {:.3g}", branch.name,
-                                  diagnosis.constraint_error);
+        path.detail =
+            fmt::format("branch '{}': the joints are not closed at the design position, |Φ| = {:.3g}",
+                        branch.name, diagnosis.constraint_error);
         return path;
     }
     switch (options.precision) {

@@ -11,24 +11,24 @@ namespace elastocheck::recursive {
 enum class Precision { single, twofold, extended };
 
 struct Options {
-    Method method = {};                       // published
-    int steps = 0;                            // equal load increments over the branch; 0: as many as the branch says
-    int record = 0;                           // equal load increments between recorded points, a divisor of steps; 0: every step
+    Method method = {};  // published
+    int steps = 0;       // equal load increments over the branch; 0: as many as the branch says
+    int record = 0;      // equal load increments between recorded points, a divisor of steps; 0: every step
     Precision precision = Precision::twofold;
-    double length_tolerance = 1e-5;           // adaptive: error of any body's origin [m] ...
-    double angle_tolerance = 1.745e-5;        // ... and orientation [rad] at any point of the branch
+    double length_tolerance = 1e-5;     // adaptive: error of any body's origin [m] ...
+    double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
 };
 
-// Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them. A point carries
-// its configuration, |Φ| of eq. (31), and the joint wrenches. While nothing follows the bodies these are λⁿ⁻¹ with the
-// Jacobian it was solved with, eq. (22); else λ with the present one.
+// Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them.
+// A point carries its configuration, |Φ| of eq. (31), and the joint wrenches. While nothing follows the
+// bodies these are λⁿ⁻¹ with the Jacobian it was solved with, eq. (22); else λ with the present one.
 //
-// The published method takes one factorisation per step, and one more where static loads or preloads ask for λ⁻¹
-// (design.md 3.1 (e)). `adaptive` takes steps of its own and evaluates the recorded points between them.
+// The published method takes one factorisation per step, and one more where static loads or preloads ask for
+// λ⁻¹ (design.md 3.1 (e)). `adaptive` takes steps of its own and evaluates the recorded points between them.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
 
-// How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances are formed
-// from Equilibrium::reactions.
+// How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances
+// are formed from Equilibrium::reactions.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::recursive

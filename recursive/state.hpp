@@ -36,7 +36,9 @@ struct BodyState {
     Eigen::Quaternion<Real> p = Eigen::Quaternion<Real>::Identity();
     Matrix3<Real> A = Matrix3<Real>::Identity();  // of p
 
-    Vector3<Real> lever(const Eigen::Vector3d& s_local) const { return A * s_local.cast<Real>(); }  // s = A s'
+    Vector3<Real> lever(const Eigen::Vector3d& s_local) const {
+        return A * s_local.cast<Real>();
+    }  // s = A s'
 };
 
 // The generalised coordinates q. Ground is a body like any other, at rest in slot 0.
@@ -81,7 +83,8 @@ Eigen::Quaternion<Real> exponential(const Vector3<Real>& dpi) {
     return {cos(half), v.x(), v.y(), v.z()};
 }
 
-// q + Δq, Δq_i = (Δr_i, Δπ_i) with Δπ in ground axes [6 nb]: eqs. (4)-(5), the rotation by the exponential map.
+// q + Δq, Δq_i = (Δr_i, Δπ_i) with Δπ in ground axes [6 nb]: eqs. (4)-(5), the rotation by the exponential
+// map.
 template <class Real, class Increment>
 void advance(State<Real>& q, const Eigen::MatrixBase<Increment>& dq) {
     for (BodyId b = 0; b < q.bodies(); ++b) {

@@ -4,11 +4,12 @@
 //
 //   G(q, λ) = f_elast(q) + Φ_q(q)ᵀ λ - f_ext(q, a)
 //
-// ∂G/∂q has, beside the material stiffness, the turning of the forces that are already there: the elastic geometric
-// stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load stiffness. Increments are (Δr, Δπ) in ground axes,
-// in which ∂G/∂q is not symmetric away from equilibrium.
+// ∂G/∂q has, beside the material stiffness, the turning of the forces that are already there: the elastic
+// geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load stiffness. Increments are
+// (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from equilibrium.
 //
-// Everything below is a variation of a force F at a lever, written as 3×12 matrices over (Δr_i, Δπ_i, Δr_j, Δπ_j):
+// Everything below is a variation of a force F at a lever, written as 3×12 matrices over (Δr_i, Δπ_i, Δr_j,
+// Δπ_j):
 //
 //   δp = δr - s̃ δπ,   δu = -ũ δπ,   δ(x × F) = -F̃ δx + x̃ δF .
 #pragma once
@@ -23,7 +24,8 @@ namespace detail {
 template <class Real>
 using Variation = Eigen::Matrix<Real, 3, 12>;
 
-// δp of a point with lever s on the first (slot 0) or second (slot 1) body, and δu of a direction fixed in it.
+// δp of a point with lever s on the first (slot 0) or second (slot 1) body, and δu of a direction fixed in
+// it.
 template <class Real>
 Variation<Real> of_point(int slot, const Vector3<Real>& s) {
     Variation<Real> v = Variation<Real>::Zero();
@@ -48,13 +50,15 @@ Variation<Real> of_rotation(int slot) {
     return v;
 }
 template <class Real>
-Variation<Real> of_cross(const Vector3<Real>& x, const Variation<Real>& dx, const Vector3<Real>& F, const Variation<Real>& dF) {
+Variation<Real> of_cross(const Vector3<Real>& x, const Variation<Real>& dx, const Vector3<Real>& F,
+                         const Variation<Real>& dF) {
     return tilde(x) * dF - tilde(F) * dx;
 }
 
 // Adds the variation of the generalised force (F, M about the origin) on one body of the pair (i, j).
 template <class Real, class Target>
-void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variation<Real>& dM, Target& target) {
+void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variation<Real>& dM,
+         Target& target) {
     if (on == ground) return;
     const BodyId column[] = {i, j};
     for (int slot = 0; slot < 2; ++slot) {
@@ -69,13 +73,16 @@ template <class Real, class Target>
 void add_tangent(const AxialSpring& e, const State<Real>& q, Target& target) {
     const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
     const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
-    const Real length = D.norm(), k = static_cast<Real>(e.k), t = k * (length - static_cast<Real>(e.free_length));
+    const Real length = D.norm(), k = static_cast<Real>(e.k),
+               t = k * (length - static_cast<Real>(e.free_length));
     const Vector3<Real> n = D / length, F = t * n;
     const Matrix3<Real> along = n * n.transpose();
     const Variation<Real> dF = (k * along + t / length * (Matrix3<Real>::Identity() - along)) *
                                (of_point<Real>(1, s_j) - of_point<Real>(0, s_i));
-    add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF), target);
-    add<Real>(e.i.body, e.i.body, e.j.body, -dF, -of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
+    add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF),
+              target);
+    add<Real>(e.i.body, e.i.body, e.j.body, -dF, -of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF),
+              target);
 }
 
 // ∂(J(θ)⁻ᵀ m)/∂θ. With J⁻ᵀ = I + ½ θ̃ + c θ̃² and ∇c = h θ:
@@ -96,7 +103,8 @@ Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m)
         h = ((u / (sin(u) * sin(u)) - 1 / tan(u)) / (2 * t) - 2 * c) / t2;
     }
     const Vector3<Real> turned = theta.cross(m);
-    return -tilde(m) / 2 - c * (tilde(turned) + tilde(theta) * tilde(m)) + h * theta.cross(turned) * theta.transpose();
+    return -tilde(m) / 2 - c * (tilde(turned) + tilde(theta) * tilde(m)) +
+           h * theta.cross(turned) * theta.transpose();
 }
 
 // Bushing: F = A_i F', M = A_i J(θ)⁻ᵀ M', (F', M') = K e + preload;
@@ -121,24 +129,30 @@ void add_tangent(const Bushing& e, const State<Real>& q, Target& target) {
     const Variation<Real> drho = dp_j - of_origin<Real>(0);
     const Variation<Real> dd = A_i.transpose() * (drho + tilde(rho) * dpi_i);
     const Variation<Real> dtheta = J_inverse * A_i.transpose() * (of_rotation<Real>(1) - dpi_i);
-    const Variation<Real> dstress_F = K.template topRows<3>().template leftCols<3>() * dd + K.template topRightCorner<3, 3>() * dtheta;
-    const Variation<Real> dstress_M = K.template bottomLeftCorner<3, 3>() * dd + K.template bottomRightCorner<3, 3>() * dtheta;
+    const Variation<Real> dstress_F =
+        K.template topRows<3>().template leftCols<3>() * dd + K.template topRightCorner<3, 3>() * dtheta;
+    const Variation<Real> dstress_M =
+        K.template bottomLeftCorner<3, 3>() * dd + K.template bottomRightCorner<3, 3>() * dtheta;
     const Variation<Real> dF = A_i * dstress_F - tilde(F) * dpi_i;
-    const Variation<Real> dM =
-        A_i * (J_inverse.transpose() * dstress_M + turning_moment<Real>(theta, stress.template tail<3>()) * dtheta) -
-        tilde(M) * dpi_i;
-    add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF) + dM, target);
+    const Variation<Real> dM = A_i * (J_inverse.transpose() * dstress_M +
+                                      turning_moment<Real>(theta, stress.template tail<3>()) * dtheta) -
+                               tilde(M) * dpi_i;
+    add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF) + dM,
+              target);
     add<Real>(e.i.body, e.i.body, e.j.body, -dF, -(of_cross<Real>(rho, drho, F, dF) + dM), target);
 }
 
-// λ[n  s_i × n; -n  -s_j × n] and its relatives (constraints.hpp), with λ n = F turning as the constraint says.
+// λ[n  s_i × n; -n  -s_j × n] and its relatives (constraints.hpp), with λ n = F turning as the constraint
+// says.
 template <class Real, class Target>
 void add_curvature(const CoincidentPoints& c, const State<Real>& q, const Real* lambda, Target& target) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> F(lambda[0], lambda[1], lambda[2]);
     const Variation<Real> zero = Variation<Real>::Zero();
-    add<Real>(c.i.body, c.i.body, c.j.body, zero, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, zero), target);
-    add<Real>(c.j.body, c.i.body, c.j.body, zero, -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, zero), target);
+    add<Real>(c.i.body, c.i.body, c.j.body, zero, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, zero),
+              target);
+    add<Real>(c.j.body, c.i.body, c.j.body, zero, -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, zero),
+              target);
 }
 
 template <class Real, class Target>
@@ -148,15 +162,18 @@ void add_curvature(const PointInPlane& c, const State<Real>& q, const Real* lamb
     const Vector3<Real> rho = q[c.i.body].r + s_i - q[c.j.body].r;  // p_i from the origin of j
     const Variation<Real> dF = of_direction<Real>(1, F);
     const Variation<Real> drho = of_point<Real>(0, s_i) - of_origin<Real>(1);
-    add<Real>(c.i.body, c.i.body, c.j.body, dF, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
+    add<Real>(c.i.body, c.i.body, c.j.body, dF, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF),
+              target);
     add<Real>(c.j.body, c.i.body, c.j.body, -dF, -of_cross<Real>(rho, drho, F, dF), target);
 }
 
 template <class Real, class Target>
-void add_curvature(const PerpendicularDirections& c, const State<Real>& q, const Real* lambda, Target& target) {
+void add_curvature(const PerpendicularDirections& c, const State<Real>& q, const Real* lambda,
+                   Target& target) {
     const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), u_j = q[c.j.body].lever(c.j.u_local);
     const Variation<Real> zero = Variation<Real>::Zero();
-    const Variation<Real> dM = *lambda * of_cross<Real>(u_i, of_direction<Real>(0, u_i), u_j, of_direction<Real>(1, u_j));
+    const Variation<Real> dM =
+        *lambda * of_cross<Real>(u_i, of_direction<Real>(0, u_i), u_j, of_direction<Real>(1, u_j));
     add<Real>(c.i.body, c.i.body, c.j.body, zero, dM, target);
     add<Real>(c.j.body, c.i.body, c.j.body, zero, -dM, target);
 }
@@ -167,8 +184,10 @@ void add_curvature(const DistanceBetween& c, const State<Real>& q, const Real* l
     const Real factor = *lambda / static_cast<Real>(c.length);
     const Vector3<Real> F = factor * (q[c.i.body].r + s_i - q[c.j.body].r - s_j);
     const Variation<Real> dF = factor * (of_point<Real>(0, s_i) - of_point<Real>(1, s_j));
-    add<Real>(c.i.body, c.i.body, c.j.body, dF, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
-    add<Real>(c.j.body, c.i.body, c.j.body, -dF, -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF), target);
+    add<Real>(c.i.body, c.i.body, c.j.body, dF, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF),
+              target);
+    add<Real>(c.j.body, c.i.body, c.j.body, -dF, -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF),
+              target);
 }
 
 // A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ.
@@ -178,7 +197,8 @@ void add_load_stiffness(const std::vector<Load>& loads, Real factor, const State
         if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
             const BodyId b = force->at.body;
             const Vector3<Real> f = factor * force->f.cast<Real>();
-            target.template block<3, 3>(6 * b + 3, 6 * b + 3) -= tilde(f) * tilde(q[b].lever(force->at.s_local));
+            target.template block<3, 3>(6 * b + 3, 6 * b + 3) -=
+                tilde(f) * tilde(q[b].lever(force->at.s_local));
         }
 }
 
@@ -186,13 +206,14 @@ void add_load_stiffness(const std::vector<Load>& loads, Real factor, const State
 
 // Adds ∂G/∂q [6nb × 6nb] to the top left of `target`.
 template <class Real, class Target>
-void add_consistent_tangent(const Model& model, const Branch& branch, Real a, const State<Real>& q, const Vector<Real>& lambda,
-                            Target& target) {
+void add_consistent_tangent(const Model& model, const Branch& branch, Real a, const State<Real>& q,
+                            const Vector<Real>& lambda, Target& target) {
     for (const auto& elastic : model.elastics)
         std::visit([&](const auto& e) { detail::add_tangent<Real>(e, q, target); }, elastic.kind);
     int k = 0;
     for (const auto& constraint : model.constraints) {
-        std::visit([&](const auto& c) { detail::add_curvature<Real>(c, q, lambda.data() + k, target); }, constraint.kind);
+        std::visit([&](const auto& c) { detail::add_curvature<Real>(c, q, lambda.data() + k, target); },
+                   constraint.kind);
         k += rows(constraint.kind);
     }
     detail::add_load_stiffness<Real>(model.static_loads, Real(1), q, target);

@@ -19,7 +19,8 @@ std::string quoted(std::string_view text) {
 
 std::string curves_header(const std::vector<compare::Channel>& channels) {
     std::string line = "branch,leg,load factor,travel [mm]";
-    for (const auto& channel : channels) line += fmt::format(",{}", quoted(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
+    for (const auto& channel : channels)
+        line += fmt::format(",{}", quoted(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
     return line + "\n";
 }
 

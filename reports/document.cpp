@@ -9,8 +9,9 @@ using compare::Leg;
 json provenance_json(const Provenance& p) {
     json libraries = json::object();
     for (const auto& library : p.libraries) libraries[library.name] = library.version;
-    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty}, {"compiler", p.compiler},
-            {"flags", p.flags},         {"cpu", p.cpu},       {"libraries", libraries}};
+    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
+            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
+            {"libraries", libraries}};
 }
 
 json model_json(const Model& model, const recursive::Diagnosis& d) {
@@ -22,7 +23,8 @@ json model_json(const Model& model, const recursive::Diagnosis& d) {
     for (const auto& elastic : model.elastics) elements.push_back(elastic.name);
     for (const auto& mode : d.idle) idle.push_back(mode.description);
     for (const auto& r : d.redundant)
-        redundant.push_back({{"joint", model.joints[static_cast<std::size_t>(r.joint)].name}, {"rows", r.rows}});
+        redundant.push_back(
+            {{"joint", model.joints[static_cast<std::size_t>(r.joint)].name}, {"rows", r.rows}});
     for (const auto& o : model.left_out) left_out.push_back({{"what", o.what}, {"why", o.why}});
     return {{"bodies", bodies},
             {"joints", joints},
@@ -41,12 +43,16 @@ json model_json(const Model& model, const recursive::Diagnosis& d) {
 }
 
 json residuals_json(const Residuals& r) {
-    return {{"constraint_mm", 1e3 * r.length}, {"constraint_direction", r.direction}, {"force_N", r.force}, {"moment_Nm", r.moment}};
+    return {{"constraint_mm", 1e3 * r.length},
+            {"constraint_direction", r.direction},
+            {"force_N", r.force},
+            {"moment_Nm", r.moment}};
 }
 
 json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& channels) {
     json judged = json::object();
-    for (const Leg by : compare::legs) judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
+    for (const Leg by : compare::legs)
+        judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
     json constraint_error = json::array();
     for (const auto& point : run.path.points) constraint_error.push_back(point.constraint_error);
     json values = json::object();
@@ -72,13 +78,21 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
 }
 
 json reading_json(const compare::Reading& reading, const compare::Comparison& all) {
-    json result = {{"not_compared", reading.not_compared}, {"points_outside", reading.outside}, {"channels", json::object()}};
+    json result = {{"not_compared", reading.not_compared},
+                   {"points_outside", reading.outside},
+                   {"channels", json::object()}};
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!all.unique[c]) continue;
         const auto& d = reading.channels[c];
-        result["channels"][all.channels[c].name] = {
-            {"unit", symbol(all.channels[c].unit)}, {"max", d.max}, {"signed_max", d.signed_max}, {"at", d.at},
-            {"end", d.end}, {"rms", d.rms}, {"range", d.range}, {"interpolation", d.interpolation}, {"compared", d.compared}};
+        result["channels"][all.channels[c].name] = {{"unit", symbol(all.channels[c].unit)},
+                                                    {"max", d.max},
+                                                    {"signed_max", d.signed_max},
+                                                    {"at", d.at},
+                                                    {"end", d.end},
+                                                    {"rms", d.rms},
+                                                    {"range", d.range},
+                                                    {"interpolation", d.interpolation},
+                                                    {"compared", d.compared}};
     }
     return result;
 }
@@ -92,16 +106,17 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
 
 }  // namespace
 
-json document_head(const Scene& scene, std::string_view input, const Model& model, const recursive::Diagnosis& diagnosis,
-                   const Provenance& provenance) {
+json document_head(const Scene& scene, std::string_view input, const Model& model,
+                   const recursive::Diagnosis& diagnosis, const Provenance& provenance) {
     return {{"schema", result_schema},
             {"scene", {{"name", scene.name}, {"source", scene.source}, {"input_hash", input_hash(input)}}},
             {"provenance", provenance_json(provenance)},
             {"model", model_json(model, diagnosis)}};
 }
 
-json document(const Scene& scene, std::string_view input, const Model& model, const recursive::Diagnosis& diagnosis,
-              const compare::Comparison& comparison, const Provenance& provenance) {
+json document(const Scene& scene, std::string_view input, const Model& model,
+              const recursive::Diagnosis& diagnosis, const compare::Comparison& comparison,
+              const Provenance& provenance) {
     json channels = json::array(), branches = json::array(), reasons = json::array();
     for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
         const auto& channel = comparison.channels[c];
@@ -121,7 +136,9 @@ json document(const Scene& scene, std::string_view input, const Model& model, co
                             {"reference_uncertainty", pair_json(branch.uncertainty, comparison)}});
     }
     json result = document_head(scene, input, model, diagnosis, provenance);
-    result["verdict"] = {{"conclusive", comparison.conclusive()}, {"numbers_compared", comparison.compared}, {"reasons", reasons}};
+    result["verdict"] = {{"conclusive", comparison.conclusive()},
+                         {"numbers_compared", comparison.compared},
+                         {"reasons", reasons}};
     result["channels"] = channels;
     result["branches"] = branches;
     return result;

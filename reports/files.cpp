@@ -12,11 +12,13 @@ namespace elastocheck::reports {
 void write_whole(const std::filesystem::path& file, std::string_view content) {
     std::error_code failed;
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failed);
-    if (failed) throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+    if (failed)
+        throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
 
     const std::string temporary = fmt::format("{}.{}.tmp", file.string(), ::getpid());
     const int out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (out < 0) throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+    if (out < 0)
+        throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
     bool good = true;
     for (std::string_view rest = content; good && !rest.empty();) {
         const ssize_t written = ::write(out, rest.data(), rest.size());

@@ -12,8 +12,8 @@ struct FileError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Writes `content` to a temporary name beside `file`, flushes it to the disk and renames it; creates the folder when it
-// is missing. Throws FileError; an older file of that name is then untouched.
+// Writes `content` to a temporary name beside `file`, flushes it to the disk and renames it; creates the
+// folder when it is missing. Throws FileError; an older file of that name is then untouched.
 void write_whole(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace elastocheck::reports

@@ -64,8 +64,10 @@ int solve(const std::string& file, compare::Leg leg, int steps, const std::strin
         code = could_not_judge;
     }
     progress("");
-    if (output.empty()) fmt::print("{}", csv);
-    else reports::write_whole(output, csv);
+    if (output.empty())
+        fmt::print("{}", csv);
+    else
+        reports::write_whole(output, csv);
     return code;
 }
 
@@ -79,7 +81,8 @@ int compare_legs(const std::string& file, int steps, const std::string& folder) 
     progress("");
     fmt::print("{}", reports::tables(model, comparison));
     if (!folder.empty()) {
-        const auto result = reports::document(scene, read_text(file), model, recursive::diagnose(model), comparison, reports::provenance());
+        const auto result = reports::document(scene, read_text(file), model, recursive::diagnose(model),
+                                              comparison, reports::provenance());
         const std::filesystem::path base(folder);
         reports::write_whole(base / "result.json", result.dump(1) + "\n");
         reports::write_whole(base / "curves.csv", reports::curves_csv(comparison));
@@ -91,12 +94,14 @@ int compare_legs(const std::string& file, int steps, const std::string& folder) 
 std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
     std::vector<recursive::Method> methods;
     for (const auto& method : recursive::methods)
-        if (!method.adaptive && (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
+        if (!method.adaptive &&
+            (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
             methods.push_back(method);
     return methods;
 }
 
-int converge(const std::string& file, const std::vector<std::string>& names, const std::vector<int>& steps, const std::string& folder) {
+int converge(const std::string& file, const std::vector<std::string>& names, const std::vector<int>& steps,
+             const std::string& folder) {
     const Scene scene = read_scene(file);
     const Model model = compile(scene);
     compare::StudyOptions options;
@@ -108,7 +113,8 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     progress("");
     fmt::print("{}", reports::study_tables(model, study, attribution));
     if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model), reports::provenance());
+        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
+                                             reports::provenance());
         result["convergence"] = reports::study_json(study, attribution);
         const std::filesystem::path base(folder);
         reports::write_whole(base / "result.json", result.dump(1) + "\n");
@@ -130,7 +136,8 @@ int trade(const std::string& file, const std::string& tolerance, const std::stri
     progress("");
     fmt::print("{}\n{}", reports::trade_table(model, trade), reports::precision_table(precision));
     if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model), reports::provenance());
+        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
+                                             reports::provenance());
         result["trade"] = reports::trade_json(trade);
         result["precision"] = reports::precision_json(precision);
         const std::filesystem::path base(folder);
@@ -150,16 +157,19 @@ int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
     if (!app.get_subcommands().empty()) scope = app.get_subcommands().front();
     const bool in_command = scope != &app;
     if (!in_command)
-        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(command->get_name());
+        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
+            known.push_back(command->get_name());
     for (const auto* option : scope->get_options())
         if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
-    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr || dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+        dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
         for (int k = 1; k < argc; ++k) {
             const std::string argument = argv[k], word = argument.substr(0, argument.find('='));
             const bool option = word.starts_with("--");
-            if ((!in_command && k == 1 && !option) || (option && std::ranges::find(known, word) == known.end())) {
-                message = fmt::format("{} {}{}", option ? "unknown option" : "unknown command", reader::quote(word),
-                                      reader::did_you_mean(word, known, "known"));
+            if ((!in_command && k == 1 && !option) ||
+                (option && std::ranges::find(known, word) == known.end())) {
+                message = fmt::format("{} {}{}", option ? "unknown option" : "unknown command",
+                                      reader::quote(word), reader::did_you_mean(word, known, "known"));
                 break;
             }
         }
@@ -171,12 +181,14 @@ int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
 int run(int argc, char** argv) {
     CLI::App app{
         "Can I trust my suspension solver? One scene, solved three ways that share nothing but the scene:\n"
-        "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy minimisation.",
+        "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy "
+        "minimisation.",
         "elastocheck"};
     app.require_subcommand(1);
     app.set_version_flag("--version", reports::provenance().version);
-    app.footer("Exit codes: 0 fine, 2 bad input, 3 could not judge, 4 internal error.\n"
-               "Scene files are described in models/scenes/README.md.");
+    app.footer(
+        "Exit codes: 0 fine, 2 bad input, 3 could not judge, 4 internal error.\n"
+        "Scene files are described in models/scenes/README.md.");
 
     std::string scene, output;
     int steps = 0;
@@ -185,15 +197,20 @@ int run(int argc, char** argv) {
     methods.reserve(compare::legs.size());
     for (const auto leg : compare::legs) methods.emplace_back(name(leg));
 
-    auto* inspect_command = app.add_subcommand("inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
+    auto* inspect_command = app.add_subcommand(
+        "inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
     auto* solve_command = app.add_subcommand("solve", "Solve a scene one way and print the curves as CSV");
-    auto* compare_command = app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
-    auto* converge_command = app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
-    auto* trade_command = app.add_subcommand("trade", "What accuracy costs: every method against both references, and a recommendation");
+    auto* compare_command =
+        app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
+    auto* converge_command =
+        app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
+    auto* trade_command = app.add_subcommand(
+        "trade", "What accuracy costs: every method against both references, and a recommendation");
     for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
         command->add_option("SCENE", scene, "scene file (YAML)")->required();
     for (auto* command : {solve_command, compare_command})
-        command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")->check(CLI::Range(1, 10'000'000));
+        command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")
+            ->check(CLI::Range(1, 10'000'000));
     solve_command->add_option("--method", method, "recursive (default), equilibrium or energy")
         ->check(CLI::IsMember(methods).description(""));
     solve_command->add_option("-o,--output", output, "write the CSV to this file instead");
@@ -203,12 +220,17 @@ int run(int argc, char** argv) {
     for (const auto& rung : recursive::methods)
         if (!rung.adaptive) known_rungs.emplace_back(rung.name);
     std::vector<int> levels;
-    converge_command->add_option("--method", rungs, "published (default), closed, balanced, tangent, chord, midpoint, or all")
+    converge_command
+        ->add_option("--method", rungs,
+                     "published (default), closed, balanced, tangent, chord, midpoint, or all")
         ->delimiter(',')
         ->check(CLI::IsMember(known_rungs).description(""));
-    converge_command->add_option("--steps", levels, "step counts per branch, at least five, increasing (default: 75,150,...,2400)")
+    converge_command
+        ->add_option("--steps", levels,
+                     "step counts per branch, at least five, increasing (default: 75,150,...,2400)")
         ->delimiter(',');
-    converge_command->add_option("-o,--output", output, "folder for result.json, convergence.csv and attribution.csv");
+    converge_command->add_option("-o,--output", output,
+                                 "folder for result.json, convergence.csv and attribution.csv");
 
     std::string tolerance = "0.01mm,0.001deg";
     trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");

@@ -19,14 +19,17 @@ const char* reading_name(bool load) { return load ? "at equal load" : "at equal 
 
 // Below 1e-9 of a mm or deg it is the arithmetic's.
 std::string small(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:.2e}", value); }
-std::string signed_small(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3e}", value); }
+std::string signed_small(double value) {
+    return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3e}", value);
+}
 std::string percent(double part, double whole) {
     return std::abs(whole) < 1e-9 ? "-" : fmt::format("{:.1f} %", 100 * part / whole);
 }
 
 std::string order(const compare::StepConvergence& c) {
     if (c.behaviour != Behaviour::converging) return name(c.behaviour);
-    return std::isnan(c.order_error) ? fmt::format("{:.2f}", c.order) : fmt::format("{:.2f} ± {:.2f}", c.order, c.order_error);
+    return std::isnan(c.order_error) ? fmt::format("{:.2f}", c.order)
+                                     : fmt::format("{:.2f} ± {:.2f}", c.order, c.order_error);
 }
 
 void method_table(const compare::Study& study, const compare::MethodStudy& method, std::string& text) {
@@ -38,14 +41,18 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
     for (const bool load : readings) {
         const auto& reading = load ? method.equal_load : method.equal_travel;
         if (reading.empty()) continue;
-        fmt::format_to(out, "\n  method '{}' {}: step error (largest over the branch), its order, and what no step count removes\n",
+        fmt::format_to(out,
+                       "\n  method '{}' {}: step error (largest over the branch), its order, and what no "
+                       "step count removes\n",
                        method.method, reading_name(load));
         fmt::format_to(out, "  {:<22}", "steps");
         for (const int N : study.steps) fmt::format_to(out, "{:>10}", N);
-        fmt::format_to(out, "  {:>14}  {:>11} {:>9}  {:>7}  {:>9}\n", "order", "gap at end", "± band", "growth", "reference");
+        fmt::format_to(out, "  {:>14}  {:>11} {:>9}  {:>7}  {:>9}\n", "order", "gap at end", "± band",
+                       "growth", "reference");
         for (std::size_t c = 0; c < reading.size(); ++c) {
             const ChannelStudy& s = reading[c];
-            fmt::format_to(out, "  {:<22}", fmt::format("{} [{}]", study.channels[c].name, symbol(study.channels[c].unit)));
+            fmt::format_to(out, "  {:<22}",
+                           fmt::format("{} [{}]", study.channels[c].name, symbol(study.channels[c].unit)));
             for (const double error : s.step_error_max) fmt::format_to(out, "{:>10}", small(error));
             fmt::format_to(out, "  {:>14}  {:>11} {:>9}  {:>7}  {:>9}\n", order(s.end), signed_small(s.gap),
                            std::isnan(s.end.band) ? "-" : small(s.end.band),
@@ -54,10 +61,13 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
         }
     }
     fmt::format_to(out, "  {:<22}", "|Φ|, eq. (31)");
-    for (const double error : method.constraint_error) fmt::format_to(out, "{:>10}", fmt::format("{:.2e}", error));
-    fmt::format_to(out, "  {:>14}\n", std::isnan(method.constraint_order.order)
-                                        ? "at its floor"
-                                        : fmt::format("{:.2f} ± {:.2f}", method.constraint_order.order, method.constraint_order.order_error));
+    for (const double error : method.constraint_error)
+        fmt::format_to(out, "{:>10}", fmt::format("{:.2e}", error));
+    fmt::format_to(out, "  {:>14}\n",
+                   std::isnan(method.constraint_order.order)
+                       ? "at its floor"
+                       : fmt::format("{:.2f} ± {:.2f}", method.constraint_order.order,
+                                     method.constraint_order.order_error));
 }
 
 void attribution_table(const compare::Study& study, const BranchAttribution& attribution, std::string& text) {
@@ -69,15 +79,20 @@ void attribution_table(const compare::Study& study, const BranchAttribution& att
     for (const bool load : readings) {
         const auto& shares = load ? attribution.equal_load : attribution.equal_travel;
         if (shares.empty()) continue;
-        fmt::format_to(out, "\n  what the gap of the recursion is made of, {}: whole = lever + axis + load + rest\n", reading_name(load));
-        fmt::format_to(out, "  {:<22}{:>11}{:>23}{:>23}{:>23}{:>12}{:>10}\n", "", "whole", "stored force's lever", "its axis and law",
-                       "load's lever", "rest", "± band");
+        fmt::format_to(
+            out, "\n  what the gap of the recursion is made of, {}: whole = lever + axis + load + rest\n",
+            reading_name(load));
+        fmt::format_to(out, "  {:<22}{:>11}{:>23}{:>23}{:>23}{:>12}{:>10}\n", "", "whole",
+                       "stored force's lever", "its axis and law", "load's lever", "rest", "± band");
         for (std::size_t c = 0; c < shares.size(); ++c) {
             const GapShare& s = shares[c];
-            const auto part = [&](double value) { return fmt::format("{} {:>8}", signed_small(value), percent(value, s.whole)); };
+            const auto part = [&](double value) {
+                return fmt::format("{} {:>8}", signed_small(value), percent(value, s.whole));
+            };
             fmt::format_to(out, "  {:<22}{:>11}{:>23}{:>23}{:>23}{:>12}{:>10}\n",
-                           fmt::format("{} [{}]", study.channels[c].name, symbol(study.channels[c].unit)), signed_small(s.whole),
-                           part(s.lever), part(s.axis), part(s.load), signed_small(s.rest), small(s.band));
+                           fmt::format("{} [{}]", study.channels[c].name, symbol(study.channels[c].unit)),
+                           signed_small(s.whole), part(s.lever), part(s.axis), part(s.load),
+                           signed_small(s.rest), small(s.band));
         }
     }
 }
@@ -103,15 +118,24 @@ json channel_json(const compare::Channel& channel, const ChannelStudy& s) {
 }
 
 json share_json(const compare::Channel& channel, const GapShare& s) {
-    return {{"channel", channel.name}, {"unit", symbol(channel.unit)}, {"whole", s.whole}, {"lever", s.lever}, {"axis", s.axis},
-            {"load", s.load},          {"rest", s.rest},               {"band", s.band},   {"combinations", s.combinations}};
+    return {{"channel", channel.name},
+            {"unit", symbol(channel.unit)},
+            {"whole", s.whole},
+            {"lever", s.lever},
+            {"axis", s.axis},
+            {"load", s.load},
+            {"rest", s.rest},
+            {"band", s.band},
+            {"combinations", s.combinations}};
 }
 
 }  // namespace
 
-std::string study_tables(const Model& model, const compare::Study& study, const std::vector<BranchAttribution>& attribution) {
+std::string study_tables(const Model& model, const compare::Study& study,
+                         const std::vector<BranchAttribution>& attribution) {
     std::string text = fmt::format(
-        "{}\nvalue - truth = step error (to the method's own limit) + formulation gap (own limit - reference) + reference uncertainty\n",
+        "{}\nvalue - truth = step error (to the method's own limit) + formulation gap (own limit - "
+        "reference) + reference uncertainty\n",
         model.name);
     for (std::size_t b = 0; b < study.branches.size(); ++b) {
         text += fmt::format("\nbranch '{}'\n", study.branches[b].branch);
@@ -125,8 +149,11 @@ std::string study_tables(const Model& model, const compare::Study& study, const 
 }
 
 std::string study_csv(const compare::Study& study) {
-    std::string csv = "branch,method,reading,channel,unit,steps,step error end,step error max,step error rms,constraint error (31),"
-                      "behaviour,order,order error,limit,band,gap,gap max,gap rms,gap exponent,reference uncertainty,range\n";
+    std::string csv =
+        "branch,method,reading,channel,unit,steps,step error end,step error max,step error rms,constraint "
+        "error (31),"
+        "behaviour,order,order error,limit,band,gap,gap max,gap rms,gap exponent,reference "
+        "uncertainty,range\n";
     const auto out = std::back_inserter(csv);
     for (const auto& branch : study.branches)
         for (const auto& method : branch.methods)
@@ -135,13 +162,16 @@ std::string study_csv(const compare::Study& study) {
                 for (std::size_t c = 0; c < reading.size(); ++c)
                     for (std::size_t l = 0; l < study.steps.size(); ++l) {
                         const ChannelStudy& s = reading[c];
-                        fmt::format_to(out, "{},{},{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},"
-                                            "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
-                                       branch.branch, method.method, reading_name(load), study.channels[c].name,
-                                       symbol(study.channels[c].unit), study.steps[l], s.step_error_end[l], s.step_error_max[l],
-                                       s.step_error_rms[l], method.constraint_error[l], name(s.end.behaviour), s.end.order,
-                                       s.end.order_error, s.end.limit, s.end.band, s.gap, s.gap_max, s.gap_rms, s.gap_exponent,
-                                       s.uncertainty, s.range);
+                        fmt::format_to(out,
+                                       "{},{},{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{:.17g},{:.17g},"
+                                       "{:.17g},{:.17g},"
+                                       "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                                       branch.branch, method.method, reading_name(load),
+                                       study.channels[c].name, symbol(study.channels[c].unit), study.steps[l],
+                                       s.step_error_end[l], s.step_error_max[l], s.step_error_rms[l],
+                                       method.constraint_error[l], name(s.end.behaviour), s.end.order,
+                                       s.end.order_error, s.end.limit, s.end.band, s.gap, s.gap_max,
+                                       s.gap_rms, s.gap_exponent, s.uncertainty, s.range);
                     }
             }
     return csv;
@@ -154,8 +184,10 @@ std::string attribution_csv(const compare::Study& study, const std::vector<Branc
             const auto& shares = load ? branch.equal_load : branch.equal_travel;
             for (std::size_t c = 0; c < shares.size(); ++c) {
                 const GapShare& s = shares[c];
-                csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", branch.branch, reading_name(load),
-                                   study.channels[c].name, symbol(study.channels[c].unit), s.whole, s.lever, s.axis, s.load, s.rest, s.band);
+                csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                                   branch.branch, reading_name(load), study.channels[c].name,
+                                   symbol(study.channels[c].unit), s.whole, s.lever, s.axis, s.load, s.rest,
+                                   s.band);
             }
         }
     return csv;
@@ -168,8 +200,10 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
         for (const auto& m : branch.methods) {
             json outcomes = json::array(), load = json::array(), travel = json::array();
             for (const auto outcome : m.outcomes) outcomes.push_back(elastocheck::name(outcome));
-            for (std::size_t c = 0; c < m.equal_load.size(); ++c) load.push_back(channel_json(study.channels[c], m.equal_load[c]));
-            for (std::size_t c = 0; c < m.equal_travel.size(); ++c) travel.push_back(channel_json(study.channels[c], m.equal_travel[c]));
+            for (std::size_t c = 0; c < m.equal_load.size(); ++c)
+                load.push_back(channel_json(study.channels[c], m.equal_load[c]));
+            for (std::size_t c = 0; c < m.equal_travel.size(); ++c)
+                travel.push_back(channel_json(study.channels[c], m.equal_travel[c]));
             methods.push_back({{"method", m.method},
                                {"outcomes", outcomes},
                                {"not_studied", m.not_studied},
@@ -178,7 +212,9 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
                                {"at_equal_load", load},
                                {"at_equal_travel", travel}});
         }
-        json shares = {{"not_attributed", "not asked for"}, {"at_equal_load", json::array()}, {"at_equal_travel", json::array()}};
+        json shares = {{"not_attributed", "not asked for"},
+                       {"at_equal_load", json::array()},
+                       {"at_equal_travel", json::array()}};
         for (const auto& a : attribution) {
             if (a.branch != branch.branch) continue;
             shares["not_attributed"] = a.not_attributed;
@@ -189,7 +225,10 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
         }
         branches.push_back({{"name", branch.branch}, {"methods", methods}, {"gap_attribution", shares}});
     }
-    return {{"conclusive", study.conclusive()}, {"reasons", study.inconclusive}, {"steps", study.steps}, {"branches", branches}};
+    return {{"conclusive", study.conclusive()},
+            {"reasons", study.inconclusive},
+            {"steps", study.steps},
+            {"branches", branches}};
 }
 
 }  // namespace elastocheck::reports

@@ -14,8 +14,10 @@ std::string study_tables(const Model& model, const compare::Study& study,
 
 // One row per branch, method, reading, channel and level; the numbers of the fit repeated in each.
 std::string study_csv(const compare::Study& study);
-std::string attribution_csv(const compare::Study& study, const std::vector<compare::BranchAttribution>& attribution);
+std::string attribution_csv(const compare::Study& study,
+                            const std::vector<compare::BranchAttribution>& attribution);
 
-nlohmann::ordered_json study_json(const compare::Study& study, const std::vector<compare::BranchAttribution>& attribution);
+nlohmann::ordered_json study_json(const compare::Study& study,
+                                  const std::vector<compare::BranchAttribution>& attribution);
 
 }  // namespace elastocheck::reports

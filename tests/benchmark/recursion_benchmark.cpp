@@ -1,10 +1,11 @@
 // Speed of the recursion, as ratios within one process.
 //
-//   bare      600 × PartialPivLU factor + solve of a dense 27×27 matrix: what the paper's method cannot do without
-//   sweep     the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`
-//   points    the same 2 × 301 output points by `adaptive` and both references; the ratio to the equilibrium leg
+//   bare      600 × PartialPivLU factor + solve of a dense 27×27 matrix: what the paper's method cannot do
+//   without sweep     the paper's example, 2 × 300 steps, by every rung; the ratio to `bare` points    the
+//   same 2 × 301 output points by `adaptive` and both references; the ratio to the equilibrium leg
 //
-// The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows both.
+// The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
+// both.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/LU>
@@ -42,7 +43,8 @@ void bare() {
 
 void sweep(const recursive::Method& method) {
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1}));
+        benchmark::DoNotOptimize(
+            recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1}));
 }
 
 template <class Solve>
@@ -54,14 +56,18 @@ void points(Solve&& solve) {
     }
 }
 void equilibrium() {
-    points([](const Branch& b, const auto& loads) { return reference::equilibrium::solve(mcpherson(), b, loads); });
+    points([](const Branch& b, const auto& loads) {
+        return reference::equilibrium::solve(mcpherson(), b, loads);
+    });
 }
 void energy() {
-    points([](const Branch& b, const auto& loads) { return reference::energy::solve(mcpherson(), b, loads); });
+    points(
+        [](const Branch& b, const auto& loads) { return reference::energy::solve(mcpherson(), b, loads); });
 }
 void adaptive() {  // 0.01 mm, 0.001 deg
     points([](const Branch& b, const auto&) {
-        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("adaptive"), .steps = 300});
+        return recursive::solve(mcpherson(), b,
+                                {.method = *recursive::find_method("adaptive"), .steps = 300});
     });
 }
 
@@ -85,14 +91,18 @@ void in_turns(benchmark::State& state, const std::function<void()>& job, const s
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto add = [](const std::string& name, const std::function<void()>& job, const std::function<void()>& base) {
-        benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { in_turns(state, job, base); })
+    const auto add = [](const std::string& name, const std::function<void()>& job,
+                        const std::function<void()>& base) {
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [=](benchmark::State& state) { in_turns(state, job, base); })
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
     };
     add("bare/bare", bare, bare);
     for (const auto& method : recursive::methods)
-        if (!method.adaptive) add("sweep/" + std::string(method.name), [&method] { sweep(method); }, bare);
+        if (!method.adaptive)
+            add(
+                "sweep/" + std::string(method.name), [&method] { sweep(method); }, bare);
     add("points/equilibrium", equilibrium, equilibrium);
     add("points/energy", energy, equilibrium);
     add("points/adaptive", adaptive, equilibrium);

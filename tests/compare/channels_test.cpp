@@ -39,7 +39,8 @@ Eigen::Quaterniond about(const Vector3d& axis, double degrees) {
 }
 
 TEST(Channels, ToeIsPositiveWhenTheFrontOfTheWheelTurnsInwards) {
-    // Left wheel: toe-in turns its front to the right, clockwise from above, negative about z. The right wheel the other way.
+    // Left wheel: toe-in turns its front to the right, clockwise from above, negative about z. The right
+    // wheel the other way.
     for (const auto& [side, turn] : {std::pair{+1, -2.0}, std::pair{-1, +2.0}}) {
         const auto [model, state] = wheel(side, about(Vector3d::UnitZ(), turn));
         EXPECT_NEAR(value(model, state, "toe"), 2, 1e-12);
@@ -78,7 +79,8 @@ TEST(Travel, IsTheDisplacementOfTheWheelCentreAlongTheResultantForce) {
     auto [model, state] = wheel(1, Eigen::Quaterniond::Identity());
     Equilibrium moved = state;
     moved.poses[0].r += Vector3d(0.003, 0.004, 0.012);
-    Branch branch{"", {{"", DeadForce{{0, {0, 0, 0}}, {3, 0, 0}}}, {"", DeadForce{{0, {1, 0, 0}}, {0, 4, 0}}}}, 1, 1};
+    Branch branch{
+        "", {{"", DeadForce{{0, {0, 0, 0}}, {3, 0, 0}}}, {"", DeadForce{{0, {1, 0, 0}}, {0, 4, 0}}}}, 1, 1};
     EXPECT_NEAR(curve(model, branch, {state, moved}).travel[1], 3 * 0.6 + 4 * 0.8, 1e-12);
     branch.loads = {{"", DeadMoment{0, {0, 0, 1}}}};
     EXPECT_TRUE(curve(model, branch, {state, moved}).travel.empty());

@@ -25,15 +25,16 @@ TEST(Compare, ReferencesAgreeOnTheMcPhersonAtEveryPointOfTheSweep) {
             const auto& d = branch.uncertainty.equal_load.channels[c];
             EXPECT_EQ(d.compared, 301);
             const double bound = channel.main ? 1e-6 : 1e-5;
-            EXPECT_TRUE(std::isfinite(d.max) && d.max <= bound) << branch.branch << " " << channel.name << " " << d.max;
+            EXPECT_TRUE(std::isfinite(d.max) && d.max <= bound)
+                << branch.branch << " " << channel.name << " " << d.max;
         }
     }
 }
 
 TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
     for (const auto& branch : mcpherson().branches) {
-        for (const auto& [run, by] : {std::pair{1, Leg::energy}, std::pair{2, Leg::equilibrium}, std::pair{1, Leg::recursive},
-                                      std::pair{2, Leg::recursive}}) {
+        for (const auto& [run, by] : {std::pair{1, Leg::energy}, std::pair{2, Leg::equilibrium},
+                                      std::pair{1, Leg::recursive}, std::pair{2, Leg::recursive}}) {
             const auto& r = branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(by)];
             EXPECT_TRUE(r.force <= 1e-6 && r.moment <= 1e-6) << r.force << " " << r.moment;
             EXPECT_TRUE(1e3 * r.length <= 1e-9 && r.direction <= 1e-12) << r.length << " " << r.direction;
@@ -42,17 +43,19 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
 }
 
 TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
-    // At 1 N nothing has turned yet, and where nothing is preloaded eq. (24) is the tangent of the true equations.
+    // At 1 N nothing has turned yet, and where nothing is preloaded eq. (24) is the tangent of the true
+    // equations.
     for (const auto& name : support::scene_names()) {
         if (name == "mcpherson_preload") continue;
         Scene scene = support::scene(name);
-        // The tangent is off by the order of the rotation: 1 N turns the pendulum by 7e-4 rad and is 0.5 % of what the shallow
-        // arch can bear, so for these two it is not small.
+        // The tangent is off by the order of the rotation: 1 N turns the pendulum by 7e-4 rad and is 0.5 % of
+        // what the shallow arch can bear, so for these two it is not small.
         const double load = name == "two_spring_arch" || name == "pendulum" ? 0.01 : 1;
         for (auto& branch : scene.branches) branch.to = std::copysign(load, branch.to), branch.steps = 1;
         const Model model = compile(scene);
         for (const auto& branch : model.branches) {
-            const LegRun fast = run(model, branch, Leg::recursive), truth = run(model, branch, Leg::equilibrium);
+            const LegRun fast = run(model, branch, Leg::recursive),
+                         truth = run(model, branch, Leg::equilibrium);
             double moved = 0, apart = 0;
             for (std::size_t c = 0; c < 3; ++c) {  // wheel centre or first probe
                 moved += std::pow(truth.curve.values[1][c] - truth.curve.values[0][c], 2);
@@ -64,24 +67,29 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
 }
 
 TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
-    // What is stored at the design position has a stiffness, which eq. (24) leaves out: the wheel rate is off from the start.
+    // What is stored at the design position has a stiffness, which eq. (24) leaves out: the wheel rate is off
+    // from the start.
     Scene scene = support::scene("mcpherson_preload");
     for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
         const LegRun fast = run(model, branch, Leg::recursive), truth = run(model, branch, Leg::equilibrium);
         EXPECT_NEAR(fast.curve.travel[1] / truth.curve.travel[1], 1.103, 0.002) << branch.name;
-        const auto consistent = recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 1});
-        EXPECT_NEAR(curve(model, branch, consistent.points).travel[1] / truth.curve.travel[1], 1, 1e-4) << branch.name;
+        const auto consistent =
+            recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 1});
+        EXPECT_NEAR(curve(model, branch, consistent.points).travel[1] / truth.curve.travel[1], 1, 1e-4)
+            << branch.name;
     }
 }
 
 TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
-    // What design.md 2.1 says of the published method: percents at equal load, a small part of it at equal travel.
+    // What design.md 2.1 says of the published method: percents at equal load, a small part of it at equal
+    // travel.
     for (const auto& branch : mcpherson().branches) {
         const auto& load = branch.deviation.equal_load.channels;
         const auto& travel = branch.deviation.equal_travel.channels;
-        for (const std::size_t c : {0u, 1u, 3u, 4u}) EXPECT_LT(travel[c].max, load[c].max / 10) << mcpherson().channels[c].name;
+        for (const std::size_t c : {0u, 1u, 3u, 4u})
+            EXPECT_LT(travel[c].max, load[c].max / 10) << mcpherson().channels[c].name;
         EXPECT_GT(load[2].max / load[2].range, 0.01);
     }
 }
@@ -89,7 +97,8 @@ TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
 TEST(Compare, DeviationFromOneReferenceIsTheDeviationFromTheOther) {
     for (const auto& branch : mcpherson().branches)
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            EXPECT_NEAR(branch.deviation.equal_load.channels[c].max, branch.cross_check.equal_load.channels[c].max, 1e-5);
+            EXPECT_NEAR(branch.deviation.equal_load.channels[c].max,
+                        branch.cross_check.equal_load.channels[c].max, 1e-5);
 }
 
 TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
@@ -141,7 +150,8 @@ TEST(Compare, ReactionsOfRedundantJointsAreNotCompared) {
     scene.joints.push_back(scene.joints.front());
     scene.joints.back().name = "again";
     const auto comparison = compare(compile(scene));
-    for (std::size_t c = 0; c < comparison.channels.size(); ++c) EXPECT_EQ(comparison.unique[c], comparison.channels[c].main);
+    for (std::size_t c = 0; c < comparison.channels.size(); ++c)
+        EXPECT_EQ(comparison.unique[c], comparison.channels[c].main);
     for (const auto& branch : comparison.branches)
         for (const auto& reason : branch.inconclusive) ADD_FAILURE() << reason;
 }
@@ -151,8 +161,9 @@ TEST(Compare, ProgressIsToldBeforeEachLeg) {
     Options options;
     options.progress = [&](std::string_view what) { said.emplace_back(what); };
     (void)compare(compile(support::scene("single_bushing")), options);
-    EXPECT_EQ(said, (std::vector<std::string>{"pull: recursive leg", "pull: equilibrium leg", "pull: energy leg",
-                                              "push: recursive leg", "push: equilibrium leg", "push: energy leg"}));
+    EXPECT_EQ(said,
+              (std::vector<std::string>{"pull: recursive leg", "pull: equilibrium leg", "pull: energy leg",
+                                        "push: recursive leg", "push: equilibrium leg", "push: energy leg"}));
 }
 
 }  // namespace

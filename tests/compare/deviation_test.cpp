@@ -54,7 +54,9 @@ TEST(Deviation, FallingTravelIsReadAsWell) {
 }
 
 TEST(Deviation, RmsAndSignAreOfTheDifference) {
-    Curve a = made(1, [](double) { return 0.0; }, 4), b = a;
+    Curve a = made(
+              1, [](double) { return 0.0; }, 4),
+          b = a;
     b.values[1][1] = -3;
     b.values[2][1] = 1;
     const auto d = at_equal_load(a, b).channels[1];

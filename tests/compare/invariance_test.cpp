@@ -15,23 +15,27 @@ class EveryLeg : public testing::TestWithParam<Leg> {
     double bound() const { return GetParam() == Leg::energy ? 1e-7 : 1e-9; }
 
     // Every output of `other` at all points of all branches against `sign` times those of `scene`; by name.
-    void expect_same(const Scene& scene, const Scene& other, const std::function<double(const std::string&)>& sign) {
+    void expect_same(const Scene& scene, const Scene& other,
+                     const std::function<double(const std::string&)>& sign) {
         const Model a = compile(scene), b = compile(other);
         const auto names_a = channels(a), names_b = channels(b);
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
-            const LegRun run_a = run(a, a.branches[k], GetParam(), 20), run_b = run(b, b.branches[k], GetParam(), 20);
+            const LegRun run_a = run(a, a.branches[k], GetParam(), 20),
+                         run_b = run(b, b.branches[k], GetParam(), 20);
             ASSERT_EQ(run_a.path.outcome, Outcome::converged) << run_a.path.detail;
             ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
             double largest[4] = {};  // of each unit: displacements, angles, forces, moments
             for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                 for (std::size_t c = 0; c < names_a.size(); ++c) {
                     auto& size = largest[static_cast<int>(names_a[c].unit)];
-                    size = std::max(size, std::abs(run_a.curve.values[p][c] - (names_a[c].main ? run_a.curve.values[0][c] : 0)));
+                    size = std::max(size, std::abs(run_a.curve.values[p][c] -
+                                                   (names_a[c].main ? run_a.curve.values[0][c] : 0)));
                 }
             // A moment about a point far from where the forces act is as exact as force times distance.
             largest[3] = std::max(largest[3], largest[2]);
             for (std::size_t c = 0; c < names_a.size(); ++c) {
-                const auto in_b = std::ranges::find(names_b, names_a[c].name, &Channel::name) - names_b.begin();
+                const auto in_b =
+                    std::ranges::find(names_b, names_a[c].name, &Channel::name) - names_b.begin();
                 double worst = 0;
                 for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                     worst = std::max(worst, std::abs(run_b.curve.values[p][static_cast<std::size_t>(in_b)] -
@@ -47,7 +51,8 @@ const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).norm
 
 TEST_P(EveryLeg, DoesNotSeeTheOrderOfBodiesAndJoints) {
     for (const auto& name : support::scene_names())
-        expect_same(support::scene(name), support::reversed(support::scene(name)), [](const std::string&) { return 1; });
+        expect_same(support::scene(name), support::reversed(support::scene(name)),
+                    [](const std::string&) { return 1; });
 }
 
 TEST_P(EveryLeg, DoesNotSeeTheAxesInWhichABodyIsDescribed) {
@@ -58,20 +63,25 @@ TEST_P(EveryLeg, DoesNotSeeTheAxesInWhichABodyIsDescribed) {
 
 TEST_P(EveryLeg, MirrorsTheOtherSideOfTheVehicle) {
     for (const auto& name : support::scene_names())
-        expect_same(support::scene(name), support::mirrored(support::scene(name)), [](const std::string& channel) {
-            const bool moment = channel.find(".moment") != channel.npos;
-            const bool y = channel.ends_with("_y"), axis = y || channel.ends_with("_x") || channel.ends_with("_z");
-            return !axis ? 1.0 : y != moment ? -1.0 : 1.0;
-        });
+        expect_same(support::scene(name), support::mirrored(support::scene(name)),
+                    [](const std::string& channel) {
+                        const bool moment = channel.find(".moment") != channel.npos;
+                        const bool y = channel.ends_with("_y"),
+                                   axis = y || channel.ends_with("_x") || channel.ends_with("_z");
+                        return !axis ? 1.0 : y != moment ? -1.0 : 1.0;
+                    });
 }
 
 TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
-    // Outputs turn with the frame, so it is turned back: the displacements and reactions are compared as vectors.
+    // Outputs turn with the frame, so it is turned back: the displacements and reactions are compared as
+    // vectors.
     const Eigen::Vector3d t(3, -2, 1);
     for (const auto& name : support::scene_names()) {
-        const Model a = compile(support::scene(name)), b = compile(support::moved(support::scene(name), R, t));
+        const Model a = compile(support::scene(name)),
+                    b = compile(support::moved(support::scene(name), R, t));
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
-            const LegRun run_a = run(a, a.branches[k], GetParam(), 20), run_b = run(b, b.branches[k], GetParam(), 20);
+            const LegRun run_a = run(a, a.branches[k], GetParam(), 20),
+                         run_b = run(b, b.branches[k], GetParam(), 20);
             ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
             const auto list = channels(a);
             for (std::size_t c = 0; c + 2 < list.size(); ++c) {
@@ -79,21 +89,28 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
                 const bool position = list[c].unit == Unit::mm;
                 double size = 1, worst = 0;
                 for (std::size_t p = 0; p < run_a.curve.values.size(); ++p) {
-                    const auto vector = [&](const LegRun& r, std::size_t point) { return Eigen::Vector3d(&r.curve.values[point][c]); };
+                    const auto vector = [&](const LegRun& r, std::size_t point) {
+                        return Eigen::Vector3d(&r.curve.values[point][c]);
+                    };
                     const Eigen::Vector3d in_a = vector(run_a, p);
-                    const Eigen::Vector3d in_b = R.conjugate() * Eigen::Vector3d(vector(run_b, p) - (position ? 1e3 : 0) * t);
-                    size = std::max(size, (in_a - (position ? vector(run_a, 0) : Eigen::Vector3d::Zero())).norm());
+                    const Eigen::Vector3d in_b =
+                        R.conjugate() * Eigen::Vector3d(vector(run_b, p) - (position ? 1e3 : 0) * t);
+                    size = std::max(size,
+                                    (in_a - (position ? vector(run_a, 0) : Eigen::Vector3d::Zero())).norm());
                     for (std::size_t j = 0; j < list.size(); ++j)
-                        if (list[j].joint == list[c].joint && !position) size = std::max(size, std::abs(run_a.curve.values[p][j]));
+                        if (list[j].joint == list[c].joint && !position)
+                            size = std::max(size, std::abs(run_a.curve.values[p][j]));
                     worst = std::max(worst, (in_a - in_b).norm());
                 }
-                EXPECT_LE(worst, bound() * size) << name << ", " << a.branches[k].name << ": " << list[c].name;
+                EXPECT_LE(worst, bound() * size)
+                    << name << ", " << a.branches[k].name << ": " << list[c].name;
             }
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(legs), [](const auto& leg) { return std::string(name(leg.param)); });
+INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(legs),
+                         [](const auto& leg) { return std::string(name(leg.param)); });
 
 }  // namespace
 }  // namespace elastocheck::compare

@@ -33,7 +33,8 @@ double root(F&& f, double low, double high) {
 TEST(Study, SeparatesStepErrorFromFormulationGap) {
     // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both by hand.
     const Study s = study(compile(support::scene("pinned_bar")), options());
-    const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5), truth = std::atan(0.5);
+    const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
+                 truth = std::atan(0.5);
     const auto& z = s.branches[0].methods[0].equal_load[2];
     EXPECT_EQ(s.channels[2].name, "tip_z");
     EXPECT_EQ(z.end.behaviour, Behaviour::converging);
@@ -49,11 +50,13 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
 TEST(Study, APublishedRecursionWithoutStoredLeversHasNoGap) {
     const Study s = study(compile(support::scene("pendulum")), options());
     for (const auto& branch : s.branches)
-        for (const auto& channel : branch.methods[0].equal_load) EXPECT_LE(std::abs(channel.gap), channel.end.band + 1e-9);
+        for (const auto& channel : branch.methods[0].equal_load)
+            EXPECT_LE(std::abs(channel.gap), channel.end.band + 1e-9);
 }
 
 TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
-    const Study s = study(compile(support::scene("bushing_pair")), options({"published", "balanced", "tangent", "chord", "midpoint"}));
+    const Study s = study(compile(support::scene("bushing_pair")),
+                          options({"published", "balanced", "tangent", "chord", "midpoint"}));
     const double orders[] = {1, 1, 2, 3, 3};
     for (std::size_t m = 0; m < 5; ++m) {
         const auto& nose = s.branches[0].methods[m].equal_load[2];
@@ -74,8 +77,8 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
         EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
-        EXPECT_LT(m.constraint_error.back(), 1e-4);           // [m]: falling with the steps
-        EXPECT_GT(std::abs(m.equal_load[2].gap), 1.0);        // [mm]: not falling
+        EXPECT_LT(m.constraint_error.back(), 1e-4);     // [m]: falling with the steps
+        EXPECT_GT(std::abs(m.equal_load[2].gap), 1.0);  // [mm]: not falling
         EXPECT_LE(m.equal_load[2].uncertainty, 1e-6);
         EXPECT_GT(m.equal_load[2].gap_exponent, 1.2);
     }
@@ -87,7 +90,8 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
             ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
             for (const auto* reading : {&branch.equal_load, &branch.equal_travel})
                 for (const auto& share : *reading) {
-                    EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10) << name;
+                    EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10)
+                        << name;
                     EXPECT_LE(std::abs(share.rest), share.band) << name;
                 }
         }
@@ -96,7 +100,8 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
 
 TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
-    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_load) EXPECT_LE(std::abs(share.load), 1e-9);
+    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_load)
+        EXPECT_LE(std::abs(share.load), 1e-9);
     EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_load[2].load), 1.0);
 }
 
@@ -105,7 +110,8 @@ TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
     for (auto& branch : scene.branches) branch.to *= 2;
     const Study s = study(compile(scene), options());
     for (const auto& branch : s.branches) {
-        EXPECT_NE(branch.methods[0].not_studied.find("diverged"), std::string::npos) << branch.methods[0].not_studied;
+        EXPECT_NE(branch.methods[0].not_studied.find("diverged"), std::string::npos)
+            << branch.methods[0].not_studied;
         EXPECT_TRUE(branch.methods[0].equal_load.empty());
     }
     EXPECT_FALSE(s.conclusive());
@@ -124,7 +130,8 @@ TEST(Study, WithoutReferencesNothingIsConcluded) {
 
 TEST(Study, FewerThanFiveLevelsOrUnorderedOnesAreRefused) {
     const Model model = compile(support::scene("single_bushing"));
-    for (const std::vector<int>& steps : {std::vector<int>{10, 20, 40, 80}, {10, 20, 40, 80, 80}, {0, 1, 2, 3, 4}, {5, 4, 3, 2, 1}}) {
+    for (const std::vector<int>& steps :
+         {std::vector<int>{10, 20, 40, 80}, {10, 20, 40, 80, 80}, {0, 1, 2, 3, 4}, {5, 4, 3, 2, 1}}) {
         StudyOptions o = options();
         o.steps = steps;
         EXPECT_THROW((void)study(model, o), std::invalid_argument);
@@ -135,7 +142,8 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
     const Model model = compile(support::scene("bushing_pair"));
     StudyOptions other = options();
     other.steps = {37, 61, 100, 173, 300, 555};
-    const auto a = study(model, options()).branches[0].methods[0].equal_load[2], b = study(model, other).branches[0].methods[0].equal_load[2];
+    const auto a = study(model, options()).branches[0].methods[0].equal_load[2],
+               b = study(model, other).branches[0].methods[0].equal_load[2];
     EXPECT_NEAR(a.end.limit, b.end.limit, a.end.band + b.end.band);
     EXPECT_NEAR(a.gap, b.gap, 1e-4 * std::abs(a.gap));
 }
@@ -145,7 +153,8 @@ TEST(Study, IsTheSameFromRunToRun) {
     const auto a = study(model, options()), b = study(model, options());
     for (std::size_t c = 0; c < a.channels.size(); ++c) {
         EXPECT_EQ(a.branches[0].methods[0].equal_load[c].gap, b.branches[0].methods[0].equal_load[c].gap);
-        EXPECT_EQ(a.branches[0].methods[0].equal_travel[c].end.limit, b.branches[0].methods[0].equal_travel[c].end.limit);
+        EXPECT_EQ(a.branches[0].methods[0].equal_travel[c].end.limit,
+                  b.branches[0].methods[0].equal_travel[c].end.limit);
     }
 }
 

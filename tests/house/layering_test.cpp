@@ -52,10 +52,13 @@ std::vector<std::string> violations(const std::string& file, const std::string& 
                 found.push_back(file + " includes " + target);
         }
         // Each solver library belongs to one leg, and none to a header.
-        for (const auto& [library, owner] : {std::pair{"ceres/", "reference/equilibrium"}, {"nlopt", "reference/energy"}}) {
+        for (const auto& [library, owner] :
+             {std::pair{"ceres/", "reference/equilibrium"}, {"nlopt", "reference/energy"}}) {
             if (!target.starts_with(library)) continue;
-            if (room->folder != owner) found.push_back(file + " includes " + target + ", which belongs to " + owner);
-            else if (file.ends_with(".hpp")) found.push_back(file + ": a header includes " + target);
+            if (room->folder != owner)
+                found.push_back(file + " includes " + target + ", which belongs to " + owner);
+            else if (file.ends_with(".hpp"))
+                found.push_back(file + ": a header includes " + target);
         }
     }
     return found;
@@ -78,10 +81,13 @@ TEST(Layering, IncludesRunDownwardsAndNeverBetweenLegs) {
 }
 
 TEST(Layering, AlarmRings) {
-    EXPECT_EQ(violations("recursive/a.cpp", "#include \"models/model.hpp\"\n#include <Eigen/Core>\n").size(), 0u);
+    EXPECT_EQ(violations("recursive/a.cpp", "#include \"models/model.hpp\"\n#include <Eigen/Core>\n").size(),
+              0u);
     EXPECT_EQ(violations("recursive/a.cpp", "#include \"reference/energy/solve.hpp\"\n").size(), 1u);
-    EXPECT_EQ(violations("reference/energy/a.cpp", "  #  include <elastocheck/recursive/state.hpp>\n").size(), 1u);
-    EXPECT_EQ(violations("reference/energy/a.cpp", "#include \"reference/equilibrium/solve.hpp\"\n").size(), 1u);
+    EXPECT_EQ(violations("reference/energy/a.cpp", "  #  include <elastocheck/recursive/state.hpp>\n").size(),
+              1u);
+    EXPECT_EQ(violations("reference/energy/a.cpp", "#include \"reference/equilibrium/solve.hpp\"\n").size(),
+              1u);
     EXPECT_EQ(violations("models/a.hpp", "#include \"compare/compare.hpp\"\n").size(), 1u);
     EXPECT_EQ(violations("compare/a.hpp", "#include \"reports/csv.hpp\"\n").size(), 1u);
     EXPECT_EQ(violations("recursive/a.cpp", "#include \"../reference/energy/solve.hpp\"\n").size(), 1u);

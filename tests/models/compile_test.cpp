@@ -280,22 +280,14 @@ struct RandomScene {
     JointKind joint(BodyId i, BodyId j) {
         const Direction a = direction(i), b = direction(j);
         switch (below(12)) {
-            case 0:
-                return Spherical{point(i), point(j)};
-            case 1:
-                return Revolute{point(i), point(j), a, b};
-            case 2:
-                return Cylindrical{point(i), point(j), a, b};
-            case 3:
-                return Distance{point(i), point(j), 1};
-            case 4:
-                return InPlane{point(i), point(j), b};
-            case 5:
-                return Translational{point(i), point(j), a, b};
-            case 6:
-                return Universal{point(i), point(j), a, b};
-            case 7:
-                return Planar{point(i), point(j), a, b};
+            case 0: return Spherical{point(i), point(j)};
+            case 1: return Revolute{point(i), point(j), a, b};
+            case 2: return Cylindrical{point(i), point(j), a, b};
+            case 3: return Distance{point(i), point(j), 1};
+            case 4: return InPlane{point(i), point(j), b};
+            case 5: return Translational{point(i), point(j), a, b};
+            case 6: return Universal{point(i), point(j), a, b};
+            case 7: return Planar{point(i), point(j), a, b};
             case 8:
                 return Fixed{point(i),
                              point(j),
@@ -303,12 +295,9 @@ struct RandomScene {
                              {i, Vector3d::UnitY()},
                              {j, Vector3d::UnitX()},
                              {j, Vector3d::UnitY()}};
-            case 9:
-                return InLine{point(i), point(j), b};
-            case 10:
-                return Perpendicular{a, b};
-            default:
-                return Parallel{a, b};
+            case 9: return InLine{point(i), point(j), b};
+            case 10: return Perpendicular{a, b};
+            default: return Parallel{a, b};
         }
     }
 

@@ -31,7 +31,8 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
             if (method.adaptive) continue;
             const auto count = [&](int steps) {
                 const long before = allocations;
-                const auto path = solve(model, model.branches[1], {.method = method, .steps = steps, .record = 1});
+                const auto path =
+                    solve(model, model.branches[1], {.method = method, .steps = steps, .record = 1});
                 EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
                 return allocations - before;
             };

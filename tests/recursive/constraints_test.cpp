@@ -53,7 +53,8 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
                     advance(plus, dq);
                     advance(minus, (-dq).eval());
                     const Vector<double> difference =
-                        (constraint_values<double>(model, plus) - constraint_values<double>(model, minus)) / (2 * h);
+                        (constraint_values<double>(model, plus) - constraint_values<double>(model, minus)) /
+                        (2 * h);
                     worst = std::max(worst, (difference - Phi_q.col(c)).cwiseAbs().maxCoeff());
                 }
                 EXPECT_LE(worst, 2e-9) << "joint kind " << joint.index() << ", bodies " << i << " " << j;
@@ -65,7 +66,8 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
 TEST(Constraints, JointsLeaveTheFreedomTheirNameSays) {
     Random random;
     const int rows[] = {3, 5, 4, 4, 5, 3, 6, 1, 1, 2, 1, 2};
-    for (const auto& joint : every_joint(0, 1, random)) EXPECT_EQ(constraint_rows(model_of(joint, 2)), rows[joint.index()]);
+    for (const auto& joint : every_joint(0, 1, random))
+        EXPECT_EQ(constraint_rows(model_of(joint, 2)), rows[joint.index()]);
 }
 
 TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
@@ -97,7 +99,8 @@ TEST(State, IncrementTurnsByTheExponentialMapInGroundAxes) {
         advance(q, dq);
         const Eigen::Vector3d dpi = dq.tail<3>();
         const Eigen::Matrix3d expected =
-            (angle > 0 ? Eigen::Matrix3d(Eigen::AngleAxisd(dpi.norm(), dpi.normalized())) : Eigen::Matrix3d::Identity()) *
+            (angle > 0 ? Eigen::Matrix3d(Eigen::AngleAxisd(dpi.norm(), dpi.normalized()))
+                       : Eigen::Matrix3d::Identity()) *
             before.p.toRotationMatrix();
         EXPECT_LE((q[0].A - expected).cwiseAbs().maxCoeff(), 1e-15) << angle;
         EXPECT_EQ(q[0].r, before.r + dq.head<3>());

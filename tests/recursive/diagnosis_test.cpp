@@ -13,11 +13,14 @@ namespace {
 
 // A bar from the origin to (1, 0, 0), with the given joints, elements and loads.
 Scene bar(const std::string& rest) {
-    return parse_scene("elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
-                       "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\n"
-                       "bodies: {bar: {origin: a}}\n"
-                       "branches: {out: {load: load, to: 100, steps: 10}}\n"
-                       "probes: {tip: {on: bar, at: b}}\n" + rest, "bar");
+    return parse_scene(
+        "elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\n"
+        "bodies: {bar: {origin: a}}\n"
+        "branches: {out: {load: load, to: 100, steps: 10}}\n"
+        "probes: {tip: {on: bar, at: b}}\n" +
+            rest,
+        "bar");
 }
 
 TEST(Diagnosis, CountsThePapersMcPhersonAs18Coordinates9Constraints27Unknowns) {
@@ -33,7 +36,8 @@ TEST(Diagnosis, CountsThePapersMcPhersonAs18Coordinates9Constraints27Unknowns) {
 TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
     const auto d = diagnose(compile(support::scene("mcpherson")));
     ASSERT_EQ(d.idle.size(), 1u);
-    EXPECT_EQ(d.idle[0].description, "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'");
+    EXPECT_EQ(d.idle[0].description,
+              "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'");
 }
 
 TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
@@ -51,25 +55,29 @@ TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
 
 TEST(Diagnosis, ThreeIdleModesOfABodyAreAllFound) {
     // A spherical joint alone leaves three rotations; the spring along the bar does not resist any of them.
-    const auto d = diagnose(compile(bar("joints: {pin: {type: spherical, bodies: [bar, ground], at: a}}\n"
-                                        "springs: {s: {bodies: [bar, ground], from: b, to: a, rate: 1000}}\n"
-                                        "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n")));
+    const auto d =
+        diagnose(compile(bar("joints: {pin: {type: spherical, bodies: [bar, ground], at: a}}\n"
+                             "springs: {s: {bodies: [bar, ground], from: b, to: a, rate: 1000}}\n"
+                             "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n")));
     EXPECT_EQ(d.idle.size(), 3u);
-    for (const auto& mode : d.idle) EXPECT_NE(mode.description.find("bar: rotation"), std::string::npos) << mode.description;
+    for (const auto& mode : d.idle)
+        EXPECT_NE(mode.description.find("bar: rotation"), std::string::npos) << mode.description;
 }
 
 TEST(Diagnosis, TranslationIsNamedWithItsDirection) {
-    const auto d = diagnose(compile(bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n"
-                                        "loads: {load: {on: bar, at: b, force: [0, 1, 0]}}\n")));
+    const auto d =
+        diagnose(compile(bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n"
+                             "loads: {load: {on: bar, at: b, force: [0, 1, 0]}}\n")));
     ASSERT_EQ(d.idle.size(), 1u);
     EXPECT_EQ(d.idle[0].description, "bar: translation along (1.000, 0.000, 0.000)");
 }
 
 TEST(Diagnosis, RedundantConstraintsAreCountedAndNamedByJoint) {
-    const Model model = compile(bar("joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
-                                    "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
-                                    "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-                                    "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n"));
+    const Model model =
+        compile(bar("joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
+                    "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
+                    "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+                    "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n"));
     const auto d = diagnose(model);
     EXPECT_EQ(d.rows, 10);
     EXPECT_EQ(d.rank, 5);
@@ -101,13 +109,14 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
 TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {
     const Scene scene = support::scene("mcpherson");
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
-    for (const auto& other : {support::moved(scene, R, {30, -20, 10}), support::reversed(scene), support::mirrored(scene),
-                              support::with_body_axes(scene, {R, R.conjugate()})}) {
+    for (const auto& other : {support::moved(scene, R, {30, -20, 10}), support::reversed(scene),
+                              support::mirrored(scene), support::with_body_axes(scene, {R, R.conjugate()})}) {
         const auto a = diagnose(compile(scene)), b = diagnose(compile(other));
         EXPECT_EQ(a.rank, b.rank);
         EXPECT_NEAR(a.length, b.length, 1e-12);
         ASSERT_EQ(b.idle.size(), 1u);
-        EXPECT_NE(b.idle[0].description.find("strut: rotation about the line through"), std::string::npos) << b.idle[0].description;
+        EXPECT_NE(b.idle[0].description.find("strut: rotation about the line through"), std::string::npos)
+            << b.idle[0].description;
     }
 }
 

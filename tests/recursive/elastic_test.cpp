@@ -45,22 +45,25 @@ State<double> assembled(const Bushing& b, Random& random) {
 double energy(const ElasticKind& kind, const State<double>& q) {
     const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
     if (const auto* e = std::get_if<AxialSpring>(&kind)) {
-        const double stretch = (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() - e->free_length;
+        const double stretch =
+            (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() - e->free_length;
         return e->k * stretch * stretch / 2;
     }
     const auto& b = std::get<Bushing>(kind);
     const Eigen::Quaterniond A_i = q[b.i.body].p * b.i.A_local, A_j = q[b.j.body].p * b.j.A_local;
     const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
     Vector6<double> e;
-    e << A_i.conjugate() * (place(b.j.body, b.j.s_local) - place(b.i.body, b.i.s_local)), turn.angle() * turn.axis();
+    e << A_i.conjugate() * (place(b.j.body, b.j.s_local) - place(b.i.body, b.i.s_local)),
+        turn.angle() * turn.axis();
     return e.dot(b.K * e) / 2 + b.preload.dot(e);
 }
 
 TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
     Random random;
     for (int trial = 0; trial < 50; ++trial) {
-        const std::vector<ElasticKind> kinds{random_bushing(0, 1, random), random_bushing(0, 1, random, false),
-                                             AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+        const std::vector<ElasticKind> kinds{
+            random_bushing(0, 1, random), random_bushing(0, 1, random, false),
+            AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
         for (const auto& kind : kinds) {
             const auto K = stiffness<double>(model_of(kind, 2), random.state(2));
             EXPECT_LE((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
@@ -76,7 +79,8 @@ TEST(Stiffness, RigidMotionGivesNoForce) {
         const Bushing bushing = random_bushing(0, 1, random);
         const AxialSpring spring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3};
         const State<double> together = assembled(bushing, random), anywhere = random.state(2);
-        for (const auto& [kind, q] : {std::pair<ElasticKind, State<double>>{bushing, together}, {spring, anywhere}}) {
+        for (const auto& [kind, q] :
+             {std::pair<ElasticKind, State<double>>{bushing, together}, {spring, anywhere}}) {
             const Vector3d turn = random.unit(), centre = random.vector();
             Vector<double> dq(12);
             for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r - centre), turn;
@@ -91,9 +95,9 @@ Matrix<double> printed_equation_19(const ElementStiffness<double>& e) {
     const Matrix3<double> K_T = e.K.topLeftCorner<3, 3>(), K_R = e.K.bottomRightCorner<3, 3>();
     const Matrix3<double> si = tilde<double>(e.s_i), sj = tilde<double>(e.s_j);
     Matrix<double> K(12, 12);
-    K << -K_T, K_T * si, K_T, -K_T * sj,                                        //
-        -si * K_T, si * K_T * si - K_R, sj * K_T, -sj * K_T * sj + K_R,         //
-        K_T, -K_T * si, -K_T, K_T * sj,                                         //
+    K << -K_T, K_T * si, K_T, -K_T * sj,                                 //
+        -si * K_T, si * K_T * si - K_R, sj * K_T, -sj * K_T * sj + K_R,  //
+        K_T, -K_T * si, -K_T, K_T * sj,                                  //
         sj * K_T, -sj * K_T * si + K_R, -sj * K_T, sj * K_T * sj - K_R;
     return -K;
 }
@@ -142,9 +146,10 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
 TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
     Random random;
     for (int trial = 0; trial < 30; ++trial) {
-        const std::vector<ElasticKind> kinds{random_bushing(0, 1, random), random_bushing(ground, 1, random),
-                                             random_bushing(0, ground, random),
-                                             AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+        const std::vector<ElasticKind> kinds{
+            random_bushing(0, 1, random), random_bushing(ground, 1, random),
+            random_bushing(0, ground, random),
+            AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
         for (const auto& kind : kinds) {
             // Markers within 2.5 rad of each other: the law ends at π.
             State<double> q = random.state(2);
@@ -152,7 +157,8 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
                 const Eigen::Quaterniond target = random.rotation(2.5);
                 const BodyId free = b->j.body != ground ? b->j.body : b->i.body;
                 const bool j_free = free == b->j.body;
-                const Eigen::Quaterniond A_other = j_free ? q[b->i.body].p * b->i.A_local : q[b->j.body].p * b->j.A_local;
+                const Eigen::Quaterniond A_other =
+                    j_free ? q[b->i.body].p * b->i.A_local : q[b->j.body].p * b->j.A_local;
                 const Eigen::Quaterniond A_free = j_free ? A_other * target : A_other * target.conjugate();
                 q[free].p = (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
                 q[free].A = q[free].p.toRotationMatrix();
@@ -166,7 +172,8 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
                 advance(plus, dq);
                 advance(minus, (-dq).eval());
                 const double difference = (energy(kind, plus) - energy(kind, minus)) / (2 * h);
-                EXPECT_NEAR(difference, f[c], 1e-6 * f.cwiseAbs().maxCoeff()) << "kind " << kind.index() << " coordinate " << c;
+                EXPECT_NEAR(difference, f[c], 1e-6 * f.cwiseAbs().maxCoeff())
+                    << "kind " << kind.index() << " coordinate " << c;
             }
         }
     }

@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 
 Method rung(const char* name) { return *find_method(name); }
 
-// Largest distance of any body's origin [m], or of the orientation of a body without an idle mode [rad], over the recorded
-// points. Along an idle mode nothing is determined.
+// Largest distance of any body's origin [m], or of the orientation of a body without an idle mode [rad], over
+// the recorded points. Along an idle mode nothing is determined.
 double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath& b) {
     EXPECT_EQ(a.points.size(), b.points.size());
     std::vector<bool> idle(model.bodies.size(), false);
@@ -25,7 +25,8 @@ double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath
     for (std::size_t k = 0; k < std::min(a.points.size(), b.points.size()); ++k)
         for (std::size_t body = 0; body < idle.size(); ++body) {
             const Pose &in_a = a.points[k].poses[body], &in_b = b.points[k].poses[body];
-            worst = std::max({worst, (in_a.r - in_b.r).norm(), idle[body] ? 0 : in_a.p.angularDistance(in_b.p)});
+            worst =
+                std::max({worst, (in_a.r - in_b.r).norm(), idle[body] ? 0 : in_a.p.angularDistance(in_b.p)});
         }
     return worst;
 }
@@ -41,7 +42,8 @@ EquilibriumPath truth(const Model& model, const Branch& branch) {
 }
 
 TEST(Methods, EachRungHasItsOrderToTheTruth) {
-    for (const char* name : {"mcpherson", "mcpherson_preload", "pinned_bar", "bushing_pair", "two_spring_arch"}) {
+    for (const char* name :
+         {"mcpherson", "mcpherson_preload", "pinned_bar", "bushing_pair", "two_spring_arch"}) {
         const Model model = compile(support::scene(name));
         for (const auto& branch : model.branches) {
             const auto exact = truth(model, branch);
@@ -49,14 +51,16 @@ TEST(Methods, EachRungHasItsOrderToTheTruth) {
                 if (method.adaptive) continue;
                 const auto error = [&](int steps) {
                     const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 10});
-                    EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << method.name << ": " << path.detail;
+                    EXPECT_EQ(path.outcome, Outcome::converged)
+                        << name << " " << method.name << ": " << path.detail;
                     return apart(model, path, exact);
                 };
                 // Fine enough for the leading term to lead, coarse enough to stay above round-off.
                 const int steps = method.formal_order == 2 ? 4000 : method.formal_order == 3 ? 500 : 1000;
                 const double coarse = error(steps), fine = error(2 * steps);
                 if (fine < 1e-11) continue;
-                EXPECT_NEAR(std::log2(coarse / fine), method.formal_order, method.formal_order > 0 ? 0.15 : 0.12)
+                EXPECT_NEAR(std::log2(coarse / fine), method.formal_order,
+                            method.formal_order > 0 ? 0.15 : 0.12)
                     << name << " " << branch.name << " " << method.name << ": " << coarse << " " << fine;
             }
         }
@@ -66,7 +70,9 @@ TEST(Methods, EachRungHasItsOrderToTheTruth) {
 TEST(Methods, ClosingTheConstraintsMakesTheirErrorFallTwiceAsFastAndNothingElse) {
     const Model model = compile(support::scene("mcpherson"));
     const auto Phi = [&](const char* name, int steps) {
-        return solve(model, model.branches[0], {.method = rung(name), .steps = steps}).points.back().constraint_error;
+        return solve(model, model.branches[0], {.method = rung(name), .steps = steps})
+            .points.back()
+            .constraint_error;
     };
     EXPECT_NEAR(std::log2(Phi("published", 300) / Phi("published", 600)), 1, 0.05);
     EXPECT_NEAR(std::log2(Phi("closed", 300) / Phi("closed", 600)), 2, 0.05);
@@ -93,10 +99,14 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
         for (const auto& branch : model.branches) {
             const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
             for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
-                const auto path = solve(model, branch, {.method = rung("adaptive"), .steps = 150, .length_tolerance = tolerance,
-                                                        .angle_tolerance = tolerance});
+                const auto path = solve(model, branch,
+                                        {.method = rung("adaptive"),
+                                         .steps = 150,
+                                         .length_tolerance = tolerance,
+                                         .angle_tolerance = tolerance});
                 ASSERT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
-                EXPECT_LE(apart(model, path, exact), tolerance + 1e-9) << name << " " << branch.name << " " << tolerance;
+                EXPECT_LE(apart(model, path, exact), tolerance + 1e-9)
+                    << name << " " << branch.name << " " << tolerance;
             }
         }
     }
@@ -105,7 +115,8 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
 TEST(Methods, AdaptiveTakesFewSolvesForHundredsOfPoints) {
     const Model model = compile(support::scene("mcpherson"));
     for (const auto& branch : model.branches) {
-        const auto path = solve(model, branch, {.method = rung("adaptive"), .steps = 300});  // 0.01 mm, 0.001 deg
+        const auto path =
+            solve(model, branch, {.method = rung("adaptive"), .steps = 300});  // 0.01 mm, 0.001 deg
         EXPECT_EQ(path.points.size(), 301u);
         EXPECT_LE(path.counts.factorisations, 20);
     }
@@ -123,21 +134,24 @@ TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
 }
 
 TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
-    // With hardly any steps a rung may be off by millimetres or say no; an error beyond twice the motion itself would be absurd.
+    // With hardly any steps a rung may be off by millimetres or say no; an error beyond twice the motion
+    // itself would be absurd.
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         for (const auto& branch : model.branches) {
             const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 3000, .record = 1});
             double moved = 0;
             for (std::size_t body = 0; body < model.bodies.size(); ++body)
-                moved = std::max({moved, (exact.points[1].poses[body].r - exact.points[0].poses[body].r).norm(),
-                                  exact.points[1].poses[body].p.angularDistance(exact.points[0].poses[body].p)});
+                moved =
+                    std::max({moved, (exact.points[1].poses[body].r - exact.points[0].poses[body].r).norm(),
+                              exact.points[1].poses[body].p.angularDistance(exact.points[0].poses[body].p)});
             for (const auto& method : methods)
                 for (const int steps : {1, 2, 3, 5, 10}) {
                     const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 1});
                     if (path.outcome != Outcome::converged) continue;
                     const double error = apart(model, path, exact);
-                    EXPECT_LE(error, 2 * moved) << name << " " << branch.name << " " << method.name << " " << steps;
+                    EXPECT_LE(error, 2 * moved)
+                        << name << " " << branch.name << " " << method.name << " " << steps;
                 }
         }
     }
@@ -146,9 +160,12 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
 TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
     const Model model = compile(support::scene("pinned_bar"));
     const auto Phi = [&](Precision precision) {
-        return solve(model, model.branches[0], {.steps = 20000, .record = 1, .precision = precision}).points.back().constraint_error;
+        return solve(model, model.branches[0], {.steps = 20000, .record = 1, .precision = precision})
+            .points.back()
+            .constraint_error;
     };
-    const double single = Phi(Precision::single), twofold = Phi(Precision::twofold), extended = Phi(Precision::extended);
+    const double single = Phi(Precision::single), twofold = Phi(Precision::twofold),
+                 extended = Phi(Precision::extended);
     EXPECT_GT(single, 1e3 * twofold);
     EXPECT_GT(twofold, 10 * extended);
 }
@@ -158,7 +175,8 @@ TEST(Methods, EveryRungGivesTheSameBitsEachTime) {
     for (const auto& method : methods) {
         const auto a = solve(model, model.branches[1], {.method = method, .steps = 40}),
                    b = solve(model, model.branches[1], {.method = method, .steps = 40});
-        for (std::size_t k = 0; k < a.points.size(); ++k) EXPECT_EQ(a.points[k].poses[1].r, b.points[k].poses[1].r);
+        for (std::size_t k = 0; k < a.points.size(); ++k)
+            EXPECT_EQ(a.points[k].poses[1].r, b.points[k].poses[1].r);
     }
 }
 

@@ -12,10 +12,16 @@ namespace elastocheck::recursive {
 struct Random {
     std::mt19937 engine{20041};
 
-    double operator()(double low = -1, double high = 1) { return std::uniform_real_distribution<double>(low, high)(engine); }
-    Eigen::Vector3d vector(double size = 1) { return size * Eigen::Vector3d((*this)(), (*this)(), (*this)()); }
+    double operator()(double low = -1, double high = 1) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    Eigen::Vector3d vector(double size = 1) {
+        return size * Eigen::Vector3d((*this)(), (*this)(), (*this)());
+    }
     Eigen::Vector3d unit() { return vector().normalized(); }
-    Eigen::Quaterniond rotation(double angle = 3) { return Eigen::Quaterniond(Eigen::AngleAxisd((*this)(0, angle), unit())); }
+    Eigen::Quaterniond rotation(double angle = 3) {
+        return Eigen::Quaterniond(Eigen::AngleAxisd((*this)(0, angle), unit()));
+    }
     Pose pose(double angle = 3) { return {vector(), rotation(angle)}; }
     State<double> state(int bodies, double angle = 3) {
         std::vector<Pose> poses;

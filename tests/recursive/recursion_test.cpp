@@ -36,8 +36,9 @@ double root(F&& f, double low, double high) {
     return low;
 }
 
-// ---- What the published recursion converges to, derived by hand. With N → ∞ the sum of K(qⁿ)Δqⁿ becomes an integral, taken
-// in ground axes along the path; the stored force is never turned. For one rotation θ that is a sum of torques K_θθ dθ.
+// ---- What the published recursion converges to, derived by hand. With N → ∞ the sum of K(qⁿ)Δqⁿ becomes an
+// integral, taken in ground axes along the path; the stored force is never turned. For one rotation θ that is
+// a sum of torques K_θθ dθ.
 
 struct OwnLimit {
     const char* scene;
@@ -52,7 +53,8 @@ std::vector<OwnLimit> own_limits() {
         limits.push_back({"pinned_bar", 5000, {0.5 * std::cos(t), 0, 0.5 * std::sin(t)}});
     }
     {  // (2 k a² + 2 k_R) θ = F e cos θ, where the truth is 2 k a² sin θ + 2 k_R θ
-        const double t = root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0, 1.5);
+        const double t =
+            root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0, 1.5);
         limits.push_back({"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
     }
     {  // k_R θ = F L cos θ: the truth, nothing is stored with a lever
@@ -63,10 +65,13 @@ std::vector<OwnLimit> own_limits() {
         const auto F = [](double z) {
             return 2e5 * (z - 0.08 - 0.3 * (std::atan(z / 0.3) - std::atan(0.08 / 0.3)));
         };
-        limits.push_back({"two_spring_arch", -200, {0, 0, root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
-        limits.push_back({"two_spring_arch", 2000, {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
+        limits.push_back(
+            {"two_spring_arch", -200, {0, 0, root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
+        limits.push_back(
+            {"two_spring_arch", 2000, {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
     }
-    limits.push_back({"single_bushing", 4000, Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)});
+    limits.push_back({"single_bushing", 4000,
+                      Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)});
     limits.push_back({"parallel_springs", 3000, {0, 0, 0.4 + 3000 / 75e3}});
     return limits;
 }
@@ -84,15 +89,19 @@ TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
         const Vector3d coarse = error(400), fine = error(800);
         if (coarse.norm() < 1e-10) continue;  // linear scenes: exact with any number of steps
         EXPECT_NEAR(std::log2(coarse.norm() / fine.norm()), 1, 0.02) << limit.scene;
-        EXPECT_LE((2 * fine - coarse).norm(), 1e-2 * fine.norm()) << limit.scene;  // Richardson's limit is the closed form
+        EXPECT_LE((2 * fine - coarse).norm(), 1e-2 * fine.norm())
+            << limit.scene;  // Richardson's limit is the closed form
     }
 }
 
 TEST(Recursion, LinearScenesAreExactWithOneStep) {
     for (const char* name : {"single_bushing", "parallel_springs"}) {
         const Model model = compile(support::scene(name));
-        const auto one = solve(model, model.branches[0], {.steps = 1}), many = solve(model, model.branches[0], {.steps = 1000});
-        EXPECT_LE((leading_point(model, one.points.back()) - leading_point(model, many.points.back())).norm(), 1e-12) << name;
+        const auto one = solve(model, model.branches[0], {.steps = 1}),
+                   many = solve(model, model.branches[0], {.steps = 1000});
+        EXPECT_LE((leading_point(model, one.points.back()) - leading_point(model, many.points.back())).norm(),
+                  1e-12)
+            << name;
     }
 }
 
@@ -135,7 +144,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
 }
 
 TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
-    for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch", "single_bushing", "parallel_springs"}) {
+    for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch", "single_bushing",
+                             "parallel_springs"}) {
         const Model model = compile(support::scene(name));
         for (const auto& branch : model.branches) {
             const auto path = solve(model, branch, {.steps = 25});
@@ -188,8 +198,8 @@ TEST(Recursion, UnbalancedDesignPositionSettlesAtLoadFactorZero) {
 // ---- Reactions
 
 TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
-    // A bar hinged at a about y, propped at b by a vertical distance rod, loaded at c by 90 N up: with arms 1 and 3 the rod
-    // pulls down with 270 and the hinge pushes up with 180.
+    // A bar hinged at a about y, propped at b by a vertical distance rod, loaded at c by 90 N up: with arms 1
+    // and 3 the rod pulls down with 270 and the hinge pushes up with 180.
     const std::string text =
         "elastocheck: 1\nname: lever\nunits: {length: m, angle: rad, force: N}\n"
         "points: {a: [0, 0, 0], b: [1, 0, 0], c: [3, 0, 0], foot: [1, 0, -2]}\n"
@@ -223,8 +233,10 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
     for (const auto& name : support::scene_names()) {
         const Scene scene = support::scene(name);
         const Model model = compile(scene);
-        const Model moved = compile(support::moved(scene, R, t)), axes = compile(support::with_body_axes(scene, {R, Q})),
-                    mirrored = compile(support::mirrored(scene)), reversed = compile(support::reversed(scene));
+        const Model moved = compile(support::moved(scene, R, t)),
+                    axes = compile(support::with_body_axes(scene, {R, Q})),
+                    mirrored = compile(support::mirrored(scene)),
+                    reversed = compile(support::reversed(scene));
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
             const auto point = [&](const Model& m) {
                 const auto path = solve(m, m.branches[b], {.steps = 50});
@@ -232,7 +244,9 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
                 return leading_point(m, path.points.back());
             };
             const Vector3d p = point(model);
-            const double bound = 1e-9 * (p - leading_point(model, solve(model, model.branches[b], {.steps = 1}).points[0])).norm();
+            const double bound =
+                1e-9 *
+                (p - leading_point(model, solve(model, model.branches[b], {.steps = 1}).points[0])).norm();
             EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
             EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
             EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";
@@ -255,17 +269,21 @@ TEST(Invariance, TheSameRunGivesTheSameBits) {
 
 // A bar from a to b with two more points; joints, elements and loads to be added.
 Model bar(const std::string& rest) {
-    return compile(parse_scene("elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
-                               "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0], d: [1, 0, 1]}\n"
-                               "branches: {out: {load: load, to: 100, steps: 10}}\n"
-                               "probes: {tip: {on: bar, at: b}}\n" + rest, "bar"));
+    return compile(
+        parse_scene("elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
+                    "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0], d: [1, 0, 1]}\n"
+                    "branches: {out: {load: load, to: 100, steps: 10}}\n"
+                    "probes: {tip: {on: bar, at: b}}\n" +
+                        rest,
+                    "bar"));
 }
 
 TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
-    const Model model = bar("bodies: {bar: {origin: a}}\n"
-                            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
-                            "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
-                            "loads: {load: {on: bar, at: c, force: [1, 0, 0.001]}}\n");
+    const Model model =
+        bar("bodies: {bar: {origin: a}}\n"
+            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
+            "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
+            "loads: {load: {on: bar, at: c, force: [1, 0, 0.001]}}\n");
     const auto path = solve(model, model.branches[0]);
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode);
     EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos) << path.detail;
@@ -273,11 +291,14 @@ TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
 }
 
 TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
-    const std::string rest = "bodies: {bar: {origin: a}}\n"
-                             "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
-                             "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n";
-    const Model idle = bar("joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
-    const Model held = bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
+    const std::string rest =
+        "bodies: {bar: {origin: a}}\n"
+        "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
+        "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n";
+    const Model idle =
+        bar("joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
+    const Model held =
+        bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
     const auto a = solve(idle, idle.branches[0]), b = solve(held, held.branches[0]);
     ASSERT_EQ(a.outcome, Outcome::converged) << a.detail;
     EXPECT_LE((a.points.back().poses[0].r - b.points.back().poses[0].r).norm(), 1e-14);
@@ -285,8 +306,8 @@ TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
 }
 
 TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
-    // A block on a free slide, tied by a spring across the slide to a cart. While the cart drives off along the slide the
-    // spring would take the block along; at the design position nothing does.
+    // A block on a free slide, tied by a spring across the slide to a cart. While the cart drives off along
+    // the slide the spring would take the block along; at the design position nothing does.
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: dead centre\nunits: {length: m, angle: rad, force: N}\n"
         "points: {block: [0, 0, 0], cart: [0, 0, 1], end: [-1, 0, 1]}\n"
@@ -296,7 +317,8 @@ TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
         "springs:\n  tie: {bodies: [block, cart], from: block, to: cart, rate: 1000}\n"
         "  drive: {bodies: [cart, ground], from: cart, to: end, rate: 1000}\n"
         "loads: {pull: {on: cart, at: cart, force: [1, 0, 0]}}\n"
-        "branches: {out: {load: pull, to: 500, steps: 50}}\nprobes: {block: {on: block, at: block}}\n", "dead centre"));
+        "branches: {out: {load: pull, to: 500, steps: 50}}\nprobes: {block: {on: block, at: block}}\n",
+        "dead centre"));
     ASSERT_EQ(diagnose(model).idle.size(), 1u);
     const auto path = solve(model, model.branches[0]);
     EXPECT_EQ(path.outcome, Outcome::singular);
@@ -304,12 +326,15 @@ TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
 }
 
 TEST(Outcome, RedundantButConsistentConstraintsGiveTheRightMotion) {
-    const std::string rest = "bodies: {bar: {origin: a}}\n"
-                             "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-                             "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n";
-    const std::string hinge_1 = "joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n";
+    const std::string rest =
+        "bodies: {bar: {origin: a}}\n"
+        "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+        "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n";
+    const std::string hinge_1 =
+        "joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n";
     const Model once = bar(hinge_1 + rest);
-    const Model twice = bar(hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
+    const Model twice =
+        bar(hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
     const auto a = solve(once, once.branches[0]), b = solve(twice, twice.branches[0]);
     ASSERT_EQ(b.outcome, Outcome::converged) << b.detail;
     EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-13);
@@ -340,7 +365,8 @@ TEST(Outcome, NaNInTheModelIsNeverConverged) {
 }
 
 TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
-    // The pendulum beyond F = 1979 N, where F L sin θ > k_R: a perfectly stable equilibrium, which no step count reaches.
+    // The pendulum beyond F = 1979 N, where F L sin θ > k_R: a perfectly stable equilibrium, which no step
+    // count reaches.
     Scene scene = support::scene("pendulum");
     for (auto& branch : scene.branches) branch.to *= 2;
     const Model model = compile(scene);
@@ -354,8 +380,9 @@ TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
 
 TEST(Outcome, NamesAreDistinct) {
     std::vector<std::string> names;
-    for (const auto outcome : {Outcome::converged, Outcome::singular, Outcome::loaded_idle_mode, Outcome::inconsistent_constraints,
-                               Outcome::not_finite, Outcome::iteration_limit, Outcome::diverged, Outcome::branch_lost})
+    for (const auto outcome :
+         {Outcome::converged, Outcome::singular, Outcome::loaded_idle_mode, Outcome::inconsistent_constraints,
+          Outcome::not_finite, Outcome::iteration_limit, Outcome::diverged, Outcome::branch_lost})
         names.emplace_back(name(outcome));
     std::ranges::sort(names);
     EXPECT_EQ(std::ranges::adjacent_find(names), names.end());

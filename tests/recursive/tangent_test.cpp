@@ -47,10 +47,14 @@ Bushing bushing(BodyId i, BodyId j, Random& random) {
 
 // Turns body j (or body i, where j is ground) until the relative rotation of the markers is θ.
 void turn_to(const Vector3d& theta, const Bushing& e, std::vector<Pose>& poses) {
-    const auto of = [&](BodyId b) { return b == ground ? Eigen::Quaterniond::Identity() : poses[static_cast<std::size_t>(b)].p; };
+    const auto of = [&](BodyId b) {
+        return b == ground ? Eigen::Quaterniond::Identity() : poses[static_cast<std::size_t>(b)].p;
+    };
     const Eigen::Quaterniond turn = exponential<double>(theta), I = e.i.A_local, J = e.j.A_local;
-    if (e.j.body != ground) poses[static_cast<std::size_t>(e.j.body)].p = of(e.i.body) * I * turn * J.conjugate();
-    else poses[static_cast<std::size_t>(e.i.body)].p = J * turn.conjugate() * I.conjugate();
+    if (e.j.body != ground)
+        poses[static_cast<std::size_t>(e.j.body)].p = of(e.i.body) * I * turn * J.conjugate();
+    else
+        poses[static_cast<std::size_t>(e.i.body)].p = J * turn.conjugate() * I.conjugate();
 }
 
 template <class Real>
@@ -68,7 +72,8 @@ template <class Real>
 Matrix<Real> tangent(const Case& c) {
     Matrix<Real> T = Matrix<Real>::Zero(6 * bodies, 6 * bodies);
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    add_consistent_tangent<Real>(c.model, c.branch, static_cast<Real>(c.a), state_of<Real>(c.poses), lambda, T);
+    add_consistent_tangent<Real>(c.model, c.branch, static_cast<Real>(c.a), state_of<Real>(c.poses), lambda,
+                                 T);
     return T;
 }
 
@@ -98,9 +103,11 @@ void expect_derivative(const Case& c, const std::string& what, double limit = 1e
     Eigen::Index row = 0, column = 0;
     const Matrix<Long> T = tangent<Long>(c), D = differences(c);
     (T - D).cwiseAbs().maxCoeff(&row, &column);
-    EXPECT_LE(apart(T, D), limit) << what << ": worst at (" << row << ", " << column << "): " << static_cast<double>(T(row, column))
-                                  << " instead of " << static_cast<double>(D(row, column));
-    EXPECT_LE(apart(tangent<double>(c).cast<Long>(), T), 1e-11) << what << ": double is not the same as long double";
+    EXPECT_LE(apart(T, D), limit) << what << ": worst at (" << row << ", " << column
+                                  << "): " << static_cast<double>(T(row, column)) << " instead of "
+                                  << static_cast<double>(D(row, column));
+    EXPECT_LE(apart(tangent<double>(c).cast<Long>(), T), 1e-11)
+        << what << ": double is not the same as long double";
 }
 
 TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
@@ -108,7 +115,8 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
-            c.model.elastics.push_back({"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, 3e4, random(0.1, 3)}});
+            c.model.elastics.push_back(
+                {"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, 3e4, random(0.1, 3)}});
             // The fifth derivative of a direction grows as ℓ⁻⁵ when the random ends come close.
             const auto& e = std::get<AxialSpring>(c.model.elastics[0].kind);
             const State<double> q = state_of<double>(c.poses);
@@ -121,7 +129,8 @@ TEST(Tangent, OfABushingIsTheDerivativeOfItsForceAtAnyAngle) {
     const double at_switch = std::sqrt(1e-3);  // where the series for small angles end
     Random random;
     for (const auto& [i, j] : sides)
-        for (const double angle : {0.0, 1e-9, 1e-4, 0.01, at_switch * (1 - 1e-9), at_switch * (1 + 1e-9), 0.04, 0.3, 1.0, 2.5}) {
+        for (const double angle :
+             {0.0, 1e-9, 1e-4, 0.01, at_switch * (1 - 1e-9), at_switch * (1 + 1e-9), 0.04, 0.3, 1.0, 2.5}) {
             Case c = anywhere(random);
             const Bushing e = bushing(i, j, random);
             turn_to(angle * random.unit(), e, c.poses);
@@ -136,10 +145,11 @@ TEST(Tangent, OfEveryConstraintIsTheDerivativeOfItsForce) {
         for (int trial = 0; trial < 10; ++trial) {
             const Point at_i{i, random.vector()}, at_j{j, random.vector()};
             const Direction u_i{i, random.unit()}, u_j{j, random.unit()};
-            const std::pair<const char*, ConstraintKind> kinds[] = {{"coincident points", CoincidentPoints{at_i, at_j}},
-                                                                    {"point in plane", PointInPlane{at_i, at_j, u_j}},
-                                                                    {"perpendicular", PerpendicularDirections{u_i, u_j}},
-                                                                    {"distance", DistanceBetween{at_i, at_j, random(0.1, 2)}}};
+            const std::pair<const char*, ConstraintKind> kinds[] = {
+                {"coincident points", CoincidentPoints{at_i, at_j}},
+                {"point in plane", PointInPlane{at_i, at_j, u_j}},
+                {"perpendicular", PerpendicularDirections{u_i, u_j}},
+                {"distance", DistanceBetween{at_i, at_j, random(0.1, 2)}}};
             Case all = anywhere(random);
             for (const auto& [name, kind] : kinds) {
                 Case c = anywhere(random);
@@ -159,7 +169,8 @@ TEST(Tangent, OfLoadsIsTheDerivativeOfTheirMoments) {
             c.a = a;
             c.model.static_loads = {{"weight", DeadForce{{body, random.vector()}, random.vector(600)}},
                                     {"torque", DeadMoment{body, random.vector(50)}}};
-            c.branch.loads = {{"push", DeadForce{{body, random.vector()}, random.unit()}}, {"turn", DeadMoment{1 - body, random.unit()}}};
+            c.branch.loads = {{"push", DeadForce{{body, random.vector()}, random.unit()}},
+                              {"turn", DeadMoment{1 - body, random.unit()}}};
             expect_derivative(c, fmt::format("body {}, a = {}", body, a));
         }
 }
@@ -168,7 +179,9 @@ Case everything_at_once(Random& random) {
     Case c = anywhere(random);
     for (const auto& [i, j] : sides) {
         c.model.elastics.push_back({"bushing", bushing(i, j, random)});
-        c.model.elastics.push_back({"spring", AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, 3e4, 0.3}});
+        c.model.elastics.push_back(
+            {"spring",
+             AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, 3e4, 0.3}});
         const Point at_i{i, random.vector()}, at_j{j, random.vector()};
         add(c, CoincidentPoints{at_i, at_j}, random);
         add(c, PointInPlane{at_i, at_j, {j, random.unit()}}, random);
@@ -182,12 +195,14 @@ Case everything_at_once(Random& random) {
 
 TEST(Tangent, OfEverythingTogetherIsTheDerivativeOfTheResidual) {
     Random random;
-    for (int trial = 0; trial < 10; ++trial) expect_derivative(everything_at_once(random), fmt::format("trial {}", trial), 1e-10);
+    for (int trial = 0; trial < 10; ++trial)
+        expect_derivative(everything_at_once(random), fmt::format("trial {}", trial), 1e-10);
 }
 
 TEST(Tangent, IsSymmetricUpToTheMomentLeftOver) {
-    // Of a potential V, increments Δπ in ground axes: ∂(∂V/∂π)/∂π is symmetric up to the commutator of two rotations, so
-    // that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which equilibrium makes zero. No differences are involved.
+    // Of a potential V, increments Δπ in ground axes: ∂(∂V/∂π)/∂π is symmetric up to the commutator of two
+    // rotations, so that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which equilibrium makes zero. No
+    // differences are involved.
     Random random;
     for (int trial = 0; trial < 20; ++trial) {
         const Case c = everything_at_once(random);
@@ -211,8 +226,10 @@ TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
         turn_to(Vector3d::Zero(), e, c.poses);
         const State<double> q = state_of<double>(c.poses);  // move one marker onto the other
         const Vector3d D = q[j].r + q[j].lever(e.j.s_local) - q[i].r - q[i].lever(e.i.s_local);
-        if (j != ground) c.poses[static_cast<std::size_t>(j)].r -= D;
-        else c.poses[static_cast<std::size_t>(i)].r += D;
+        if (j != ground)
+            c.poses[static_cast<std::size_t>(j)].r -= D;
+        else
+            c.poses[static_cast<std::size_t>(i)].r += D;
         c.model.elastics.push_back({"bushing", e});
         const Matrix<double> K = stiffness<double>(c.model, state_of<double>(c.poses));
         EXPECT_LE(apart(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13) << i << " " << j;

@@ -37,15 +37,17 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
     const Said said = elastocheck_says("inspect " + scenes + "/mcpherson.yaml");
     EXPECT_EQ(said.code, 0);
-    for (const char* part : {"coordinates           18", "constraints            9", "unknowns              27",
-                             "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'",
-                             "ball_joint           arm - wheel: coincident points", "left out", "in equilibrium"})
+    for (const char* part :
+         {"coordinates           18", "constraints            9", "unknowns              27",
+          "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'",
+          "ball_joint           arm - wheel: coincident points", "left out", "in equilibrium"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
 TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
     const Folder folder;
-    const auto scene = folder.write("s.yaml",
+    const auto scene = folder.write(
+        "s.yaml",
         "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
         "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: a}, idler: {origin: c}}\n"
         "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
@@ -57,17 +59,20 @@ TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
         "probes: {tip: {on: bar, at: c}}\n");
     const Said said = elastocheck_says("inspect " + scene);
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const char* part : {"joint 'second': 5 of its rows repeat", "body 'idler': it hangs on one other body",
-                             "joint 'hanger': a body it connects is left out", "out of balance by 40.82 N"})
+    for (const char* part :
+         {"joint 'second': 5 of its rows repeat", "body 'idler': it hangs on one other body",
+          "joint 'hanger': a body it connects is left out", "out of balance by 40.82 N"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
 TEST(Command, CompareWritesTheTableAndTheResult) {
     const Folder folder;
-    const Said said = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 20 -o " + (folder.path / "out").string());
+    const Said said = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 20 -o " +
+                                       (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
-    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]", "at equal travel", "recursive    converged", "conclusive: "})
+    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]", "at equal travel",
+                             "recursive    converged", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scene"]["name"], "McPherson strut (Kang 2004, section 3)");
@@ -78,7 +83,8 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
     const Folder folder;
     std::string scene = text_of(scenes + "/two_spring_arch.yaml");
     scene.replace(scene.find("to: -200"), 8, "to: -300");
-    const Said said = elastocheck_says("compare " + folder.write("arch.yaml", scene) + " -o " + folder.path.string());
+    const Said said =
+        elastocheck_says("compare " + folder.write("arch.yaml", scene) + " -o " + folder.path.string());
     EXPECT_EQ(said.code, 3);
     EXPECT_TRUE(contains(said.out, "INCONCLUSIVE")) << said.out;
     EXPECT_TRUE(contains(said.out, "branch lost")) << said.out;
@@ -91,31 +97,38 @@ TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
     // The mount's sideways preload turning with the strut: in equilibrium, but no minimum of the energy.
     const Folder folder;
     std::string scene = text_of(scenes + "/mcpherson_preload.yaml");
-    scene.replace(scene.find("bodies: [ground, strut], at: strut_top"), 38, "bodies: [strut, ground], at: strut_top");
+    scene.replace(scene.find("bodies: [ground, strut], at: strut_top"), 38,
+                  "bodies: [strut, ground], at: strut_top");
     const auto preload = scene.find("preload: [", scene.find("K2_strut_mount"));
-    scene.replace(preload, scene.find(']', preload) + 1 - preload, "preload: [-76.9309197398, 813.830593499, -3796.67069248]");
+    scene.replace(preload, scene.find(']', preload) + 1 - preload,
+                  "preload: [-76.9309197398, 813.830593499, -3796.67069248]");
     const Said said = elastocheck_says("compare " + folder.write("unstable.yaml", scene));
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.out, "energy leg: branch lost: branch 'jounce', load factor 0: the equilibrium stops being a minimum"))
+    EXPECT_TRUE(contains(
+        said.out,
+        "energy leg: branch lost: branch 'jounce', load factor 0: the equilibrium stops being a minimum"))
         << said.out;
     EXPECT_TRUE(contains(said.out, "nothing compared: a curve is empty")) << said.out;
 }
 
 TEST(Command, SolvePrintsOneLegAsCsv) {
     for (const char* method : {"recursive", "equilibrium", "energy"}) {
-        const Said said = elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4 --method " + method);
+        const Said said =
+            elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4 --method " + method);
         EXPECT_EQ(said.code, 0) << said.err;
         EXPECT_EQ(std::count(said.out.begin(), said.out.end(), '\n'), 1 + 2 * 5);
         EXPECT_TRUE(contains(said.out, std::string("up,") + method + ",5000,")) << said.out;
     }
-    EXPECT_TRUE(contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out, "up,recursive,"));
+    EXPECT_TRUE(
+        contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out, "up,recursive,"));
 }
 
 TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
     const Folder folder;
     std::string scene = text_of(scenes + "/pendulum.yaml");
     for (const char* word : {"to: 1500, steps: 60", "to: -1500, steps: 60"})
-        scene.replace(scene.find(word), std::string(word).size(), word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
+        scene.replace(scene.find(word), std::string(word).size(),
+                      word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
     const Said said = elastocheck_says("solve " + folder.write("p.yaml", scene));
     EXPECT_EQ(said.code, 3);
     EXPECT_TRUE(contains(said.err, "recursive: diverged: branch 'up': at load factor")) << said.err;
@@ -123,16 +136,18 @@ TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
 
 TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
     const Folder folder;
-    const Said said = elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
-                                       (folder.path / "out").string());
+    const Said said = elastocheck_says(
+        "converge " + scenes + "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
+        (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const char* part : {"method 'published' at equal load", "method 'tangent' at equal travel", "|Φ|, eq. (31)",
-                             "whole = lever + axis + load + rest", "conclusive"})
+    for (const char* part : {"method 'published' at equal load", "method 'tangent' at equal travel",
+                             "|Φ|, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["convergence"]["branches"][0]["methods"].size(), 2u);
     EXPECT_EQ(result["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"), "lift,published,at equal load,nose_z,mm,320,"));
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
+                         "lift,published,at equal load,nose_z,mm,320,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
     EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20").code, 2);
     EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method tangnt").code, 2);
@@ -140,7 +155,8 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
 
 TEST(Command, BadInputExitsWith2AndWritesNothing) {
     const Folder folder;
-    const auto bad = folder.write("bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
+    const auto bad =
+        folder.write("bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
     const auto out = (folder.path / "out").string();
     const Said said = elastocheck_says("compare " + bad + " -o " + out);
     EXPECT_EQ(said.code, 2);
@@ -160,15 +176,17 @@ TEST(Command, OutputThatCannotBeWrittenExitsWith2) {
 }
 
 TEST(Command, TyposAreAnsweredWithTheNearestWord) {
-    struct Typo { const char *arguments, *answer; };
-    for (const auto& [arguments, answer] : {Typo{"comprae x", "unknown command 'comprae', did you mean 'compare'?"},
-                                            Typo{"inspet x", "did you mean 'inspect'?"},
-                                            Typo{"compare --stpes 3 x", "unknown option '--stpes', did you mean '--steps'?"},
-                                            Typo{"solve x --methd=energy", "did you mean '--method'?"},
-                                            Typo{"solve x --method enrgy", "--method: enrgy not in {recursive,equilibrium,energy}"},
-                                            Typo{"solve x --steps 0", "--steps"},
-                                            Typo{"solve", "SCENE is required"},
-                                            Typo{"", "subcommand is required"}}) {
+    struct Typo {
+        const char *arguments, *answer;
+    };
+    for (const auto& [arguments, answer] :
+         {Typo{"comprae x", "unknown command 'comprae', did you mean 'compare'?"},
+          Typo{"inspet x", "did you mean 'inspect'?"},
+          Typo{"compare --stpes 3 x", "unknown option '--stpes', did you mean '--steps'?"},
+          Typo{"solve x --methd=energy", "did you mean '--method'?"},
+          Typo{"solve x --method enrgy", "--method: enrgy not in {recursive,equilibrium,energy}"},
+          Typo{"solve x --steps 0", "--steps"}, Typo{"solve", "SCENE is required"},
+          Typo{"", "subcommand is required"}}) {
         const Said said = elastocheck_says(arguments);
         EXPECT_EQ(said.code, 2) << arguments;
         EXPECT_TRUE(contains(said.err, answer)) << arguments << ": " << said.err;
@@ -179,7 +197,8 @@ TEST(Command, TyposAreAnsweredWithTheNearestWord) {
 TEST(Command, HelpListsTheCommands) {
     const Said said = elastocheck_says("--help");
     EXPECT_EQ(said.code, 0);
-    for (const char* part : {"inspect", "solve", "compare", "Exit codes"}) EXPECT_TRUE(contains(said.out, part)) << part;
+    for (const char* part : {"inspect", "solve", "compare", "Exit codes"})
+        EXPECT_TRUE(contains(said.out, part)) << part;
     EXPECT_EQ(elastocheck_says("compare --help").code, 0);
     EXPECT_EQ(elastocheck_says("--version").out, "0.1.0\n");
 }

@@ -67,10 +67,12 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
 TEST(Document, NumbersThatAreNotFiniteAreNull) {
     Made made;
     made.comparison.branches[0].runs[0].curve.values[3][0] = std::numeric_limits<double>::quiet_NaN();
-    made.comparison.branches[0].deviation.equal_load.channels[0].max = std::numeric_limits<double>::infinity();
+    made.comparison.branches[0].deviation.equal_load.channels[0].max =
+        std::numeric_limits<double>::infinity();
     const json d = json::parse(made.document().dump());
     EXPECT_TRUE(d["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
-    EXPECT_TRUE(d["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
+    EXPECT_TRUE(
+        d["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
 }
 
 TEST(Document, InputHashIsFnv1a) {
@@ -89,7 +91,8 @@ TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const auto columns = std::ranges::count(header, ',');
     for (std::size_t at = 0; at < csv.size();) {
         const auto end = csv.find('\n', at);
-        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at), csv.begin() + static_cast<long>(end), ','), columns);
+        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at), csv.begin() + static_cast<long>(end), ','),
+                  columns);
         at = end + 1;
     }
 }

@@ -36,7 +36,8 @@ TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
         write_whole(folder.path / "taken", "x");
         ADD_FAILURE() << "a folder was overwritten";
     } catch (const FileError& error) {
-        EXPECT_NE(std::string(error.what()).find("taken: cannot be written"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("taken: cannot be written"), std::string::npos)
+            << error.what();
     }
     EXPECT_EQ(entries(folder.path), 2);
     EXPECT_THROW(write_whole("/dev/full/result.json", "x"), FileError);

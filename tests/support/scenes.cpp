@@ -12,22 +12,28 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 template <class T>
-concept HasLocalPoint = requires(T& t) { t.s_local; };
+concept HasLocalPoint = requires(T& t) {
+    t.s_local;
+};
 template <class T>
-concept HasDirection = requires(T& t) { t.u_local; };
+concept HasDirection = requires(T& t) {
+    t.u_local;
+};
 
 // Calls f on every Point, Direction and Marker of the scene.
 template <class F>
 void for_each_feature(Scene& scene, F&& f) {
     for (auto& joint : scene.joints)
-        std::visit([&](auto& s) {
-            f(s.i), f(s.j);
-            if constexpr (requires { s.axis_i; }) f(s.axis_i);
-            if constexpr (requires { s.axis_j; }) f(s.axis_j);
-            if constexpr (requires { s.normal_i; }) f(s.normal_i);
-            if constexpr (requires { s.normal_j; }) f(s.normal_j);
-            if constexpr (requires { s.x_i; }) f(s.x_i), f(s.y_i), f(s.x_j), f(s.y_j);
-        }, joint.kind);
+        std::visit(
+            [&](auto& s) {
+                f(s.i), f(s.j);
+                if constexpr (requires { s.axis_i; }) f(s.axis_i);
+                if constexpr (requires { s.axis_j; }) f(s.axis_j);
+                if constexpr (requires { s.normal_i; }) f(s.normal_i);
+                if constexpr (requires { s.normal_j; }) f(s.normal_j);
+                if constexpr (requires { s.x_i; }) f(s.x_i), f(s.y_i), f(s.x_j), f(s.y_j);
+            },
+            joint.kind);
     for (auto& elastic : scene.elastics) std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic.kind);
     for (auto& probe : scene.probes) f(probe.at);
 }
@@ -41,7 +47,9 @@ void for_each_load(Scene& scene, F&& f) {
 
 }  // namespace
 
-Scene scene(const std::string& name) { return read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml"); }
+Scene scene(const std::string& name) {
+    return read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml");
+}
 
 std::vector<std::string> scene_names() {
     std::vector<std::string> names;
@@ -61,8 +69,10 @@ Scene moved(const Scene& original, const Quaterniond& R, const Vector3d& t) {
         if constexpr (requires { feature.A_local; }) feature.A_local = R * feature.A_local;
     });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load)) force->f = R * force->f;
-        else std::get<DeadMoment>(load).m = R * std::get<DeadMoment>(load).m;
+        if (auto* force = std::get_if<DeadForce>(&load))
+            force->f = R * force->f;
+        else
+            std::get<DeadMoment>(load).m = R * std::get<DeadMoment>(load).m;
     });
     return scene;
 }
@@ -70,32 +80,38 @@ Scene moved(const Scene& original, const Quaterniond& R, const Vector3d& t) {
 Scene with_body_axes(const Scene& original, const std::vector<Quaterniond>& turns) {
     Scene scene = original;
     const auto turn = [&](BodyId body) {
-        return body == ground ? Quaterniond::Identity() : turns[static_cast<std::size_t>(body) % turns.size()].conjugate();
+        return body == ground ? Quaterniond::Identity()
+                              : turns[static_cast<std::size_t>(body) % turns.size()].conjugate();
     };
     for (BodyId b = 0; b < static_cast<BodyId>(scene.bodies.size()); ++b) {
         auto& p = scene.bodies[static_cast<std::size_t>(b)].design.p;
         p = p * turn(b).conjugate();
     }
     for_each_feature(scene, [&](auto& feature) {
-        if constexpr (HasLocalPoint<decltype(feature)>) feature.s_local = turn(feature.body) * feature.s_local;
+        if constexpr (HasLocalPoint<decltype(feature)>)
+            feature.s_local = turn(feature.body) * feature.s_local;
         if constexpr (HasDirection<decltype(feature)>) feature.u_local = turn(feature.body) * feature.u_local;
         if constexpr (requires { feature.A_local; }) feature.A_local = turn(feature.body) * feature.A_local;
     });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load)) force->at.s_local = turn(force->at.body) * force->at.s_local;
+        if (auto* force = std::get_if<DeadForce>(&load))
+            force->at.s_local = turn(force->at.body) * force->at.s_local;
     });
     if (scene.wheel) {
         auto& wheel = *scene.wheel;
-        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local}) *v = turn(wheel.body) * *v;
+        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local})
+            *v = turn(wheel.body) * *v;
     }
     return scene;
 }
 
 Scene mirrored(const Scene& original) {
-    // Positions and forces are reflected by S; rotation vectors and moments, being axial, by -S. Axes A become S A S, so
-    // that a stiffness in local axes becomes diag(S, -S) K diag(S, -S).
+    // Positions and forces are reflected by S; rotation vectors and moments, being axial, by -S. Axes A
+    // become S A S, so that a stiffness in local axes becomes diag(S, -S) K diag(S, -S).
     const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
-    const auto rotation = [&](const Quaterniond& p) { return Quaterniond(Eigen::Matrix3d(S * p.toRotationMatrix() * S)); };
+    const auto rotation = [&](const Quaterniond& p) {
+        return Quaterniond(Eigen::Matrix3d(S * p.toRotationMatrix() * S));
+    };
     Scene scene = original;
     for (auto& body : scene.bodies) body.design = {S * body.design.r, rotation(body.design.p)};
     for_each_feature(scene, [&](auto& feature) {
@@ -135,8 +151,10 @@ Scene reversed(const Scene& original) {
     };
     for_each_feature(scene, [&](auto& feature) { renumber(feature.body); });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load)) renumber(force->at.body);
-        else renumber(std::get<DeadMoment>(load).body);
+        if (auto* force = std::get_if<DeadForce>(&load))
+            renumber(force->at.body);
+        else
+            renumber(std::get<DeadMoment>(load).body);
     });
     if (scene.wheel) renumber(scene.wheel->body);
     std::ranges::reverse(scene.bodies);

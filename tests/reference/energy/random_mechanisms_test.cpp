@@ -25,16 +25,11 @@ struct Builder {
 JointKind random_joint(const Builder& at, Random& random, int kind, BodyId i, BodyId j) {
     const Vector3d p = random.vector(0.5), q = random.vector(0.5), u = random.unit();
     switch (kind) {
-        case 0:
-            return Distance{at.point(i, p), at.point(j, q), (p - q).norm()};
-        case 1:
-            return InPlane{at.point(i, p), at.point(j, p), at.direction(j, u)};
-        case 2:
-            return Perpendicular{at.direction(i, u), at.direction(j, u.unitOrthogonal())};
-        case 3:
-            return Spherical{at.point(i, p), at.point(j, p)};
-        case 4:
-            return Cylindrical{at.point(i, p), at.point(j, p), at.direction(i, u), at.direction(j, u)};
+        case 0: return Distance{at.point(i, p), at.point(j, q), (p - q).norm()};
+        case 1: return InPlane{at.point(i, p), at.point(j, p), at.direction(j, u)};
+        case 2: return Perpendicular{at.direction(i, u), at.direction(j, u.unitOrthogonal())};
+        case 3: return Spherical{at.point(i, p), at.point(j, p)};
+        case 4: return Cylindrical{at.point(i, p), at.point(j, p), at.direction(i, u), at.direction(j, u)};
         default:
             return Universal{at.point(i, p), at.point(j, p), at.direction(i, u),
                              at.direction(j, u.unitOrthogonal())};
