@@ -44,6 +44,26 @@ void assemble_consistent(const Model& model, const Branch& branch, Real a, const
     add_consistent_tangent<Real>(model, branch, a, q, lambda, M);
 }
 
+// The matrix somewhere where nothing vanishes by chance: what is zero here is zero everywhere.
+template <class Real>
+Matrix<Real> generic_matrix(const Model& model, const Branch& branch, const Matrix<Real>& like) {
+    // Multiples of the golden ratio, less their whole part: no two alike, none zero.
+    const auto fill = [](Vector<Real>& v, Real size) {
+        for (Eigen::Index k = 0; k < v.size(); ++k) {
+            const Real x = static_cast<Real>(k + 1) * Real(0.6180339887498949);
+            v[k] = size * (x - std::floor(x) + Real(0.1));
+        }
+    };
+    State<Real> q = design_state<Real>(model);
+    Vector<Real> dq(coordinates(model)), lambda(constraint_rows(model)), Phi(constraint_rows(model));
+    fill(dq, Real(0.3));
+    fill(lambda, Real(1e3));
+    advance(q, dq);
+    Matrix<Real> M = like;
+    assemble_consistent<Real>(model, branch, Real(1e3), q, lambda, M, Phi);
+    return M;
+}
+
 // Φ_qᵀ λ [6nb] and Φ(q), without the matrix.
 template <class Real>
 void constraint_force(const Model& model, const State<Real>& q, const Vector<Real>& lambda, Vector<Real>& f,

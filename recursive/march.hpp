@@ -49,7 +49,8 @@ struct March {
         for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
         assemble<Real>(model, q, system.M, Phi);
-        prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space);
+        prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space,
+                generic_matrix<Real>(model, branch, system.M));
     }
     int n() const { return system.n; }
     int m() const { return system.m; }
@@ -73,10 +74,15 @@ Real load_on_idle_modes(const March<Real>& s) {
 template <class Real>
 Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     const auto& system = s.system;
+    const auto moves = [&](BodyId b, int c) { return b != ground && system.moves(6 * b, c) != Real(0); };
     Real worst = 0;
     for (int c = 0; c < system.idle; ++c) {
         Real energy = 0, single = 0;
         for (const auto& elastic : s.model.elastics) {
+            const bool touched =
+                std::visit([&](const auto& kind) { return moves(kind.i.body, c) || moves(kind.j.body, c); },
+                           elastic.kind);
+            if (!touched) continue;
             const auto e =
                 std::visit([&](const auto& kind) { return element_stiffness<Real>(kind, q); }, elastic.kind);
             const Real k_T = e.K.template topLeftCorner<3, 3>().trace(),
@@ -106,20 +112,39 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     return worst;
 }
 
+// Whether two answers to the same question, or to two neighbouring ones, differ by more than half the larger
+// of them, and by more than rounding. All three are |W Δq|² [m²].
+template <class Real>
+bool disagree(const March<Real>& s, Real change, Real one, Real other) {
+    const Real rounding = 100 * std::numeric_limits<Real>::epsilon() * static_cast<Real>(s.length);
+    return !(4 * change <= std::max({one, other, rounding * rounding}));
+}
+
+// |W Δq|² of the solution now in s.x.
+template <class Real>
+Real size_of_solution(const March<Real>& s) {
+    return s.x.head(s.n()).cwiseProduct(s.system.weight.head(s.n())).squaredNorm();
+}
+
+// A step that means nothing is not an answer.
+//
 // Stored forces that do not follow are turned with one step's delay: where their stiffness k_g exceeds the
 // elements' k a step answers Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., reverses the last one and outgrows it, and more
-// steps only give it more room. The linearisation itself, eq. (6), means nothing for a rotation of a radian
-// in one step.
+// steps only give it more room. A method with the consistent tangent corrects in each step what the last one
+// missed; where that is more than half a step, the steps are too long. And the linearisation itself, eq. (6),
+// means nothing for a rotation of a radian in one step.
 template <class Real>
 bool has_diverged(March<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
-    const bool swung =
-        (weighted * s.last.array()).sum() < 0 && weighted.matrix().squaredNorm() > s.last.squaredNorm();
+    const Real size = weighted.matrix().squaredNorm(), size_before = s.last.squaredNorm();
+    const bool swung = (weighted * s.last.array()).sum() < 0 && size > size_before;
+    const bool too_long = s.method.consistent && !s.method.adaptive && size_before > 0 &&
+                          disagree(s, (weighted - s.last.array()).matrix().squaredNorm(), size, size_before);
     s.swings = swung ? s.swings + 1 : 0;
     s.last = weighted;
     Real turn = 0;
     for (int b = 0; b < s.n() / 6; ++b) turn = std::max(turn, s.dq.template segment<3>(6 * b + 3).norm());
-    return s.swings >= 2 || !(turn <= 1);
+    return s.swings >= 2 || too_long || !(turn <= 1);
 }
 
 // Assembles and factorises the method's matrix at (q, λ) with the load factor a, and judges it.

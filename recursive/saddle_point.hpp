@@ -18,9 +18,7 @@
 // error that the published method leaves, and feeding it back grows it.
 #pragma once
 
-#include <Eigen/LU>
-
-#include "recursive/state.hpp"
+#include "recursive/sparse_lu.hpp"
 
 namespace elastocheck::recursive {
 
@@ -32,8 +30,11 @@ struct SaddlePoint {
     int idle = 0;         // how many columns of `held` are idle modes; the rest are redundant combinations
     Matrix<Real> held;    // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
     Vector<Real> weight;  // W: 1 for Δr [m], L for Δπ, 1 for λ
-    Matrix<Real> bordered, rhs, x;
-    Eigen::PartialPivLU<Matrix<Real>> lu;
+    Matrix<Real> moves;   // 1 where an entry of `held` may be other than zero
+    Matrix<Real> bordered, scaling;           // M̂ with its border; what each entry of M is multiplied by
+    std::vector<Eigen::Index> entries, into;  // of M other than zero, and where each goes in `bordered`
+    Vector<Real> rhs, solution;
+    SparseLU<Real> lu;
 
     auto K() { return M.topLeftCorner(n, n); }
     int borders() const { return static_cast<int>(held.cols()); }
@@ -59,10 +60,7 @@ void orthonormalise(SaddlePoint<Real>& system) {
     const auto W2 = system.weight.array().square();
     for (int c = 0; c < system.borders(); ++c) {
         auto z = system.held.col(c);
-        if (c < system.idle)
-            z.tail(system.m).setZero();
-        else
-            z.head(system.n).setZero();
+        z.array() *= system.moves.col(c).array();
         for (int b = 0; b < c; ++b) {
             const Real overlap = (z.array() * W2 * system.held.col(b).array()).sum();
             z -= overlap * system.held.col(b);
@@ -71,19 +69,50 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// Fixes the scaling from the matrix now in M, and what to hold: `idle` modes first, then redundant
-// combinations, in the columns of `null_space` [(n+m) × d].
+// Fixes the scaling from the matrix now in M, what to hold, `idle` modes first, then redundant combinations,
+// in the columns of `null_space` [(n+m) × d], and what can be other than zero, which `generic` shows: M
+// somewhere where nothing vanishes by chance. A held mode moves the same bodies wherever the branch leads.
 template <class Real>
-void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space) {
+void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space,
+             const Matrix<Real>& generic) {
+    const Eigen::Index N = system.n + system.m, d = null_space.cols();
     system.scale = equilibration<Real>(system.M);
     system.idle = idle;
     system.held = null_space.cast<Real>();
+    system.moves.setZero(N, d);
+    for (Eigen::Index c = 0; c < d; ++c) {
+        if (c >= idle) {
+            system.moves.col(c).tail(system.m).setOnes();
+            continue;
+        }
+        const auto part = [&](Eigen::Index row) {  // of the body that the row belongs to
+            return system.held.col(c)
+                .segment(row - row % 6, 6)
+                .cwiseProduct(system.weight.segment(row - row % 6, 6));
+        };
+        const Real whole = system.held.col(c).head(system.n).norm();
+        for (Eigen::Index row = 0; row < system.n; ++row)
+            system.moves(row, c) = part(row).norm() > Real(1e-5) * whole ? 1 : 0;
+    }
     orthonormalise(system);
-    const Eigen::Index size = system.n + system.m + null_space.cols();
-    system.bordered.setZero(size, size);
-    system.rhs.setZero(size, 1 + null_space.cols());
-    system.x.setZero(size, 1 + null_space.cols());
-    system.lu = Eigen::PartialPivLU<Matrix<Real>>(size);
+
+    system.bordered.setZero(N + d, N + d);
+    system.bordered.topLeftCorner(N, N) = generic;
+    system.bordered.topRightCorner(N, d) = system.moves;
+    system.bordered.bottomLeftCorner(d, N) = system.moves.transpose();
+    reserve(system.lu, system.bordered);
+    system.bordered.setZero();
+    system.scaling = system.scale * system.scale.transpose();
+    system.entries.clear();
+    system.into.clear();
+    for (Eigen::Index j = 0; j < N; ++j)
+        for (Eigen::Index i = 0; i < N; ++i)
+            if (generic(i, j) != Real(0)) {
+                system.entries.push_back(j * N + i);
+                system.into.push_back(j * (N + d) + i);
+            }
+    system.rhs.setZero(N + d);
+    system.solution.setZero(N + d);
 }
 
 // x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is
@@ -91,14 +120,12 @@ void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
 template <class Real>
 void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower,
                      Vector<Real>& x) {
-    const int N = system.n + system.m;
-    auto rhs = system.rhs.col(0);
-    rhs.head(system.n) = f;
-    rhs.segment(system.n, system.m) = lower;
-    rhs.head(N).array() *= system.scale.array();
-    rhs.tail(system.borders()).setZero();
-    system.x.col(0) = system.lu.solve(rhs);
-    x = system.scale.asDiagonal() * system.x.col(0).head(N);
+    const int n = system.n, m = system.m;
+    system.rhs.head(n).array() = f.array() * system.scale.head(n).array();
+    system.rhs.segment(n, m).array() = lower.array() * system.scale.tail(m).array();
+    system.rhs.tail(system.borders()).setZero();
+    solve(system.lu, system.rhs.data(), system.solution.data());
+    x.array() = system.scale.array() * system.solution.head(n + m).array();
 }
 
 // Factorises the matrix now in M and renews what is held. Nothing is allocated. Returns the smallest over the
@@ -107,25 +134,25 @@ template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
     const int N = system.n + system.m, d = system.borders();
     const auto& D = system.scale;
-    system.bordered.topLeftCorner(N, N).noalias() = D.asDiagonal() * system.M * D.asDiagonal();
+    for (std::size_t e = 0; e < system.entries.size(); ++e)
+        system.bordered.data()[system.into[e]] =
+            system.M.data()[system.entries[e]] * system.scaling.data()[system.entries[e]];
     for (int c = 0; c < d; ++c) {  // b in scaled coordinates, to unit length
         auto b = system.bordered.col(N + c).head(N);
         b = D.array() * system.weight.array().square() * system.held.col(c).array();
         b.normalize();
+        system.bordered.row(N + c).head(N) = b.transpose();
     }
-    system.bordered.bottomLeftCorner(d, N) = system.bordered.topRightCorner(N, d).transpose();
-    system.bordered.bottomRightCorner(d, d).setZero();
-    system.lu.compute(system.bordered);
+    const Real pivot_ratio = factorise(system.lu, system.bordered);
 
     for (int c = 0; c < d; ++c) {
-        system.rhs.col(1 + c).setZero();
-        system.rhs(N + c, 1 + c) = 1;
-        system.x.col(1 + c) = system.lu.solve(system.rhs.col(1 + c));
-        system.held.col(c) = D.asDiagonal() * system.x.col(1 + c).head(N);
+        system.rhs.setZero();
+        system.rhs[N + c] = 1;
+        solve(system.lu, system.rhs.data(), system.solution.data());
+        system.held.col(c).array() = D.array() * system.solution.head(N).array();
     }
     if (d > 0) orthonormalise(system);
-    const auto pivots = system.lu.matrixLU().diagonal().cwiseAbs();
-    return pivots.minCoeff() / pivots.maxCoeff();
+    return pivot_ratio;
 }
 
 }  // namespace elastocheck::recursive

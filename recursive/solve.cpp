@@ -8,7 +8,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-std::string words(const Diagnosis& diagnosis, Outcome outcome, double load) {
+std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outcome, double load) {
     std::string detail = fmt::format("at load factor {:.6g}", load);
     if (outcome == Outcome::loaded_idle_mode) {
         detail += ": the load pushes what nothing resists:";
@@ -17,8 +17,10 @@ std::string words(const Diagnosis& diagnosis, Outcome outcome, double load) {
     } else if (outcome == Outcome::singular && diagnosis.null_space.cols() > 0) {
         detail += ": the matrix lost rank, or what was idle or redundant at the design position no longer is";
     } else if (outcome == Outcome::diverged) {
-        detail +=
-            ": the stored forces turn stiffer than the elements are, the recursion is unstable from here on";
+        detail += method.consistent
+                      ? ": what a step misses is more than half of it; take more steps"
+                      : ": the stored forces turn stiffer than the elements are, the recursion is unstable "
+                        "from here on";
     }
     return detail;
 }
@@ -35,7 +37,8 @@ EquilibriumPath march(const Model& model, const Branch& branch, const Options& o
     const auto finish = [&](Outcome outcome, double load) {
         path.outcome = outcome;
         if (outcome != Outcome::converged)
-            path.detail = fmt::format("branch '{}': {}", branch.name, words(diagnosis, outcome, load));
+            path.detail =
+                fmt::format("branch '{}': {}", branch.name, words(diagnosis, options.method, outcome, load));
         path.points.resize(reached);
         path.counts = s.counts;
         return path;
@@ -57,6 +60,9 @@ EquilibriumPath march(const Model& model, const Branch& branch, const Options& o
         const double load = branch.to * k / N;
         if (const Outcome outcome = step(s, static_cast<Real>(load)); outcome != Outcome::converged)
             return finish(outcome, load);
+        if (k == N && options.method.consistent && options.method.corrections == 0)
+            if (const Outcome outcome = check_last_step(s); outcome != Outcome::converged)
+                return finish(outcome, load);
         if (static_cast<long>(k) * points % N == 0) keep(load);
     }
     return finish(Outcome::converged, branch.to);

@@ -92,6 +92,8 @@ Outcome step(March<Real>& s, Real next) {
         s.q = s.before;
         back_substitute(s);
         s.lambda += s.x.tail(m);
+        const Real change = (s.x.head(n) - 2 * s.dq).cwiseProduct(s.system.weight.head(n)).squaredNorm();
+        if (disagree(s, change, size_of_solution(s), Real(0))) return Outcome::diverged;
     } else {
         s.lambda = s.x.tail(m);
     }
@@ -104,8 +106,7 @@ Outcome step(March<Real>& s, Real next) {
         residual_at(s, s.q, s.lambda, next);
         back_substitute(s);
         if (!s.x.allFinite()) return Outcome::not_finite;
-        if (s.x.head(n).cwiseProduct(s.system.weight.head(n)).squaredNorm() > s.last.squaredNorm())
-            return Outcome::diverged;
+        if (disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0))) return Outcome::diverged;
         s.dq = s.x.head(n);
         advance(s.q, s.dq);
         s.lambda += s.x.tail(m);
@@ -113,6 +114,16 @@ Outcome step(March<Real>& s, Real next) {
     s.a = next;
     store(s);
     return Outcome::converged;
+}
+
+// What the step just taken missed, with its own factors: the next step would have shown it, after the last
+// one nothing else does.
+template <class Real>
+Outcome check_last_step(March<Real>& s) {
+    residual_at(s, s.q, s.lambda, s.a);
+    back_substitute(s);
+    return disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0)) ? Outcome::diverged
+                                                                           : Outcome::converged;
 }
 
 // Load factor 0. Where nothing is stored and nothing weighs, λ⁻¹ = 0 and q⁰ is the design position. Otherwise
@@ -129,10 +140,10 @@ Outcome settle(March<Real>& s) {
     const Real enough = 100 * std::numeric_limits<Real>::epsilon() * static_cast<Real>(s.length);
     for (int k = 0; k < (settles ? 20 : 1) && !(s.applied - s.stored).isZero(0); ++k) {
         if (const Outcome outcome = step(s, Real(0)); outcome != Outcome::converged) return outcome;
+        s.last.setZero();  // corrections shrink fast: none is a measure of the next
         if (s.dq.cwiseProduct(s.system.weight.head(s.n())).norm() <= enough) break;
     }
     s.swings = 0;
-    s.last.setZero();
     return Outcome::converged;
 }
 
