@@ -95,7 +95,7 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
     const double per_step = std::pow(coordinates(model) + constraint_rows(model), 3);
     for (const auto& label : options.methods) {
         const auto method = recursive::find_method(label);
-        if (!method || method->adaptive)
+        if (!method || !recursive::has_steps(*method))
             throw std::invalid_argument(fmt::format("'{}' is not a method of fixed steps", label));
         for (const auto precision :
              {recursive::Precision::single, recursive::Precision::twofold, recursive::Precision::extended}) {

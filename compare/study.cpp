@@ -178,7 +178,7 @@ Study study(const Model& model, const StudyOptions& options) {
         }
         BranchStudy b{branch.name, {}};
         for (const auto& method : options.methods) {
-            if (method.adaptive) continue;  // has no step count
+            if (!recursive::has_steps(method)) continue;  // has no step count
             MethodStudy m;
             m.method = method.name;
             std::vector<Curve> levels;

@@ -18,7 +18,7 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Of the adaptive method's tolerances [rad/m]: 0.001 deg beside 0.01 mm.
+// Of the tolerances of `adaptive` [rad/m]: 0.001 deg beside 0.01 mm.
 constexpr double angle_per_length = 1.745;
 
 bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
@@ -42,7 +42,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint
                                      .steps = with.steps > 0 ? with.steps : points,
                                      .record = points,
                                      .length_tolerance = with.own_tolerance,
-                                     .angle_tolerance = angle_per_length * with.own_tolerance});
+                                     .angle_tolerance = angle_per_length * with.own_tolerance,
+                                     .series = {.tolerance = with.own_tolerance}});
         case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
         case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
     }
@@ -93,8 +94,8 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
     const double per_step = std::pow(unknowns, 3) * static_cast<double>(model.branches.size());
     for (const auto& method : recursive::methods) {
         const std::string label(method.name);
-        if (method.adaptive) {
-            for (int digits = 3; digits <= 9; ++digits)
+        if (!recursive::has_steps(method)) {
+            for (int digits = 3; digits <= (method.series ? 12 : 9); ++digits)
                 all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
             continue;
         }

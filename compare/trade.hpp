@@ -56,7 +56,7 @@ struct TradePoint {
     Leg leg = Leg::recursive;
     std::string method = {};               // of the recursion, else the name of the leg
     int steps = 0;                         // per branch; 0 where the method chooses
-    double own_tolerance = 0;              // adaptive: the tolerance it is told [m]; else 0
+    double own_tolerance = 0;              // where it chooses: the tolerance it is told [m]; else 0
     bool again = false;                    // the A/A row: the equilibrium leg, timed a second time
     Outcome outcome = Outcome::converged;  // the first that is not converged, of any branch
     std::string detail = {};

@@ -11,6 +11,7 @@ const char* name(Outcome outcome) {
         case Outcome::not_finite: return "not finite";
         case Outcome::iteration_limit: return "iteration limit";
         case Outcome::diverged: return "diverged";
+        case Outcome::limit_point: return "limit point";
         case Outcome::branch_lost: return "branch lost";
     }
     return "unknown";

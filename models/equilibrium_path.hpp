@@ -29,6 +29,7 @@ enum class Outcome {
     not_finite,                // a NaN or infinity appeared
     iteration_limit,           // the solver gave up before its own criterion was met
     diverged,                  // steps that swing back and forth and grow: the method is unstable here
+    limit_point,               // the branch ends here: it turns back, and no equilibrium continues it
     branch_lost,               // no equilibrium continues the branch, however small the load step
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...

@@ -102,7 +102,7 @@ Outcome adapt(March<Real>& s, double length_tolerance, double angle_tolerance, d
     if (const Outcome outcome = correct(node.q, node.lambda, Real(0), size); outcome != Outcome::converged)
         return outcome;
     differentiate(s, node);
-    record(s, node.q, node.q, node.lambda, 0, path.points[reached++]);
+    record<Real>(s.model, node.q, node.q, node.lambda, 0, path.points[reached++]);
 
     Real h = end / 8;
     while (reached <= last) {
@@ -138,7 +138,7 @@ Outcome adapt(March<Real>& s, double length_tolerance, double angle_tolerance, d
                 const Real t = (static_cast<Real>(at) - node.a) / step;
                 if (t > 1 && next.a != end) break;
                 between(node, next, std::min(t, Real(1)), q, lambda);
-                record(s, q, q, lambda, at, path.points[reached]);
+                record<Real>(s.model, q, q, lambda, at, path.points[reached]);
             }
             curvature = (next.dq - node.dq) / step;
             lambda_curvature = (next.dlambda - node.dlambda) / step;

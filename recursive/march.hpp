@@ -186,17 +186,20 @@ void back_substitute(March<Real>& s) {
     ++s.counts.iterations;
 }
 
+// λ acts where it was solved: for the published sums one step before q.
 template <class Real>
-void record(March<Real>& s, const State<Real>& q, const State<Real>& where_lambda_acts,
+void record(const Model& model, const State<Real>& q, const State<Real>& where_lambda_acts,
             const Vector<Real>& lambda, double load, Equilibrium& point) {
     point.load = load;
     for (std::size_t b = 0; b < point.poses.size(); ++b) {
         point.poses[b].r = q[static_cast<BodyId>(b)].r.template cast<double>();
         point.poses[b].p = q[static_cast<BodyId>(b)].p.template cast<double>();
     }
-    joint_wrenches<Real>(s.model, where_lambda_acts, lambda, point.reactions);
-    Real sum = 0;
-    for_each_row<Real>(s.model, q, [&](int, const Row<Real>& row) { sum += row.Phi * row.Phi; });
+    Real sum = joint_wrenches<Real>(model, where_lambda_acts, lambda, point.reactions);
+    if (&q != &where_lambda_acts) {
+        sum = 0;
+        for_each_row<Real>(model, q, [&](int, const Row<Real>& row) { sum += row.Phi * row.Phi; });
+    }
     point.constraint_error = static_cast<double>(std::sqrt(sum));  // (31)
 }
 

@@ -10,6 +10,7 @@
 //   chord       the same, then once more with the same factors   ∂(forces)/∂q    1 (2)   3
 //   midpoint    the same, matrix taken half a step ahead         ∂(forces)/∂q    2       3
 //   adaptive    chord, with the step size from its own error estimate
+//   series      no steps: the branch as a power series, to any order with one matrix (series/path.hpp)
 //
 // A method that starts each step from the true residual does not accumulate: its error at a point is the
 // error of the last step, so an order p in one step is the order p at the end.
@@ -41,6 +42,7 @@ struct Method {
     bool midpoint = false;    // matrix from half a step ahead, at the price of a second factorisation
     int corrections = 0;      // further solves with the same factors
     bool adaptive = false;    // step size from the embedded error estimate
+    bool series = false;      // the branch as a piecewise polynomial
     double formal_order = 0;  // to the truth
 };
 
@@ -68,7 +70,11 @@ inline constexpr std::array methods{
            .corrections = 1,
            .adaptive = true,
            .formal_order = 3},
+    Method{.name = "series", .follow = everything, .closed = true, .consistent = true, .series = true},
 };
+
+// Whether the method takes as many equal steps as it is told.
+constexpr bool has_steps(const Method& method) { return !method.adaptive && !method.series; }
 
 constexpr std::optional<Method> find_method(std::string_view name) {
     for (const Method& method : methods)

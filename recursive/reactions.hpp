@@ -8,12 +8,13 @@ namespace elastocheck::recursive {
 
 // f_ext = f_elast + Φ_qᵀ λ, so what the joint puts on its body i is -(Φ_qᵀ λ)_i, a force with a moment about
 // the body's origin; moved here to the joint's point, p = r + s:  M_p = M_r - s × F. Ground is a body like
-// any other.
+// any other. Returns |Φ|², which falls out on the way.
 template <class Real>
-void joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>& lambda,
+Real joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>& lambda,
                     std::vector<Wrench>& wrenches) {
     for (auto& wrench : wrenches) wrench = {};
     int k = 0;
+    Real sum = 0;
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         const Vector3<Real> s = q[joint.i].lever(joint.at.s_local);
@@ -21,11 +22,13 @@ void joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>
         rows<Real>(constraint.kind, q, [&](const Row<Real>& row) {
             // A constraint may list the joint's bodies in either order.
             const Vector6<Real> on = -lambda[k++] * (row.i == joint.i ? row.on_i : row.on_j);
+            sum += row.Phi * row.Phi;
             const Vector3<Real> F = on.template head<3>();
             wrench.force += F.template cast<double>();
             wrench.moment += (on.template tail<3>() - s.cross(F)).template cast<double>();
         });
     }
+    return sum;
 }
 
 }  // namespace elastocheck::recursive

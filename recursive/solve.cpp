@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "recursive/adaptive.hpp"
 #include "recursive/steps.hpp"
 
@@ -45,7 +47,7 @@ EquilibriumPath march(const Model& model, const Branch& branch, const Options& o
     };
     const bool follows = options.method.follow.lever || options.method.follow.axis;
     const auto keep = [&](double load) {
-        record(s, s.q, follows ? s.q : s.before, s.lambda, load, path.points[reached]);
+        record<Real>(s.model, s.q, follows ? s.q : s.before, s.lambda, load, path.points[reached]);
         ++reached;
     };
 
@@ -71,6 +73,14 @@ EquilibriumPath march(const Model& model, const Branch& branch, const Options& o
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options) {
+    if (options.method.series) {
+        if (options.precision != Precision::twofold)
+            throw std::invalid_argument("the series is computed in double precision only");
+        const int points = options.record > 0  ? options.record
+                           : options.steps > 0 ? options.steps
+                                               : branch.steps;
+        return series::sample(model, series::follow(model, branch, options.series), branch, points);
+    }
     const Diagnosis diagnosis = diagnose(model);
     if (!(diagnosis.constraint_error <= 1e-9)) {
         EquilibriumPath path;

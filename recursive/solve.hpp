@@ -4,6 +4,7 @@
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
 #include "recursive/method.hpp"
+#include "recursive/series/path.hpp"
 
 namespace elastocheck::recursive {
 
@@ -17,6 +18,7 @@ struct Options {
     Precision precision = Precision::twofold;
     double length_tolerance = 1e-5;     // adaptive: error of any body's origin [m] ...
     double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
+    series::Options series = {};
 };
 
 // Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them.
@@ -24,7 +26,8 @@ struct Options {
 // bodies these are λⁿ⁻¹ with the Jacobian it was solved with, eq. (22); else λ with the present one.
 //
 // The published method takes one factorisation per step, and one more where static loads or preloads ask for
-// λ⁻¹ (design.md 3.1 (e)). `adaptive` takes steps of its own and evaluates the recorded points between them.
+// λ⁻¹ (design.md 3.1 (e)). `adaptive` takes steps of its own and evaluates the recorded points between them,
+// as does `series`, in double precision only: std::invalid_argument for another.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
 
 // How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances

@@ -94,7 +94,7 @@ int compare_legs(const std::string& file, int steps, const std::string& folder) 
 std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
     std::vector<recursive::Method> methods;
     for (const auto& method : recursive::methods)
-        if (!method.adaptive &&
+        if (recursive::has_steps(method) &&
             (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
             methods.push_back(method);
     return methods;
@@ -218,7 +218,7 @@ int run(int argc, char** argv) {
 
     std::vector<std::string> rungs{"published"}, known_rungs{"all"};
     for (const auto& rung : recursive::methods)
-        if (!rung.adaptive) known_rungs.emplace_back(rung.name);
+        if (recursive::has_steps(rung)) known_rungs.emplace_back(rung.name);
     std::vector<int> levels;
     converge_command
         ->add_option("--method", rungs,

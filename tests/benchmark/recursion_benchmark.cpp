@@ -1,8 +1,14 @@
 // Speed of the recursion, as ratios within one process.
 //
-//   bare      600 × PartialPivLU factor + solve of a dense 27×27 matrix: what the paper's method cannot do
-//   without sweep     the paper's example, 2 × 300 steps, by every rung; the ratio to `bare` points    the
-//   same 2 × 301 output points by `adaptive` and both references; the ratio to the equilibrium leg
+//   bare: 600 × PartialPivLU factor + solve of a dense 27×27 matrix, what the paper's method cannot do
+//   without.
+//
+//   sweep: the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`.
+//
+//   points: the same 2 × 301 output points by `adaptive`, `series` and both references; the ratio to the
+//   equilibrium leg.
+//
+//   branches: both branches by `series`, as polynomials; the ratio to the published sweep.
 //
 // The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
 // both.
@@ -71,6 +77,13 @@ void adaptive() {  // 0.01 mm, 0.001 deg
     });
 }
 
+void series(int record) {  // to the last bit it can, 1e-12 m
+    for (const auto& branch : mcpherson().branches)
+        benchmark::DoNotOptimize(recursive::solve(
+            mcpherson(), branch, {.method = *recursive::find_method("series"), .record = record}));
+}
+void published() { sweep(recursive::Method{}); }
+
 // Runs job and base in turns; reports the time of the job and the median of their ratios.
 void in_turns(benchmark::State& state, const std::function<void()>& job, const std::function<void()>& base) {
     const auto seconds = [](const std::function<void()>& f) {
@@ -100,12 +113,16 @@ int main(int argc, char** argv) {
     };
     add("bare/bare", bare, bare);
     for (const auto& method : recursive::methods)
-        if (!method.adaptive)
+        if (has_steps(method))
             add(
                 "sweep/" + std::string(method.name), [&method] { sweep(method); }, bare);
     add("points/equilibrium", equilibrium, equilibrium);
     add("points/energy", energy, equilibrium);
     add("points/adaptive", adaptive, equilibrium);
+    add(
+        "points/series", [] { series(300); }, equilibrium);
+    add(
+        "branches/series", [] { series(1); }, published);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

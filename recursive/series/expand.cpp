@@ -1,0 +1,140 @@
+#include "recursive/series/expand.hpp"
+
+#include <Eigen/QR>
+#include <complex>
+
+namespace elastocheck::recursive::series {
+
+Coefficients reserve_coefficients(const March<double>& s, int order) {
+    const int N = s.n() + s.m();
+    return {Matrix<double>::Zero(N, order + 1), Vector<double>::Zero(order + 1), Vector<double>::Zero(N),
+            Vector<double>::Zero(N)};
+}
+
+void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
+            const Vector<double>& ahead) {
+    const int n = s.n();
+    const auto W2 = s.system.weight.head(n).array().square();
+    const auto inner = [&](const auto& a, const auto& b) {
+        return (a.head(n).array() * W2 * b.head(n).array()).sum();
+    };
+    begin(e, s.model, s.branch, s.q, s.lambda, s.a);
+    evaluate(e, s.model, s.branch, {0, Pass::known});
+
+    s.upper.setZero();
+    add_loads<double>(s.branch.loads, 1, s.q, s.upper);
+    s.lower.setZero();
+    back_substitute(s);
+    c.unit = s.x;
+    c.x.setZero();
+    c.x.col(0).tail(s.m()) = s.lambda;
+    c.load.setZero();
+    c.load[0] = s.a;
+    if (arc_length) {
+        const double size = std::sqrt(inner(c.unit, c.unit));
+        const bool back = ahead.isZero(0) ? first < 0 : inner(c.unit, ahead) < 0;
+        c.load[1] = (back ? -1 : 1) / size;
+    } else {
+        c.load[1] = first;
+    }
+    c.x.col(1) = c.load[1] * c.unit;
+    s.x = c.x.col(1);
+    assign(e, 1, c.none, 0);
+    evaluate(e, s.model, s.branch, {1, Pass::known});
+    assign(e, 1, s.x, c.load[1]);
+    evaluate(e, s.model, s.branch, {1, Pass::change});
+
+    for (int k = 2; k <= e.order; ++k) {
+        assign(e, k, c.none, 0);
+        evaluate(e, s.model, s.branch, {k, Pass::known});
+        s.upper = -e.G;
+        s.lower = -e.Phi;
+        back_substitute(s);
+        if (arc_length) {  // x_k ⟂ x_1
+            c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
+            s.x += c.load[k] * c.unit;
+        }
+        c.x.col(k) = s.x;
+        if (k == e.order) break;
+        assign(e, k, s.x, c.load[k]);
+        evaluate(e, s.model, s.branch, {k, Pass::change});
+    }
+}
+
+double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load,
+             double radius) {
+    const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
+    const auto size = [&](int k) {
+        return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
+                          k > 1 ? per_load * c.load[k] : 0.0);
+    };
+    double last = size(p);
+    if (p > 1 && std::isfinite(radius)) last = std::max(last, size(p - 1) / radius);
+    if (!std::isfinite(last)) return std::numeric_limits<double>::quiet_NaN();
+    if (last == 0) return std::numeric_limits<double>::infinity();
+    double tau = std::pow(tolerance / last, 1.0 / p);
+    if (!(tau > radius / 2)) return tau;
+    double least = 0;
+    tau = std::min(tau, radius);
+    for (int k = 0; k < 50; ++k) {
+        const double middle = (least + tau) / 2;
+        (last * std::pow(middle, p) * middle / (radius - middle) <= tolerance ? least : tau) = middle;
+    }
+    return least;
+}
+
+Singularity nearest_singularity(const March<double>& s, const Coefficients& c) {
+    const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
+    const int from = std::max(4, p - 5);
+    Singularity none{std::numeric_limits<double>::infinity(), 0, 1};
+    const auto weighted = [&](int k) -> Vector<double> {
+        return c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n));
+    };
+    const double last = weighted(p).norm(), before = weighted(p - 1).norm();
+    if (p < 5 || !(last > 0 || before > 0)) return none;
+    // Lengths of τ in which the last coefficients are near one, so that all count alike.
+    const double unit =
+        std::min(last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
+                 before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());
+    Matrix<double> y(n, p + 1);
+    double binomial = 1, power = 1;
+    for (int k = 0; k <= p; ++k) {
+        if (k > 0) {
+            binomial *= std::abs((1.5 - k) / k);
+            power *= unit;
+        }
+        y.col(k) = weighted(k) * (power / binomial);
+    }
+    const int rows = p - from + 1;
+    Matrix<double> A(rows * n, 2);
+    Vector<double> b(rows * n);
+    for (int k = from; k <= p; ++k) {
+        A.block((k - from) * n, 0, n, 1) = y.col(k - 1);
+        A.block((k - from) * n, 1, n, 1) = y.col(k - 2);
+        b.segment((k - from) * n, n) = y.col(k);
+    }
+    if (!A.allFinite() || !(b.norm() > 0)) return none;
+    const Eigen::Vector2d fit = A.completeOrthogonalDecomposition().solve(b);
+    const std::complex<double> root = std::sqrt(std::complex<double>(fit[0] * fit[0] / 4 + fit[1]));
+    std::complex<double> z = fit[0] / 2 + root;
+    if (std::abs(fit[0] / 2 - root) > std::abs(z)) z = fit[0] / 2 - root;
+    const std::complex<double> tau = unit / z;
+    return {std::abs(tau), std::abs(std::arg(tau)), (A * fit - b).norm() / b.norm()};
+}
+
+void horner(const Eigen::MatrixXd& c, double tau, Vector<double>& value) {
+    const Eigen::Index p = c.cols() - 1;
+    value = c.col(p);
+    for (Eigen::Index k = p; k-- > 0;) value = value * tau + c.col(k);
+}
+
+void displace(const State<double>& from, const Eigen::Ref<const Vector<double>>& x, State<double>& q) {
+    for (BodyId b = 0; b < from.bodies(); ++b) {
+        const Vector3<double> g = x.segment<3>(6 * b + 3) / 2;
+        q[b].r = from[b].r + x.segment<3>(6 * b);
+        q[b].p = (Eigen::Quaterniond(1, g.x(), g.y(), g.z()) * from[b].p).normalized();
+        q[b].A = q[b].p.toRotationMatrix();
+    }
+}
+
+}  // namespace elastocheck::recursive::series

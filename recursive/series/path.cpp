@@ -1,0 +1,342 @@
+#include "recursive/series/path.hpp"
+
+#include <fmt/format.h>
+
+#include "recursive/series/expand.hpp"
+#include "recursive/steps.hpp"
+
+namespace elastocheck::recursive::series {
+namespace {
+
+double polynomial(const Eigen::VectorXd& c, double tau) {
+    double value = 0;
+    for (Eigen::Index k = c.size(); k-- > 0;) value = value * tau + c[k];
+    return value;
+}
+double slope(const Eigen::VectorXd& c, double tau) {
+    double value = 0;
+    for (Eigen::Index k = c.size(); k-- > 1;) value = value * tau + static_cast<double>(k) * c[k];
+    return value;
+}
+
+// τ in [from, to] where f changes sign, to the last bit; f(from) and f(to) have different signs.
+template <class Function>
+double bisect(Function f, double from, double to) {
+    const bool below = f(from) < 0;
+    for (int k = 0; k < 200 && from != to; ++k) {
+        const double middle = from + (to - from) / 2;
+        if (middle == from || middle == to) break;
+        ((f(middle) < 0) == below ? from : to) = middle;
+    }
+    return to;
+}
+
+// First τ in (0, reach] where f has changed its sign, looking at `pieces` pieces.
+template <class Function>
+std::optional<double> first_zero(Function f, double reach) {
+    constexpr int pieces = 64;
+    double from = 0, at = f(0);
+    for (int k = 1; k <= pieces; ++k) {
+        const double to = reach * k / pieces, value = f(to);
+        if (value == 0) return to;
+        if (at != 0 && (value < 0) != (at < 0)) return bisect(f, from, to);
+        from = to;
+        at = value;
+    }
+    return std::nullopt;
+}
+
+struct Walk {
+    March<double> s;
+    Equations e;
+    Coefficients c;
+    const Options& options;
+    double to;             // load factor of the end
+    double per_load;       // metres that an error of one unit of the load factor counts as
+    Vector<double> ahead;  // x_1 of the motion before: which way is on
+    Path path;
+};
+
+double largest_force(const March<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
+double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff(); }
+
+// Newton at the present place, with factors that serve the next expansion. The first correction is the error
+// of what led here. With arc length the load gives way, so that nothing moves along the path.
+Outcome arrive(Walk& w, Certificate* judged, double& error) {
+    March<double>& s = w.s;
+    const int n = s.n();
+    const auto W2 = s.system.weight.head(n).array().square();
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 8; ++k) {
+        external_force<double>(s.model, s.branch, w.to, s.q,
+                               s.applied);  // what idle modes are checked against
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda, s.a); outcome != Outcome::converged)
+            return outcome;
+        double slid = 0;
+        const bool slide = w.options.arc_length && !w.ahead.isZero(0);
+        if (slide) {
+            s.upper.setZero();
+            add_loads<double>(s.branch.loads, 1, s.q, s.upper);
+            s.lower.setZero();
+            back_substitute(s);
+            w.c.unit = s.x;
+        }
+        residual_at(s, s.q, s.lambda, s.a);
+        if (k == 0 && judged != nullptr) {
+            judged->force_end = largest_force(s);
+            judged->constraint_end = largest_violation(s);
+        }
+        back_substitute(s);
+        if (slide) {
+            const auto along = w.ahead.head(n).array() * W2;
+            const double da = -(along * s.x.head(n).array()).sum() / (along * w.c.unit.head(n).array()).sum();
+            s.x += da * w.c.unit;
+            s.a += da;
+            slid = w.per_load * std::abs(da);
+        }
+        if (!s.x.allFinite()) return Outcome::not_finite;
+        const double size = std::sqrt(size_of_solution(s));
+        if (k == 0) error = std::max(size, slid);
+        if (!(size < before)) break;  // as near as rounding lets it
+        before = size;
+        s.dq = s.x.head(n);
+        advance(s.q, s.dq);
+        s.lambda += s.x.tail(s.m());
+        // The factors are those of the place before this correction: good while it was small.
+        if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
+    }
+    return Outcome::converged;
+}
+
+std::vector<Pose> poses_of(const State<double>& q) {
+    std::vector<Pose> poses;
+    for (BodyId b = 0; b < q.bodies(); ++b) poses.push_back({q[b].r, q[b].p});
+    return poses;
+}
+
+Outcome walk(Walk& w) {
+    March<double>& s = w.s;
+    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return outcome;
+    double error = 0;
+    if (const Outcome outcome = arrive(w, nullptr, error); outcome != Outcome::converged) return outcome;
+    State<double> from = s.q;
+    Vector<double> x = Vector<double>::Zero(s.n() + s.m());
+    const bool arc = w.options.arc_length;
+
+    for (;;) {
+        if (static_cast<int>(w.path.expansions.size()) >= w.options.expansions)
+            return Outcome::iteration_limit;
+        from = s.q;
+        const double a_0 = s.a;
+        expand(s, w.e, w.c, w.to, arc, w.ahead);
+        const Singularity singularity = nearest_singularity(s, w.c);
+        double tau = reach(s, w.c, w.options.tolerance, w.per_load, singularity.radius);
+        if (std::isnan(tau)) return Outcome::not_finite;
+
+        bool last = false;
+        double turns = std::numeric_limits<double>::quiet_NaN();
+        if (!arc) {
+            const double rest = (w.to - a_0) / w.to;
+            if (tau >= rest) {
+                tau = rest;
+                last = true;
+            } else if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
+                // A branch point straight ahead that comes nearer however far one has come is a limit point.
+                w.path.limits.push_back(a_0 + singularity.radius * w.to);
+                return Outcome::limit_point;
+            } else if (tau < 1e-9) {
+                return Outcome::branch_lost;
+            }
+        } else {
+            tau = std::min(tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
+            const auto beyond = [&](double t) { return polynomial(w.c.load, t) - w.to; };
+            const auto direction = [&](double t) { return slope(w.c.load, t); };
+            if (const auto end = first_zero(beyond, tau)) {
+                tau = *end;
+                last = true;
+            }
+            if (const auto turn = first_zero(direction, tau)) turns = polynomial(w.c.load, *turn);
+        }
+
+        Certificate judged;
+        for (int shorter = 0;; ++shorter) {
+            if (shorter > 20) return Outcome::branch_lost;
+            horner(w.c.x, tau / 2, x);
+            displace(from, x, s.q);
+            s.lambda = x.tail(s.m());
+            residual_at(s, s.q, s.lambda, polynomial(w.c.load, tau / 2));
+            judged.force_middle = largest_force(s);
+            judged.constraint_middle = largest_violation(s);
+
+            horner(w.c.x, tau, x);
+            displace(from, x, s.q);
+            s.lambda = x.tail(s.m());
+            s.a = last && !arc ? w.to : polynomial(w.c.load, tau);
+            w.ahead = w.c.x.col(1);
+            if (arc) {  // x'(τ)
+                w.ahead.setZero();
+                for (int k = w.e.order; k >= 1; --k) w.ahead = w.ahead * tau + k * w.c.x.col(k);
+            }
+            const Outcome outcome = arrive(w, &judged, error);
+            judged.error_end = error;
+            if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) break;
+            if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
+            ++w.path.rejected;
+            tau *=
+                outcome == Outcome::converged
+                    ? std::clamp(0.9 * std::pow(w.options.tolerance / error, 1.0 / (w.e.order + 1)), 0.3, 0.9)
+                    : 0.5;
+            last = false;
+        }
+        if (std::isfinite(turns)) w.path.limits.push_back(turns);
+        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, tau, singularity, judged});
+        if (last) return Outcome::converged;
+        if (arc && !(std::abs(s.a) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
+    }
+}
+
+std::string words(const Walk& w, Outcome outcome) {
+    const std::string at = fmt::format("branch '{}': at load factor {:.6g}", w.s.branch.name, w.s.a);
+    switch (outcome) {
+        case Outcome::limit_point:
+            return fmt::format(
+                "branch '{}': limit point near load factor {:.9g}, past it no equilibrium continues the "
+                "branch",
+                w.s.branch.name, w.path.limits.back());
+        case Outcome::iteration_limit:
+            return at + fmt::format(": {} expansions were not enough", w.options.expansions);
+        default: return at;
+    }
+}
+
+}  // namespace
+
+Path follow(const Model& model, const Branch& branch, const Options& options) {
+    const Diagnosis diagnosis = diagnose(model);
+    Path path;
+    if (!(diagnosis.constraint_error <= 1e-9)) {
+        path.outcome = Outcome::inconsistent_constraints;
+        path.detail =
+            fmt::format("branch '{}': the joints are not closed at the design position, |Φ| = {:.3g}",
+                        branch.name, diagnosis.constraint_error);
+        return path;
+    }
+    static const Method method = *find_method("tangent");  // what `settle` and the factors are made by
+    Walk w{March<double>(model, branch, method, diagnosis),
+           equations(model, branch, options.order),
+           {},
+           options,
+           branch.to,
+           diagnosis.length / std::abs(branch.to),
+           {},
+           {}};
+    w.c = reserve_coefficients(w.s, options.order);
+    w.ahead.setZero(w.s.n() + w.s.m());
+    const Outcome outcome = walk(w);
+    w.path.outcome = outcome;
+    if (outcome != Outcome::converged) w.path.detail = words(w, outcome);
+    w.path.counts = w.s.counts;
+    w.path.arc_length = options.arc_length;
+    return std::move(w.path);
+}
+
+std::optional<Place> find(const Path& path, double load) {
+    for (std::size_t k = 0; k < path.expansions.size(); ++k) {
+        const Expansion& x = path.expansions[k];
+        const double from = x.load[0], to = polynomial(x.load, x.reach);
+        const bool linear = x.load.size() < 3 || x.load.tail(x.load.size() - 2).isZero(0);
+        // An end is reached to rounding only.
+        const double slack = 1e-12 * std::abs(to - from);
+        if (linear) {
+            const double tau = (load - from) / x.load[1];
+            if (tau >= -slack && tau <= x.reach * (1 + 1e-12)) return Place{k, std::clamp(tau, 0.0, x.reach)};
+        } else {
+            if (std::abs(load - from) <= slack) return Place{k, 0};
+            if (const auto tau = first_zero([&](double t) { return polynomial(x.load, t) - load; }, x.reach))
+                return Place{k, *tau};
+            if (k + 1 == path.expansions.size() && std::abs(load - to) <= slack) return Place{k, x.reach};
+        }
+    }
+    return std::nullopt;
+}
+
+Equilibrium evaluate(const Model& model, const Path& path, Place place) {
+    const Expansion& expansion = path.expansions[place.expansion];
+    Vector<double> x;
+    horner(expansion.x, place.tau, x);
+    const State<double> from = state_of<double>(expansion.start);
+    State<double> q = from;
+    displace(from, x, q);
+    Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
+    record<double>(model, q, q, Vector<double>(x.tail(constraint_rows(model))),
+                   polynomial(expansion.load, place.tau), point);
+    return point;
+}
+
+EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points) {
+    EquilibriumPath result;
+    result.outcome = path.outcome;
+    result.detail = path.detail;
+    result.counts = path.counts;
+    if (path.expansions.empty()) return result;
+    make_room(model, points + 1, result);
+    double whole = 0, before = 0;  // of τ, over all expansions
+    for (const auto& expansion : path.expansions) whole += expansion.reach;
+    std::size_t reached = 0;
+    std::vector<double> loads, taus;
+    Matrix<double> powers, x;
+    Vector<double> lambda;
+    for (std::size_t k = 0; k < path.expansions.size(); ++k) {
+        const Expansion& expansion = path.expansions[k];
+        const bool last = k + 1 == path.expansions.size();
+        taus.clear();
+        loads.clear();
+        for (std::size_t next = reached; next < result.points.size(); ++next) {
+            const double share = static_cast<double>(next) / points, load = branch.to * share;
+            double tau =
+                path.arc_length ? whole * share - before : (load - expansion.load[0]) / expansion.load[1];
+            const bool beyond = tau > expansion.reach * (1 + 1e-12);
+            if (beyond && !(last && path.arc_length && next + 1 == result.points.size())) break;
+            tau = std::clamp(tau, 0.0, expansion.reach);
+            taus.push_back(tau);
+            loads.push_back(path.arc_length ? polynomial(expansion.load, tau) : load);
+        }
+        before += expansion.reach;
+        // All points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
+        powers.resize(expansion.x.cols(), static_cast<Eigen::Index>(taus.size()));
+        for (Eigen::Index c = 0; c < powers.cols(); ++c) {
+            double power = 1;
+            for (Eigen::Index row = 0; row < powers.rows(); ++row, power *= taus[static_cast<std::size_t>(c)])
+                powers(row, c) = power;
+        }
+        x.noalias() = expansion.x * powers;
+        const State<double> from = state_of<double>(expansion.start);
+        State<double> q = from;
+        for (Eigen::Index c = 0; c < x.cols(); ++c) {
+            displace(from, x.col(c), q);
+            lambda = x.col(c).tail(constraint_rows(model));
+            record<double>(model, q, q, lambda, loads[static_cast<std::size_t>(c)], result.points[reached++]);
+        }
+    }
+    result.points.resize(reached);
+    return result;
+}
+
+Rates rates(const Path& path, Place place) {
+    const Expansion& expansion = path.expansions[place.expansion];
+    Vector<double> x, dx = Vector<double>::Zero(expansion.x.rows());
+    horner(expansion.x, place.tau, x);
+    for (int k = expansion.order(); k >= 1; --k) dx = dx * place.tau + k * expansion.x.col(k);
+    dx /= slope(expansion.load, place.tau);
+    Rates result;
+    for (std::size_t b = 0; b < expansion.start.size(); ++b) {
+        const auto row = static_cast<Eigen::Index>(6 * b);
+        const Eigen::Vector3d g = x.segment<3>(row + 3) / 2, dg = dx.segment<3>(row + 3) / 2;
+        result.dr.push_back(dx.segment<3>(row));
+        result.omega.push_back(2 / (1 + g.squaredNorm()) * (dg + g.cross(dg)));
+    }
+    return result;
+}
+
+}  // namespace elastocheck::recursive::series

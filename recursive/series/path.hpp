@@ -1,0 +1,90 @@
+// The equilibrium branch as a piecewise polynomial, and how it is found: the asymptotic numerical method.
+//
+// x(τ) = x_0 + x_1 τ + ... + x_p τ^p satisfies the full equations up to order p. All orders have one matrix,
+// the consistent tangent at τ = 0, factorised once:
+//
+// ⎡ ∂G/∂q   Φ_qᵀ ⎤ ⎧ Δq_k ⎫     ⎧ G_k ⎫         ⎧ f ⎫
+// ⎣ Φ_q      0   ⎦ ⎩ λ_k  ⎭ = - ⎩ Φ_k ⎭  +  a_k ⎩ 0 ⎭      G_k, Φ_k of the lower orders alone     (24)
+//
+// f the branch's load per unit of the load factor. With the load as parameter, a = a_0 + τ. With arc length,
+// τ is the motion of the bodies projected on its first coefficient, and
+// a_k follows from it; the path then passes limit points. derivation.md tells the rest.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "models/equilibrium_path.hpp"
+#include "models/model.hpp"
+
+namespace elastocheck::recursive::series {
+
+struct Options {
+    int order = 16;            // p
+    double tolerance = 1e-12;  // truncation error of any body's position [m] and orientation times L [m]
+    int expansions = 200;      // at most
+    bool arc_length = false;   // as parameter instead of the load
+};
+
+// The pole or branch point nearest to τ = 0 as the coefficients tell it.
+struct Singularity {
+    double radius = 0;  // |τ|
+    double angle = 0;  // of τ in the complex plane: 0 straight ahead, ±π/2 beside the path, π behind [rad]
+    double misfit = 0;  // of the coefficients to a singularity there: 0 exact, 1 not at all
+};
+
+// How the polynomial was judged. Forces that the full equations leave at a point of it; the Newton correction
+// with fresh factors at its far end, which is the error there.
+struct Certificate {
+    double force_middle = 0, force_end = 0;            // [N], or [N·m] for moments
+    double constraint_middle = 0, constraint_end = 0;  // [m], [-]
+    double error_end = 0;                              // [m]: position, and orientation times L
+};
+
+struct Expansion {
+    std::vector<Pose> start;  // at τ = 0
+    Eigen::MatrixXd x;        // (r_k, 2 g_k; λ_k) for k = 0 ... p: [(6nb + m) × (p+1)]; r_0 = 2 g_0 = 0
+    Eigen::VectorXd load;     // a_k
+    double reach = 0;         // used for 0 ≤ τ ≤ reach
+    Singularity singularity;
+    Certificate certificate;
+
+    int order() const { return static_cast<int>(x.cols()) - 1; }
+};
+
+struct Path {
+    Outcome outcome = Outcome::converged;
+    std::string detail;
+    std::vector<Expansion> expansions;
+    std::vector<double> limits;  // load factors at which the path turns back (arc length), or ends (load)
+    bool arc_length = false;
+    int rejected = 0;  // expansions whose far end was found wanting and drawn nearer
+    Counts counts;     // iterations: back-substitutions; evaluations: residuals, not coefficients
+};
+
+// From load factor 0 to branch.to. With the load as parameter, ends with `limit_point` where no equilibrium
+// continues the branch.
+Path follow(const Model& model, const Branch& branch, const Options& options = {});
+
+// Where on the path a load factor is met, the first time.
+struct Place {
+    std::size_t expansion = 0;
+    double tau = 0;
+};
+std::optional<Place> find(const Path& path, double load);
+
+// The configuration there, λ as joint wrenches; nothing is solved.
+Equilibrium evaluate(const Model& model, const Path& path, Place place);
+
+// The same at `points` equal increments of the load factor from 0 to branch.to, as far as the path leads;
+// with arc length as parameter at equal increments of it along the whole path.
+EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points);
+
+// Its derivative with the load factor, exact for the polynomial.
+struct Rates {
+    std::vector<Eigen::Vector3d> dr;     // of the bodies' origins [m]
+    std::vector<Eigen::Vector3d> omega;  // rotation, ground axes [rad]
+};
+Rates rates(const Path& path, Place place);
+
+}  // namespace elastocheck::recursive::series

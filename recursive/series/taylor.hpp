@@ -1,0 +1,180 @@
+// Power series in τ whose coefficients are found one order at a time.
+//
+// At order k every coefficient below k is known, of the unknowns x and of all that is computed from them. The
+// same straight-line program then runs twice:
+//
+//   known    with x_k = 0: what the lower orders alone make of every coefficient k, Σ_{0≤i≤k} a_i b_{k-i}
+//   change   with x_k found: what x_k adds to them is linear in it, with coefficients 0 as factors
+//
+// so an operation costs O(k) once and O(1) once, and nothing is evaluated again.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "recursive/state.hpp"
+
+namespace elastocheck::recursive::series {
+
+enum class Pass { known, change };
+struct Order {
+    int k = 0;
+    Pass pass = Pass::known;
+};
+
+template <class T>
+struct Series {
+    std::vector<T> c;  // c[0 ... p]
+    T change;          // what x_k added to c[k]
+    int last = 0;      // beyond it all coefficients are zero: 0 for a constant
+
+    Series() : change(zero()) {}
+    static T zero() {
+        if constexpr (std::is_arithmetic_v<T>)
+            return T(0);
+        else
+            return T::Zero();
+    }
+};
+using Scalar = Series<double>;
+using Vector3Series = Series<Vector3<double>>;
+
+template <class T>
+void reserve(Series<T>& s, int order, bool constant = false) {
+    s.c.assign(static_cast<std::size_t>(order) + 1, s.zero());
+    s.last = constant ? 0 : order;
+}
+template <class T>
+T& at(Series<T>& s, int k) {
+    return s.c[static_cast<std::size_t>(k)];
+}
+template <class T>
+const T& at(const Series<T>& s, int k) {
+    return s.c[static_cast<std::size_t>(k)];
+}
+
+// Σ a_i b_{k-i}, times(a_i, b_j) any product.
+template <class A, class B, class Times>
+auto convolution(int k, const Series<A>& a, const Series<B>& b, Times times) {
+    using Product = std::decay_t<decltype(times(a.c[0], b.c[0]))>;
+    Product sum = Series<Product>::zero();
+    const int to = std::min(k, a.last);
+    for (int i = std::max(0, k - b.last); i <= to; ++i) sum += times(at(a, i), at(b, k - i));
+    return sum;
+}
+
+// Coefficient k of c = a b.
+template <class A, class B, class C, class Times>
+void product(Order o, const Series<A>& a, const Series<B>& b, Series<C>& c, Times times) {
+    if (o.pass == Pass::known) {
+        at(c, o.k) = convolution(o.k, a, b, times);
+    } else {
+        c.change = times(a.change, b.c[0]) + times(a.c[0], b.change);
+        at(c, o.k) += c.change;
+    }
+}
+
+inline constexpr auto scale = [](double a, const Vector3<double>& b) -> Vector3<double> { return a * b; };
+inline constexpr auto dot = [](const Vector3<double>& a, const Vector3<double>& b) { return a.dot(b); };
+inline constexpr auto cross = [](const Vector3<double>& a, const Vector3<double>& b) -> Vector3<double> {
+    return a.cross(b);
+};
+
+// Coefficient k of any linear map of series: map(get) is given a way to read coefficient k of each.
+template <class C, class Map>
+void linear(Order o, Series<C>& c, Map map) {
+    if (o.pass == Pass::known) {
+        at(c, o.k) = map([&](const auto& s) { return at(s, o.k); });
+    } else {
+        c.change = map([](const auto& s) { return s.change; });
+        at(c, o.k) += c.change;
+    }
+}
+
+// c = 1 / a:  Σ a_i c_{k-i} = 0
+inline void reciprocal(Order o, const Scalar& a, Scalar& c) {
+    if (o.pass == Pass::change) {
+        c.change = -a.change * c.c[0] * c.c[0];
+        at(c, o.k) += c.change;
+    } else if (o.k == 0) {
+        c.c[0] = 1 / a.c[0];
+    } else {
+        double sum = 0;
+        for (int i = 1; i <= o.k; ++i) sum += at(a, i) * at(c, o.k - i);
+        at(c, o.k) = -sum * c.c[0];
+    }
+}
+
+// c = √a:  Σ c_i c_{k-i} = a_k
+inline void square_root(Order o, const Scalar& a, Scalar& c) {
+    if (o.pass == Pass::change) {
+        c.change = a.change / (2 * c.c[0]);
+        at(c, o.k) += c.change;
+    } else if (o.k == 0) {
+        c.c[0] = std::sqrt(a.c[0]);
+    } else {
+        double sum = at(a, o.k);
+        for (int i = 1; i < o.k; ++i) sum -= at(c, i) * at(c, o.k - i);
+        at(c, o.k) = sum / (2 * c.c[0]);
+    }
+}
+
+// The functions of the logarithm of a rotation, regular at zero angle:
+//
+//   F_m(s) = Σ (-1)ⁿ sⁿ / (2n + m),   m F_m + 2 s F_m' = 1 / (1 + s)
+//
+// F_1(t²) = atan(t) / t and F_3(t²) = (1 - F_1) / t². Their Taylor coefficients about s_0 ≥ 0, b_n = c_n / (1
+// + s_0)ⁿ, follow from the differential equation,
+//
+//   (2n + m) c_n + 2 (n + 1) s_0 / (1 + s_0) c_{n+1} = (-1)ⁿ / (1 + s_0) ,
+//
+// taken backwards, where an error shrinks by s_0 / (1 + s_0) each time: begun far enough out, it is gone.
+inline void taylor_of_F(int m, double s_0, std::vector<double>& b) {
+    const double inverse = 1 / (1 + s_0), shrinks = s_0 * inverse;
+    const int p = static_cast<int>(b.size()) - 1;
+    const int beyond = shrinks > 0 ? static_cast<int>(std::min(-40 / std::log(shrinks), 1e6)) : 0;
+    double next = 0;
+    for (int n = p + beyond; n >= 0; --n) {
+        next = ((n % 2 == 0 ? inverse : -inverse) - 2 * (n + 1) * shrinks * next) / (2 * n + m);
+        if (n <= p) b[static_cast<std::size_t>(n)] = next;
+    }
+    double power = 1;
+    for (int n = 0; n <= p; ++n, power *= inverse) b[static_cast<std::size_t>(n)] *= power;
+}
+
+// f(s(τ)) from the Taylor coefficients b_n of f about s_0:  Σ b_n σⁿ, σ = s - s_0.
+struct Composition {
+    std::vector<double> b;                   // [p + 1]
+    std::vector<std::vector<double>> power;  // power[n] = coefficients of σⁿ, n = 2 ... p
+    Scalar f;
+};
+inline void reserve(Composition& c, int order) {
+    const auto n = static_cast<std::size_t>(order) + 1;
+    c.b.assign(n, 0);
+    c.power.assign(n, std::vector<double>(n, 0));
+    reserve(c.f, order);
+}
+inline void compose(Order o, const Scalar& s, Composition& c) {
+    if (o.pass == Pass::change) {
+        c.f.change = c.b[1] * s.change;
+        at(c.f, o.k) += c.f.change;
+        return;
+    }
+    if (o.k == 0) {
+        c.f.c[0] = c.b[0];
+        return;
+    }
+    const auto k = static_cast<std::size_t>(o.k);
+    double sum = c.b[1] * s.c[k];
+    for (std::size_t n = 2; n <= k; ++n) {
+        const std::vector<double>& lower = c.power[n - 1];
+        double power = 0;  // σⁿ⁻¹ begins at order n - 1
+        for (std::size_t i = 1; i + (n - 1) <= k; ++i) power += s.c[i] * (n == 2 ? s.c[k - i] : lower[k - i]);
+        c.power[n][k] = power;
+        sum += c.b[n] * power;
+    }
+    c.f.c[k] = sum;
+}
+
+}  // namespace elastocheck::recursive::series

@@ -1,0 +1,376 @@
+// The branch as a power series: its coefficients, its reach, its derivatives, its end.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "models/compile.hpp"
+#include "recursive/diagnosis.hpp"
+#include "recursive/series/expand.hpp"
+#include "recursive/series/path.hpp"
+#include "recursive/solve.hpp"
+#include "recursive/steps.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive::series {
+namespace {
+
+// Polynomials by their coefficients, truncated: the closed forms are expanded with what is written here
+// alone.
+using Poly = std::vector<double>;
+Poly times(const Poly& a, const Poly& b) {
+    Poly c(a.size(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t j = 0; i + j < a.size(); ++j) c[i + j] += a[i] * b[j];
+    return c;
+}
+// y with y' = f' r(τ): of an antiderivative.
+Poly integral(const Poly& f) {
+    Poly y(f.size(), 0);
+    for (std::size_t k = 1; k < f.size(); ++k) y[k] = f[k - 1] / static_cast<double>(k);
+    return y;
+}
+
+// tan θ = F / (k L) from F = 0 at the shares τ of `to`: θ = atan(c τ), tip = L (cos θ, sin θ), and the Gibbs
+// vector of a turn by -θ about y, g = -tan(θ/2).
+struct PinnedBar {
+    Poly half_angle_tangent;
+    explicit PinnedBar(double c, std::size_t p) {
+        Poly d(p + 1, 0), theta;  // θ' = c / (1 + c²τ²)
+        for (std::size_t k = 0; k <= p; k += 2) d[k] = c * std::pow(-c * c, static_cast<double>(k / 2));
+        theta = integral(d);
+        // t = tan(θ/2): t' = (1 + t²) θ'/2, order by order.
+        Poly t(p + 1, 0);
+        for (std::size_t k = 1; k <= p; ++k) {
+            const Poly t2 = times(t, t);
+            double sum = 0;
+            for (std::size_t i = 0; i < k; ++i) sum += ((i == 0 ? 1 : 0) + t2[i]) * d[k - 1 - i] / 2;
+            t[k] = sum / static_cast<double>(k);
+        }
+        half_angle_tangent = t;
+    }
+};
+
+TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
+    const Model model = compile(support::scene("pinned_bar"));
+    const Branch& branch = model.branches[0];
+    const int p = 20;
+    const Path path = follow(model, branch, {.order = p, .tolerance = 1e-9});
+    ASSERT_FALSE(path.expansions.empty());
+    const Expansion& first = path.expansions.front();
+    const PinnedBar exact(branch.to / (20e3 * 0.5), static_cast<std::size_t>(p));
+    // Odd coefficients vanish with F → -F turned over; the even ones of the angle too.
+    for (int k = 1; k <= p; ++k) {
+        const double computed = std::abs(first.x(4, k) / 2),
+                     expected = std::abs(exact.half_angle_tangent[static_cast<std::size_t>(k)]);
+        const double size = std::pow(0.5, k);  // of a coefficient of this order: the radius is 2
+        EXPECT_LE(std::abs(computed - expected), 1e-12 * std::max(expected, 1e-3 * size)) << k;
+    }
+    EXPECT_NEAR(first.singularity.radius * branch.to, 20e3 * 0.5, 0.01 * 20e3 * 0.5);  // F = ± i k L
+    EXPECT_NEAR(first.singularity.angle, std::acos(-1) / 2, 0.01);
+}
+
+TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
+    // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as h².
+    for (const char* name : {"mcpherson", "mcpherson_preload", "bushing_pair", "pendulum"}) {
+        const Model model = compile(support::scene(name));
+        const Branch& branch = model.branches[0];
+        const Path path = follow(model, branch);
+        const Eigen::MatrixXd& x = path.expansions.front().x;
+        const auto values = [&](double h) {
+            const std::vector<double> loads{-2 * h, -h, 0, h, 2 * h};
+            std::vector<Eigen::Vector3d> r;
+            for (const double share : loads) {
+                Branch other = branch;
+                other.to = branch.to * (share == 0 ? 1e-9 : share);
+                const std::vector<double> at{0, other.to};
+                const auto solved = reference::equilibrium::solve(model, other, at);
+                EXPECT_EQ(solved.outcome, Outcome::converged) << solved.detail;
+                r.push_back(solved.points[share == 0 ? 0 : 1].poses.front().r);
+            }
+            return r;
+        };
+        const double h = 0.02;
+        const auto f = values(h);
+        const Eigen::Vector3d first = (f[0] - 8 * f[1] + 8 * f[3] - f[4]) / (12 * h),
+                              second = (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (24 * h * h),
+                              third = (-f[0] + 2 * f[1] - 2 * f[3] + f[4]) / (12 * h * h * h);
+        EXPECT_LE((x.col(1).head<3>() - first).norm(), 1e-4 * first.norm() + 1e-12) << name;
+        EXPECT_LE((x.col(2).head<3>() - second).norm(), 1e-3 * first.norm()) << name;
+        EXPECT_LE((x.col(3).head<3>() - third).norm(), 5e-3 * first.norm()) << name;
+    }
+}
+
+double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
+    std::vector<bool> idle(model.bodies.size(), false);
+    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
+    double worst = 0;
+    for (std::size_t body = 0; body < idle.size(); ++body)
+        worst = std::max({worst, (a.poses[body].r - b.poses[body].r).norm(),
+                          idle[body] ? 0 : 0.1 * a.poses[body].p.angularDistance(b.poses[body].p)});
+    return worst;
+}
+
+TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
+    std::mt19937 random(3);
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            std::vector<double> loads;
+            for (int k = 0; k <= 301; ++k) loads.push_back(branch.to * k / 301);
+            std::uniform_real_distribution<double> between(0, branch.to);
+            if (name == "mcpherson")
+                for (int k = 0; k < 1000; ++k) loads.push_back(between(random));
+            std::ranges::sort(loads, {}, [](double a) { return std::abs(a); });
+            const auto reference = reference::equilibrium::solve(model, branch, loads);
+            ASSERT_EQ(reference.outcome, Outcome::converged) << reference.detail;
+            const Path path = follow(model, branch);
+            ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+            double worst = 0, force = 0;
+            for (std::size_t k = 0; k < loads.size(); ++k) {
+                const auto place = find(path, loads[k]);
+                ASSERT_TRUE(place) << name << " " << loads[k];
+                const Equilibrium point = evaluate(model, path, *place);
+                EXPECT_NEAR(point.load, loads[k], 1e-9);
+                worst = std::max(worst, apart(model, point, reference.points[k]));
+                for (std::size_t j = 0; j < point.reactions.size(); ++j)
+                    force = std::max(
+                        force, (point.reactions[j].force - reference.points[k].reactions[j].force).norm());
+            }
+            EXPECT_LE(worst, 1e-12) << name << " " << branch.name;  // 1e-9 mm
+            EXPECT_LE(force, 1e-5) << name << " " << branch.name;
+        }
+    }
+}
+
+TEST(Series, EveryExpansionHoldsInTheFullEquationsOfAllLegs) {
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const auto path = recursive::solve(model, branch, {.method = *find_method("series")});
+            ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+            ASSERT_EQ(path.points.size(), static_cast<std::size_t>(branch.steps) + 1);
+            for (const auto& point : path.points) {
+                const auto own = recursive::residuals(model, branch, point),
+                           other = reference::equilibrium::residuals(model, branch, point);
+                EXPECT_LE(std::max({own.force, own.moment, other.force, other.moment}), 1e-5) << name;
+                EXPECT_LE(std::max(own.length, other.length), 1e-12) << name;
+            }
+        }
+    }
+}
+
+TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
+    const Model model = compile(support::scene("mcpherson"));
+    const Branch& branch = model.branches[0];
+    const Path exact = follow(model, branch, {.order = 24});
+    for (const int p : {2, 4, 6, 8, 10}) {
+        const Path path = follow(model, branch, {.order = p, .tolerance = 1e-4, .expansions = 2000});
+        ASSERT_FALSE(path.expansions.empty());
+        const auto error = [&](double tau) {
+            return apart(model, evaluate(model, path, {0, tau}), evaluate(model, exact, {0, tau}));
+        };
+        const double tau = path.expansions.front().reach;
+        const double order = std::log2(error(tau) / error(tau / 2));
+        EXPECT_NEAR(order, p + 1, 0.5) << p;
+    }
+}
+
+TEST(Series, OrderOneIsTheTangent) {
+    // Its first coefficient is the step that `tangent` takes: displacement, and the rotation's axis and angle
+    // to first order.
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        const Branch& branch = model.branches[0];
+        const Path path = follow(model, branch);
+        Branch little = branch;
+        little.to = 1e-6 * branch.to;
+        const auto step = recursive::solve(model, little, {.method = *find_method("tangent"), .steps = 1});
+        ASSERT_EQ(step.outcome, Outcome::converged) << step.detail;
+        const Eigen::VectorXd first = 1e-6 * path.expansions.front().x.col(1);
+        for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+            const auto row = static_cast<Eigen::Index>(6 * b);
+            const Eigen::Vector3d dr = step.points[1].poses[b].r - step.points[0].poses[b].r,
+                                  dpi =
+                                      2 * (step.points[1].poses[b].p * step.points[0].poses[b].p.conjugate())
+                                              .vec();
+            EXPECT_LE((dr - first.segment<3>(row)).norm(), 1e-4 * first.norm()) << name;
+            EXPECT_LE((dpi - first.segment<3>(row + 3)).norm(), 1e-4 * first.norm()) << name;
+        }
+    }
+}
+
+TEST(Series, RatesAreTheDerivativesOfWhatItEvaluates) {
+    for (const char* name : {"mcpherson", "pendulum", "mcpherson_preload"}) {
+        const Model model = compile(support::scene(name));
+        const Branch& branch = model.branches[0];
+        const Path path = follow(model, branch);
+        for (const double share : {0.0, 0.1, 0.35, 0.6, 0.9}) {
+            const double h = 1e-4 * branch.to, load = branch.to * share + 2 * h;
+            const auto at = [&](double a) { return evaluate(model, path, *find(path, a)); };
+            const auto m2 = at(load - 2 * h), m1 = at(load - h), p1 = at(load + h), p2 = at(load + 2 * h);
+            const Rates exact = rates(path, *find(path, load));
+            for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+                const Eigen::Vector3d dr =
+                    (m2.poses[b].r - 8 * m1.poses[b].r + 8 * p1.poses[b].r - p2.poses[b].r) / (12 * h);
+                EXPECT_LE((dr - exact.dr[b]).norm(), 1e-8 * (exact.dr[b].norm() + 1e-6)) << name;
+                const Eigen::Vector3d omega = (8 * 2 * (p1.poses[b].p * m1.poses[b].p.conjugate()).vec() -
+                                               2 * (p2.poses[b].p * m2.poses[b].p.conjugate()).vec()) /
+                                              (12 * h);
+                EXPECT_LE((omega - exact.omega[b]).norm(), 1e-6 * (exact.omega[b].norm() + 1e-6)) << name;
+            }
+        }
+    }
+}
+
+// F = 2 k (ℓ - ℓ₀) z / ℓ has its extrema at ℓ³ = ℓ₀ b².
+double limit_of_the_arch() {
+    const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h);
+    const double z = std::sqrt(std::pow(l_0 * b * b, 2.0 / 3) - b * b), l = std::hypot(b, z);
+    return 2 * k * (l - l_0) * z / l;
+}
+
+TEST(Series, FindsWhereThePathEnds) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch branch = model.branches[0];
+    for (const double to : {-250.0, -400.0, -3000.0})
+        for (const int order : {8, 12, 16, 20}) {
+            branch.to = to;
+            const Path path = follow(model, branch, {.order = order});
+            EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
+            ASSERT_EQ(path.limits.size(), 1u);
+            EXPECT_NEAR(path.limits[0] / limit_of_the_arch(), 1, 1e-6) << to << " " << order;
+            EXPECT_NE(path.detail.find("limit point near load factor -211.5165"), std::string::npos)
+                << path.detail;
+            EXPECT_FALSE(find(path, -212));
+        }
+}
+
+TEST(Series, GoesThroughLimitPointsByArcLength) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch branch = model.branches[0];
+    branch.to = -400;
+    for (const int order : {8, 12, 16, 20}) {
+        const Path path = follow(model, branch, {.order = order, .arc_length = true});
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        ASSERT_EQ(path.limits.size(), 2u);  // down, and back up on the other side
+        EXPECT_NEAR(path.limits[0], limit_of_the_arch(), 1e-9);
+        EXPECT_NEAR(path.limits[1], -limit_of_the_arch(), 1e-9);
+        const auto sampled = sample(model, path, branch, 50);
+        ASSERT_EQ(sampled.points.size(), 51u);
+        EXPECT_NEAR(sampled.points.back().load, -400, 1e-9);
+        const double b = 0.3, k = 100e3, l_0 = std::hypot(b, 0.08);
+        for (const auto& point : sampled.points) {  // on the closed form all the way
+            const double z = point.poses[0].r.z(), l = std::hypot(b, z);
+            EXPECT_NEAR(2 * k * (l - l_0) * z / l, point.load, 1e-8);
+        }
+    }
+}
+
+TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
+    for (const char* name : {"mcpherson", "pinned_bar", "pendulum", "mcpherson_preload"}) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const Path by_load = follow(model, branch), by_arc = follow(model, branch, {.arc_length = true});
+            ASSERT_EQ(by_arc.outcome, Outcome::converged) << by_arc.detail;
+            EXPECT_TRUE(by_arc.limits.empty());
+            for (double share = 0; share <= 1; share += 0.0625) {
+                const double load = branch.to * share;
+                ASSERT_TRUE(find(by_arc, load)) << name << " " << load;
+                EXPECT_LE(apart(model, evaluate(model, by_load, *find(by_load, load)),
+                                evaluate(model, by_arc, *find(by_arc, load))),
+                          2e-12)
+                    << name << " " << load;
+            }
+        }
+    }
+}
+
+TEST(Series, KeepsTheToleranceItIsTold) {
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const auto& branch : model.branches) {
+            const Path exact = follow(model, branch, {.order = 20});
+            for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10})
+                for (const int order : {6, 10, 16}) {
+                    const Path path = follow(model, branch, {.order = order, .tolerance = tolerance});
+                    ASSERT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
+                    double worst = 0;
+                    for (int k = 0; k <= 97; ++k) {
+                        const double load = branch.to * k / 97;
+                        worst = std::max(worst, apart(model, evaluate(model, path, *find(path, load)),
+                                                      evaluate(model, exact, *find(exact, load))));
+                    }
+                    EXPECT_LE(worst, tolerance)
+                        << name << " " << branch.name << " " << order << " " << tolerance;
+                    for (const auto& expansion : path.expansions)
+                        EXPECT_LE(expansion.certificate.error_end, 10 * tolerance) << name;
+                }
+        }
+    }
+}
+
+TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
+    const Model model = compile(support::scene("mcpherson"));
+    const Path path = follow(model, model.branches[0], {.order = 2, .expansions = 5});
+    EXPECT_EQ(path.outcome, Outcome::iteration_limit);
+    EXPECT_EQ(path.expansions.size(), 5u);
+    EXPECT_NE(path.detail.find("5 expansions were not enough"), std::string::npos) << path.detail;
+}
+
+TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
+    // The second pass, linear in x_k, against the matrix it is solved with: G_k with x_k in place must
+    // vanish.
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        const Branch& branch = model.branches[0];
+        const Method method = *find_method("tangent");
+        const Diagnosis diagnosis = diagnose(model);
+        March<double> s(model, branch, method, diagnosis);
+        ASSERT_EQ(settle(s), Outcome::converged);
+        s.applied = Vector<double>::Zero(s.n());
+        ASSERT_EQ(factorise_at(s, s.q, s.lambda, s.a), Outcome::converged);
+        Equations e = equations(model, branch, 8);
+        Coefficients c = reserve_coefficients(s, 8);
+        expand(s, e, c, branch.to, false, Vector<double>::Zero(s.n() + s.m()));
+        // Every coefficient is in place: one `known` pass with them is G_k and Φ_k themselves.
+        for (int k = 1; k <= 7; ++k) {
+            evaluate(e, model, branch, {k, Pass::known});
+            const double size =
+                (s.system.K() * c.x.col(k).head(s.n())).cwiseAbs().maxCoeff() + std::abs(c.load[k]) + 1e-3 * std::abs(branch.to);
+            EXPECT_LE(e.G.cwiseAbs().maxCoeff(), 1e-10 * size) << name << " " << k;
+            if (s.m() > 0) {
+                EXPECT_LE(e.Phi.cwiseAbs().maxCoeff(), 1e-12 * c.x.col(k).norm() + 1e-16) << name << " " << k;
+            }
+        }
+    }
+}
+
+TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
+    for (const double s_0 : {0.0, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.0, 3.0, 30.0}) {
+        std::vector<double> f1(13), f3(13);
+        taylor_of_F(1, s_0, f1);
+        taylor_of_F(3, s_0, f3);
+        const auto exact_1 = [](double s) { return s == 0 ? 1 : std::atan(std::sqrt(s)) / std::sqrt(s); };
+        EXPECT_NEAR(f1[0], exact_1(s_0), 4e-16) << s_0;
+        if (s_0 >= 1e-3) {
+            EXPECT_NEAR(f3[0], (1 - exact_1(s_0)) / s_0, 4e-16 / s_0) << s_0;
+        }
+        // Its sum elsewhere: the radius is 1 + s_0, to where the nearest singularity is.
+        const double sigma = 0.05 * (1 + s_0);
+        double sum = 0;
+        for (std::size_t n = f1.size(); n-- > 0;) sum = sum * sigma + f1[n];
+        EXPECT_NEAR(sum, exact_1(s_0 + sigma), 1e-15) << s_0;
+    }
+}
+
+TEST(Series, OtherPrecisionsAreRefused) {
+    const Model model = compile(support::scene("pinned_bar"));
+    EXPECT_THROW(recursive::solve(model, model.branches[0],
+                                  {.method = *find_method("series"), .precision = Precision::single}),
+                 std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive::series
