@@ -23,12 +23,13 @@ struct SparseLU {
     // Entries of the k-th column of L and row of U beside the pivot, as numbers of rows and columns of W:
     // below[first_below[k] ... first_below[k+1]), right[...] likewise.
     std::vector<int> below, first_below, right, first_right;
-    std::vector<Real> W;        // L (unit diagonal) and U in the order of the pivots, row by row
-    std::vector<Real> inverse;  // 1 / pivots
-    std::vector<Real> y;        // the solution in the order of the pivots
-    std::vector<char> filled;   // while the order is chosen: pattern of L + U ...
-    std::vector<long> in_row;   // ... and how many entries a row still has
-    int orders = 0;             // how often the order was chosen
+    std::vector<Real> W;                  // L (unit diagonal) and U in the order of the pivots, row by row
+    std::vector<Real> inverse;            // 1 / pivots
+    std::vector<Real> y;                  // the solution in the order of the pivots
+    std::vector<char> filled;             // while the order is chosen: pattern of L + U ...
+    std::vector<long> in_row, in_column;  // ... how many entries a row and a column still have
+    std::vector<Real> largest;            // ... and the largest of a column
+    int orders = 0;                       // how often the order was chosen
 
     static constexpr double least_pivot = 0.1, largest_multiplier = 100;
 };
@@ -47,6 +48,8 @@ void reserve(SparseLU<Real>& lu, const Matrix<Real>& A) {
     lu.inverse.assign(n, 0);
     lu.y.assign(n, 0);
     lu.in_row.assign(n, 0);
+    lu.in_column.assign(n, 0);
+    lu.largest.assign(n, 0);
     for (auto* list : {&lu.row, &lu.col, &lu.first_below, &lu.first_right}) list->reserve(n + 1);
     for (auto* list : {&lu.source, &lu.to, &lu.below, &lu.right}) list->reserve(n * n);
     lu.orders = 0;
@@ -73,32 +76,37 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
         return static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j);
     };
     for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t r = k; r < n; ++r) {
-            lu.in_row[r] = 0;
-            for (std::size_t c = k; c < n; ++c) lu.in_row[r] += lu.filled[at(lu.row[r], lu.col[c])];
+        for (std::size_t o = k; o < n; ++o) {
+            lu.in_row[o] = lu.in_column[o] = 0;
+            lu.largest[o] = 0;
         }
+        const auto for_each_entry = [&](auto visit) {  // of what is still to go
+            for (std::size_t r = k; r < n; ++r) {
+                const std::size_t row = static_cast<std::size_t>(lu.row[r]) * n;
+                for (std::size_t c = k; c < n; ++c) {
+                    const std::size_t entry = row + static_cast<std::size_t>(lu.col[c]);
+                    if (lu.filled[entry]) visit(r, c, std::abs(W[entry]));
+                }
+            }
+        };
+        for_each_entry([&](std::size_t r, std::size_t c, Real value) {
+            ++lu.in_row[r];
+            ++lu.in_column[c];
+            lu.largest[c] = std::max(lu.largest[c], value);
+        });
         std::size_t best_i = k, best_j = k;
         long best_fill = std::numeric_limits<long>::max();
         Real best_value = 0;
-        for (std::size_t c = k; c < n; ++c) {
-            Real largest = 0;
-            long in_column = 0;
-            for (std::size_t r = k; r < n; ++r) {
-                largest = std::max(largest, std::abs(W[at(lu.row[r], lu.col[c])]));
-                in_column += lu.filled[at(lu.row[r], lu.col[c])];
-            }
-            for (std::size_t r = k; r < n; ++r) {
-                const Real value = std::abs(W[at(lu.row[r], lu.col[c])]);
-                if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * largest)) continue;
-                const long fill = (lu.in_row[r] - 1) * (in_column - 1);
-                if (fill < best_fill || (fill == best_fill && value > best_value)) {
-                    best_fill = fill;
-                    best_value = value;
-                    best_i = r;
-                    best_j = c;
-                }
-            }
-        }
+        for_each_entry([&](std::size_t r, std::size_t c, Real value) {
+            const long fill = (lu.in_row[r] - 1) * (lu.in_column[c] - 1);
+            if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * lu.largest[c]) ||
+                fill > best_fill || (fill == best_fill && !(value > best_value)))
+                return;
+            best_fill = fill;
+            best_value = value;
+            best_i = r;
+            best_j = c;
+        });
         std::swap(lu.row[k], lu.row[best_i]);
         std::swap(lu.col[k], lu.col[best_j]);
         if (!(best_value > 0)) continue;  // singular, which the pivots will tell

@@ -5,14 +5,14 @@ namespace {
 
 // ---- Room.
 
-void reserve_turned(Turned& t, int order) {
-    reserve(t.half, order);
-    reserve(t.v, order);
+void reserve_turned(Turned& t, int order, bool constant = false) {
+    reserve(t.half, order, constant);
+    reserve(t.v, order, constant);
 }
 void reserve_arm(Arm& arm, BodyId body, int order) {
     arm.body = body;
     reserve(arm.fixed, order, true);
-    reserve_turned(arm.turned, order);
+    reserve_turned(arm.turned, order, body == ground);
 }
 template <class... All>
 void reserve_all(int order, All&... all) {
@@ -30,9 +30,9 @@ ElasticSeries room(const Bushing& e, int p) {
     BushingSeries t;
     reserve_arm(t.i, e.i.body, p);
     reserve_arm(t.j, e.j.body, p);
-    reserve_all(p, t.rho, t.D, t.cross_g, t.V, t.u, t.theta, t.force_local, t.moment_local, t.u_M, t.u_u_M,
-                t.spread_1, t.spread_2, t.moment_spread, t.force_i, t.moment_i, t.dot_g, t.W, t.inverse, t.s,
-                t.phi, t.psi);
+    reserve_all(p, t.rho, t.D, t.cross_g, t.V, t.u, t.theta, t.relative, t.stress, t.moment_local, t.u_M,
+                t.u_u_M, t.spread_1, t.spread_2, t.moment_spread, t.force_i, t.moment_i, t.dot_g, t.W,
+                t.inverse, t.s, t.phi, t.psi);
     reserve_turned(t.strain, p);
     reserve_turned(t.F, p);
     reserve_turned(t.M, p);
@@ -141,7 +141,9 @@ void turn(Order o, const BodySeries& body, double sign, const Vector3Series& x, 
     add_cross(o, x, sign, body.g, x, t.half);
     add_cross(o, x, sign, body.h, t.half, t.v);
 }
-void turn(Order o, const Equations& e, Arm& arm) { turn(o, e[arm.body], +1, arm.fixed, arm.turned); }
+void turn(Order o, const Equations& e, Arm& arm) {
+    if (o.k == 0 || arm.body != ground) turn(o, e[arm.body], +1, arm.fixed, arm.turned);
+}
 
 void move(Order o, BodySeries& b) {
     product(o, b.g, b.g, b.stretch, dot);
@@ -193,13 +195,13 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
     product(o, b_i.g, b_j.g, t.dot_g, dot);
     if (o.k == 0) t.dot_g.c[0] += 1;
     product(o, b_i.g, b_j.g, t.cross_g, cross);
-    const auto relative = [&](auto of) -> Eigen::Vector4d {
+    linear(o, t.relative, [&](auto of) -> Eigen::Vector4d {
         Eigen::Vector4d p;
         p << of(t.dot_g), of(b_j.g) - of(b_i.g) - of(t.cross_g);
         return t.to_relative * p;
-    };
-    linear(o, t.W, [&](auto of) { return relative(of)[0]; });
-    linear(o, t.V, [&](auto of) -> V3 { return relative(of).template tail<3>(); });
+    });
+    linear(o, t.W, [&](auto of) { return of(t.relative)[0]; });
+    linear(o, t.V, [&](auto of) -> V3 { return of(t.relative).template tail<3>(); });
     reciprocal(o, t.W, t.inverse);
     product(o, t.inverse, t.V, t.u, scale);
     product(o, t.u, t.u, t.s, dot);
@@ -211,22 +213,18 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
     compose(o, t.s, t.psi);
     product(o, t.phi.f, t.u, t.theta, [](double phi, const V3& u) -> V3 { return 2 * phi * u; });
 
-    const auto stress = [&](auto of) -> Vector6<double> {
+    linear(o, t.stress, [&](auto of) -> Vector6<double> {
         Vector6<double> strain;
         strain << t.E_i.transpose() * of(t.strain.v), of(t.theta);
         return bushing.K * strain;
-    };
-    linear(o, t.force_local, [&](auto of) -> V3 { return stress(of).template head<3>(); });
-    linear(o, t.moment_local, [&](auto of) -> V3 { return stress(of).template tail<3>(); });
-    if (o.k == 0) {
-        t.force_local.c[0] += bushing.preload.head<3>();
-        t.moment_local.c[0] += bushing.preload.tail<3>();
-    }
+    });
+    if (o.k == 0) t.stress.c[0] += bushing.preload;
+    linear(o, t.moment_local, [&](auto of) -> V3 { return of(t.stress).template tail<3>(); });
     product(o, t.u, t.moment_local, t.u_M, cross);
     product(o, t.u, t.u_M, t.u_u_M, cross);
     product(o, t.phi.f, t.u_M, t.spread_1, scale);
     product(o, t.psi.f, t.u_u_M, t.spread_2, scale);
-    linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(t.force_local); });
+    linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(t.stress).template head<3>(); });
     linear(o, t.moment_i,
            [&](auto of) -> V3 { return t.E_i * (of(t.moment_local) + of(t.spread_1) + of(t.spread_2)); });
     turn(o, b_i, +1, t.force_i, t.F);

@@ -48,9 +48,11 @@ struct BushingSeries {
     Arm i, j;
     Matrix3<double> E_i;          // axes of marker i at τ = 0
     Eigen::Matrix4d to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion of A_iᵀ A_j, any length
-    Vector3Series rho, D, cross_g, V, u, theta, force_local, moment_local, u_M, u_u_M, spread_1, spread_2,
-        moment_spread, force_i, moment_i;
+    Vector3Series rho, D, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, moment_spread,
+        force_i, moment_i;
     Turned strain, F, M;
+    Series<Eigen::Vector4d> relative;
+    Series<Vector6<double>> stress;
     Scalar dot_g, W, inverse, s;
     Composition phi, psi;
 };
