@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <kainjow/mustache.hpp>
+#include <map>
 #include <pugixml.hpp>
 #include <sstream>
 
@@ -20,18 +21,33 @@ constexpr std::size_t rows_in_table = 10, annotations_in_all = 10;
 // A step summary is refused from 1 MiB on; this many rows of cells this long stay below it.
 constexpr std::size_t rows_in_summary = 100, scenes_in_summary = 300, cell_length = 300;
 
-struct OffenceOf {
+// The worst number of a channel or counter, over branches, legs and loads: what a reader wants to know first.
+struct Worst {
     const GatedScene* scene;
     const Offence* offence;
+    std::size_t numbers = 1;  // of this channel out of tolerance in all
 };
 
-// Over all scenes, worst first.
-std::vector<OffenceOf> worst_first(const std::vector<GatedScene>& scenes) {
-    std::vector<OffenceOf> all;
-    for (const auto& scene : scenes)
-        for (const auto& offence : scene.verdict.offences) all.push_back({&scene, &offence});
-    std::ranges::stable_sort(all, std::ranges::greater{},
-                             [](const OffenceOf& o) { return o.offence->share(); });
+// Worst first, over all scenes.
+std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& scenes) {
+    std::vector<Worst> all;
+    for (const auto* scene : scenes) {
+        std::map<std::string, std::size_t> place;
+        for (const auto& offence : scene->verdict.offences) {  // worst first already
+            const auto [at, is_new] = place.emplace(offence.channel, all.size());
+            if (is_new)
+                all.push_back({scene, &offence});
+            else
+                ++all[at->second].numbers;
+        }
+    }
+    std::ranges::stable_sort(all, std::ranges::greater{}, [](const Worst& w) { return w.offence->share(); });
+    return all;
+}
+
+std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
+    std::vector<const GatedScene*> all;
+    for (const auto& scene : scenes) all.push_back(&scene);
     return all;
 }
 
@@ -209,17 +225,19 @@ std::string story(const Offence& o) {
 std::string gate_table(const GatedScene& scene) {
     const auto& verdict = scene.verdict;
     std::string out = headline(scene) + "\n";
-    if (!verdict.offences.empty())
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10}\n", "branch", "what",
-                           "channel", "at load", "accepted", "measured", "difference", "tolerances");
-    for (std::size_t k = 0; k < std::min(verdict.offences.size(), rows_in_table); ++k) {
-        const Offence& o = verdict.offences[k];
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10.3g}\n", o.branch,
-                           what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was, o.is,
-                           o.difference(), o.share());
+    const auto worst = worst_of_each_channel({&scene});
+    if (!worst.empty())
+        out +=
+            fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>8}\n", "branch", "what",
+                        "channel", "at load", "accepted", "measured", "difference", "tolerances", "numbers");
+    for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
+        const Offence& o = *worst[k].offence;
+        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10.3g} {:>8}\n",
+                           o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was,
+                           o.is, o.difference(), o.share(), worst[k].numbers);
     }
-    if (verdict.offences.size() > rows_in_table)
-        out += fmt::format("  ... and {} more\n", verdict.offences.size() - rows_in_table);
+    if (worst.size() > rows_in_table)
+        out += fmt::format("  ... and {} more channels\n", worst.size() - rows_in_table);
     for (std::size_t k = 0; k < std::min(verdict.reasons.size(), rows_in_table); ++k)
         out += fmt::format("  could not judge: {}\n", verdict.reasons[k]);
     if (verdict.reasons.size() > rows_in_table)
@@ -238,9 +256,8 @@ std::string gate_conclusion(const std::vector<GatedScene>& scenes) {
         compared += scene.verdict.compared;
     }
     return fmt::format(
-        "{}: {} numbers compared in {} scene{}, {} out of tolerance in {}; {} could not be (wholly) judged.",
-        verdict_of(scenes), compared, scenes.size(), scenes.size() == 1 ? "" : "s", offences, failed,
-        unjudged);
+        "{}: {} of {} numbers out of tolerance, in {} of {} scenes; {} could not be judged wholly.",
+        verdict_of(scenes), offences, compared, failed, scenes.size(), unjudged);
 }
 
 std::string junit(const std::vector<GatedScene>& scenes) {
@@ -259,7 +276,7 @@ std::string junit(const std::vector<GatedScene>& scenes) {
 std::string step_summary(const std::vector<GatedScene>& scenes) {
     mustache::data offences(mustache::data::type::list), reasons(mustache::data::type::list),
         rows(mustache::data::type::list);
-    const auto all = worst_first(scenes);
+    const auto all = worst_of_each_channel(pointers(scenes));
     for (std::size_t k = 0; k < std::min(all.size(), rows_in_summary); ++k) {
         const Offence& o = *all[k].offence;
         mustache::data row;
@@ -272,6 +289,7 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
         row["is"] = fmt::format("{:.10g}", o.is);
         row["difference"] = fmt::format("{:+.3g}", o.difference());
         row["share"] = fmt::format("{:.3g}", o.share());
+        row["numbers"] = std::to_string(all[k].numbers);
         offences << row;
     }
     std::size_t reasons_in_all = 0;
@@ -311,9 +329,11 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
 std::string annotations(const std::vector<GatedScene>& scenes) {
     std::string out;
     std::size_t count = 0;
-    for (const auto& [scene, offence] : worst_first(scenes))
+    for (const auto& [scene, offence, numbers] : worst_of_each_channel(pointers(scenes)))
         if (++count <= annotations_in_all)
-            out += annotation(*scene, "elastocheck gate: out of tolerance", story(*offence));
+            out += annotation(
+                *scene, "elastocheck gate: out of tolerance",
+                story(*offence) + (numbers > 1 ? fmt::format("; {} numbers of it in all", numbers) : ""));
     for (const auto& scene : scenes)
         for (const auto& why : scene.verdict.reasons)
             if (++count <= annotations_in_all)

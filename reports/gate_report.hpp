@@ -1,4 +1,5 @@
-// What the gate found, as people and CI read it. Pure functions of the verdicts.
+// What the gate found, as people and CI read it. Pure functions of the verdicts. Tables and annotations show
+// the worst number of each channel; JUnit holds them all.
 #pragma once
 
 #include <string>
