@@ -25,14 +25,15 @@ survived=0
 {
     echo "# Faults and the alarms that ring"
     echo
-    echo "Written by \`./dev mutate\`; the whole matrix is in results.csv. The margin is measured over allowed, where the alarm tells both."
+    echo "Written by \`./dev mutate\`; the whole matrix is in results.csv. The margin is the first
+alarm's: measured over allowed, where it tells both."
     echo
     echo "| fault | in | what it simulates | first to ring | margin | alarms |"
     echo "|---|---|---|---|--:|--:|"
     for fault in "$@"; do
         rang=$work/results/$fault/rang
         if [ -s "$rang" ]; then
-            first=$(head -1 "$rang" | cut -f2) margin=$(cut -f3 "$rang" | grep -m1 . || true)
+            first=$(head -1 "$rang" | cut -f2) margin=$(head -1 "$rang" | cut -f3)
         else
             first='**survived**' margin='' survived=$((survived + 1))
         fi

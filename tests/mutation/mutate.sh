@@ -110,8 +110,9 @@ ring() {
             / evaluates to [-+0-9.e]+\.$/ && difference != "" && margin == "" {
                 bound = $NF; sub(/\.$/, "", bound); last = bound
             }
-            /^\[  FAILED  \] [^ ]+ \(/ {
+            /^\[  FAILED  \] .* ms\)$/ {
                 if (margin == "" && difference != "") margin = ratio(difference, last)
+                sub(/,$/, "", $4)
                 split($4, name, ".")
                 print name[1] "\t" $4 "\t" margin
                 margin = difference = ""; any = 1
@@ -127,9 +128,9 @@ ring() {
             row = 0; next
         }
         /^  branch / { row = 1; next }
-        row == 1 { margin = sprintf("%.2g", $NF); row = 2 }
+        row == 1 { margin = sprintf("%.2g", $(NF - 1)); row = 2 }
         END { tell() }' "$1/gate.log" >>"$1/rang"
-    if ! grep -q ' numbers compared in ' "$1/gate.log"; then printf 'gate:all\tgate (crash)\t\n' >>"$1/rang"; fi
+    if ! grep -q ' numbers out of tolerance, in ' "$1/gate.log"; then printf 'gate:all\tgate (crash)\t\n' >>"$1/rang"; fi
 }
 
 # shellcheck disable=SC2046 # lists of words
@@ -138,8 +139,12 @@ for fault in "$@"; do
     [ -n "$(field "$fault" file)" ] || { echo "mutate: no fault '$fault' in faults.txt" >&2; exit 2; }
 done
 
+# What differs gets a new time, older sources included and what an interrupted run left: times are what a build goes by.
 mkdir -p "$tree" "$output"
-(cd "$root" && tar cf - CMakeLists.txt CMakePresets.json models recursive reference compare reports tests) | tar xf - -C "$tree"
+(cd "$root" && find CMakeLists.txt models recursive reference compare reports tests -type f) | while read -r file; do
+    cmp -s "$root/$file" "$tree/$file" || { mkdir -p "$tree/$(dirname "$file")" && cp "$root/$file" "$tree/$file"; }
+done
+(cd "$tree" && find . -type f) | while read -r file; do [ -f "$root/$file" ] || rm "$tree/$file"; done
 if [ "$dry" ]; then
     for fault in "$@"; do
         apply "$fault" || exit 2
@@ -148,8 +153,6 @@ if [ "$dry" ]; then
     echo "mutate: $# faults have their place"
     exit
 fi
-# What an interrupted run left in the copy is older there than what was built from it.
-[ ! -f "$work/applied" ] || (cd "$tree" && xargs touch <"$work/applied")
 [ -f "$build/build.ninja" ] || cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w" >"$work/configure.log"
 targets="elastocheck_command $(for test in $tests; do basename "$test"; done)"
@@ -169,7 +172,6 @@ rm -rf "$work/results" && mkdir -p "$work/results"
 for fault in "$@"; do
     stamp=$work/stamp
     touch "$stamp" && sleep 1
-    files "$fault" >"$work/applied"
     apply "$fault" || exit 2
     if compile; then
         ring "$work/results/$fault" "$stamp"
@@ -180,7 +182,6 @@ for fault in "$@"; do
         exit 2
     fi
     revert "$fault"
-    rm "$work/applied"
     if [ -s "$work/results/$fault/rang" ]; then
         echo "$fault: $(head -1 "$work/results/$fault/rang" | cut -f2) ($(cut -f1 "$work/results/$fault/rang" | sort -u | wc -l) alarms)"
     else
