@@ -22,7 +22,6 @@ gcc-O3|g++|-O3 -DNDEBUG
 gcc-O0|g++|-O0
 gcc-native|g++|-O3 -march=native -DNDEBUG -w
 clang-O3|clang++|-O3 -DNDEBUG
-clang-O0|clang++|-O0
 BUILDS
 
-build/release/tests/gate/class_table "$work"/*/baselines
+build/release/tests/gate/class_table "$work/gcc-O3/baselines" "$work"/gcc-O0/baselines "$work"/gcc-native/baselines "$work"/clang-O3/baselines
