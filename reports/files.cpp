@@ -6,6 +6,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 namespace elastocheck::reports {
 
@@ -32,6 +34,15 @@ void write_whole(const std::filesystem::path& file, std::string_view content) {
     if (good) error = errno;
     ::unlink(temporary.c_str());
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    if (in) text << in.rdbuf();
+    if (!in || in.bad() || std::filesystem::is_directory(file))
+        throw FileError(fmt::format("{}: cannot be read", file.string()));
+    return text.str();
 }
 
 }  // namespace elastocheck::reports

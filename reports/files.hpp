@@ -1,8 +1,9 @@
-// Files are written whole or not at all.
+// Files are written whole or not at all, and read whole.
 #pragma once
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace elastocheck::reports {
@@ -15,5 +16,8 @@ struct FileError : std::runtime_error {
 // Writes `content` to a temporary name beside `file`, flushes it to the disk and renames it; creates the
 // folder when it is missing. Throws FileError; an older file of that name is then untouched.
 void write_whole(const std::filesystem::path& file, std::string_view content);
+
+// The content of a file; throws FileError.
+std::string read_whole(const std::filesystem::path& file);
 
 }  // namespace elastocheck::reports

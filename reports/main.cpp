@@ -20,7 +20,9 @@
 #include "recursive/diagnosis.hpp"
 #include "reports/csv.hpp"
 #include "reports/document.hpp"
+#include "reports/exit_code.hpp"
 #include "reports/files.hpp"
+#include "reports/gate_command.hpp"
 #include "reports/inspection.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/tables.hpp"
@@ -29,8 +31,7 @@
 namespace {
 
 using namespace elastocheck;
-
-enum Exit { fine = 0, bad_input = 2, could_not_judge = 3, bug = 4 };
+using namespace elastocheck::reports;
 
 std::string read_text(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
@@ -187,7 +188,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", reports::provenance().version);
     app.footer(
-        "Exit codes: 0 fine, 2 bad input, 3 could not judge, 4 internal error.\n"
+        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 internal error.\n"
         "Scene files are described in models/scenes/README.md.");
 
     std::string scene, output;
@@ -206,6 +207,7 @@ int run(int argc, char** argv) {
         app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
     auto* trade_command = app.add_subcommand(
         "trade", "What accuracy costs: every method against both references, and a recommendation");
+    const GateCommand gate_command = add_gate(app, progress);
     for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
         command->add_option("SCENE", scene, "scene file (YAML)")->required();
     for (auto* command : {solve_command, compare_command})
@@ -244,6 +246,7 @@ int run(int argc, char** argv) {
             return solve(scene, leg, steps, output);
         }
         if (*compare_command) return compare_legs(scene, steps, output);
+        if (*gate_command.parsed) return gate_command.run();
         if (*converge_command) return converge(scene, rungs, levels, output);
         return trade(scene, tolerance, output);
     } catch (const CLI::Success& done) {

@@ -1,38 +1,23 @@
 // The command as a user runs it: output, exit codes, typos.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/folder.hpp"
+#include "tests/support/command.hpp"
 
 namespace {
 
-using elastocheck::support::Folder;
-using elastocheck::support::text_of;
+namespace support = elastocheck::support;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
 
 const std::string scenes = ELASTOCHECK_SCENES;
 
-struct Said {
-    int code;
-    std::string out, err;
-};
-
 Said elastocheck_says(const std::string& arguments) {
-    const Folder folder;
-    const std::string error = (folder.path / "err").string();
-    FILE* pipe = ::popen((std::string(ELASTOCHECK_COMMAND) + " " + arguments + " 2>" + error).c_str(), "r");
-    Said said{};
-    char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.out.append(buffer, n);
-    const int status = ::pclose(pipe);
-    said.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    said.err = text_of(error);
-    return said;
+    return support::says(std::string(ELASTOCHECK_COMMAND) + " " + arguments);
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
     const Said said = elastocheck_says("inspect " + scenes + "/mcpherson.yaml");

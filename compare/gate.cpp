@@ -1,0 +1,303 @@
+#include "compare/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr int points_per_branch = 11;
+
+// A baseline is read by people, and to them the round-off of a build is no news: nine decimals. Adding zero
+// turns -0 into 0.
+double rounded(double value) {
+    constexpr double digits = 1e9;  // mm, deg, N, N·m
+    return std::round(value * digits) / digits + 0.0;
+}
+
+auto key(const Series& s) { return std::tie(s.branch, s.quantity, s.channel); }
+
+std::string described(const std::string& branch, Quantity quantity, const std::string& channel) {
+    return fmt::format("branch '{}', {}: {}", branch, name(quantity), channel);
+}
+std::string described(const Series& s) { return described(s.branch, s.quantity, s.channel); }
+
+const Series* find(const Measurement& in, const std::string& branch, Quantity quantity,
+                   const std::string& channel) {
+    for (const auto& s : in.series)
+        if (s.branch == branch && s.quantity == quantity && s.channel == channel) return &s;
+    return nullptr;
+}
+
+const GatedBranch* find(const Measurement& in, const std::string& branch) {
+    for (const auto& b : in.branches)
+        if (b.name == branch) return &b;
+    return nullptr;
+}
+
+bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
+bool is_deviation(Quantity q) {
+    return q == Quantity::deviation_at_equal_load || q == Quantity::deviation_at_equal_travel;
+}
+
+double range(const Series& s) {
+    const auto [low, high] = std::ranges::minmax(s.values);
+    return high - low;
+}
+
+double scale(const Measurement& accepted, const Series& s) {
+    if (is_channel(s.quantity)) return range(s);
+    if (!is_deviation(s.quantity)) return std::abs(s.values.front());
+    const Series* curve = find(accepted, s.branch, Quantity::equilibrium, s.channel);
+    return curve != nullptr && !curve->values.empty() ? range(*curve) : 0;
+}
+
+bool all_finite(const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+}
+
+const Tolerance* tolerance_of(const Tolerances& tolerances, const Series& s) {
+    auto found = tolerances.find(s.channel);
+    if (found == tolerances.end()) found = tolerances.find(s.unit);
+    return found == tolerances.end() ? nullptr : &found->second;
+}
+
+bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
+
+// One accepted series against what was measured of it.
+void judge_series(const Baseline& baseline, const Tolerances& tolerances, const Series& was,
+                  const Measurement& measurement, Verdict& verdict) {
+    const auto cannot = [&](const std::string& why) {
+        verdict.reasons.push_back(described(was) + " " + why);
+    };
+    const Series* is = find(measurement, was.branch, was.quantity, was.channel);
+    if (is == nullptr) return cannot("is in the baseline and was not measured");
+    if (is->unit != was.unit) return cannot(fmt::format("was in {} and is in {}", was.unit, is->unit));
+    if (was.values.empty()) return cannot("has no numbers in the baseline");
+    if (is->values.size() != was.values.size())
+        return cannot(fmt::format("has {} numbers in the baseline, {} were measured", was.values.size(),
+                                  is->values.size()));
+    if (!all_finite(was.values)) return cannot("is not a finite number in the baseline");
+    if (!all_finite(is->values)) return cannot("was measured as something that is not a finite number");
+    const GatedBranch* branch = find(baseline.accepted, was.branch);
+    if (is_channel(was.quantity) && (branch == nullptr || branch->loads.size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has loads");
+    const Tolerance* tolerance = tolerance_of(tolerances, was);
+    if (tolerance == nullptr || !sane(tolerance->atol) || !sane(tolerance->rtol))
+        return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
+
+    const double allowed = tolerance->atol + tolerance->rtol * scale(baseline.accepted, was);
+    for (std::size_t k = 0; k < was.values.size(); ++k) {
+        ++verdict.compared;
+        const double difference = is->values[k] - was.values[k];
+        if (std::isfinite(difference) && std::abs(difference) <= allowed) continue;
+        Offence offence{.branch = was.branch,
+                        .quantity = was.quantity,
+                        .channel = was.channel,
+                        .unit = was.unit,
+                        .was = was.values[k],
+                        .is = is->values[k],
+                        .tolerance = allowed};
+        if (is_channel(was.quantity)) offence.has_load = true, offence.load = branch->loads[k];
+        verdict.offences.push_back(offence);
+    }
+}
+
+void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& verdict) {
+    bool found = false;
+    for (const auto& s : measurement.series) {
+        if (s.quantity != limit.deviation || s.channel != limit.channel) continue;
+        found = true;
+        if (s.values.size() != 1 || !std::isfinite(s.values.front()) || !sane(limit.max)) {
+            verdict.reasons.push_back("limit on " + described(s) + " has nothing finite to compare");
+            continue;
+        }
+        ++verdict.compared;
+        if (s.values.front() <= limit.max) continue;
+        verdict.offences.push_back({.branch = s.branch,
+                                    .quantity = s.quantity,
+                                    .channel = s.channel,
+                                    .unit = s.unit,
+                                    .of_limit = true,
+                                    .was = limit.max,
+                                    .is = s.values.front(),
+                                    .tolerance = limit.max});
+    }
+    if (!found)
+        verdict.reasons.push_back(fmt::format("limit on {}: {}: nothing of that name was measured",
+                                              name(limit.deviation), limit.channel));
+}
+
+// Branches, their loads and their order of loads must be the accepted ones.
+void judge_branches(const Baseline& baseline, const Measurement& measurement, Verdict& verdict) {
+    for (const auto& was : baseline.accepted.branches) {
+        const GatedBranch* is = find(measurement, was.name);
+        if (is == nullptr)
+            verdict.reasons.push_back(
+                fmt::format("branch '{}' is in the baseline and was not measured", was.name));
+        else if (is->loads != was.loads)
+            verdict.reasons.push_back(
+                fmt::format("branch '{}' is measured at other loads than the accepted ones ({} to {:g} "
+                            "instead of {} to {:g})",
+                            was.name, is->loads.size(), is->loads.empty() ? 0 : is->loads.back(),
+                            was.loads.size(), was.loads.empty() ? 0 : was.loads.back()));
+    }
+    for (const auto& is : measurement.branches)
+        if (find(baseline.accepted, is.name) == nullptr)
+            verdict.reasons.push_back(
+                fmt::format("branch '{}' is new: the baseline does not have it", is.name));
+}
+
+void add_counters(const std::string& branch, Quantity quantity, const LegRun& run,
+                  std::vector<Series>& series) {
+    const auto add = [&](const char* counter, double value) {
+        series.push_back({branch, quantity, counter, "count", {value}});
+    };
+    add("steps", static_cast<double>(run.path.points.size()) - 1);
+    add("factorisations", static_cast<double>(run.path.counts.factorisations));
+    add("iterations", static_cast<double>(run.path.counts.iterations));
+    add("evaluations", static_cast<double>(run.path.counts.evaluations));
+}
+
+}  // namespace
+
+const char* name(ToleranceClass kind) {
+    switch (kind) {
+        case ToleranceClass::same_build: return "same-build";
+        case ToleranceClass::cross_build: return "cross-build";
+        case ToleranceClass::physical: return "physical";
+    }
+    return "";
+}
+
+const char* name(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::recursive: return "recursive";
+        case Quantity::equilibrium: return "equilibrium";
+        case Quantity::deviation_at_equal_load: return "deviation at equal load";
+        case Quantity::deviation_at_equal_travel: return "deviation at equal travel";
+        case Quantity::work_recursive: return "work of recursive";
+        case Quantity::work_equilibrium: return "work of equilibrium";
+        case Quantity::work_energy: return "work of energy";
+    }
+    return "";
+}
+
+const char* name(Judgement judgement) {
+    switch (judgement) {
+        case Judgement::passed: return "passed";
+        case Judgement::failed: return "FAILED";
+        case Judgement::could_not_judge: return "COULD NOT JUDGE";
+    }
+    return "";
+}
+
+double Offence::share() const {
+    const double part = of_limit ? std::abs(is) : std::abs(difference());
+    return tolerance > 0 ? part / tolerance : std::numeric_limits<double>::infinity();
+}
+
+Judgement Verdict::judgement() const {
+    if (!offences.empty()) return Judgement::failed;
+    return reasons.empty() && compared > 0 ? Judgement::passed : Judgement::could_not_judge;
+}
+
+Tolerances default_tolerances(ToleranceClass kind) {
+    switch (kind) {
+        case ToleranceClass::same_build:  // the last digit of the file
+            return {{"mm", {2e-9, 0}},
+                    {"deg", {2e-9, 0}},
+                    {"N", {2e-9, 0}},
+                    {"N·m", {2e-9, 0}},
+                    {"count", {0, 0}}};
+        case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
+            return {{"mm", {5e-9, 0}},
+                    {"deg", {5e-9, 0}},
+                    {"N", {7e-8, 0}},
+                    {"N·m", {5e-9, 0}},
+                    {"count", {1, 0.012}}};
+        case ToleranceClass::physical:
+            return {{"mm", {0.01, 1e-3}},
+                    {"deg", {0.001, 1e-3}},
+                    {"N", {1, 1e-3}},
+                    {"N·m", {0.1, 1e-3}},
+                    {"count", {2, 0.5}}};
+    }
+    return {};
+}
+
+Measurement measure(const Model& model, const Comparison& comparison) {
+    Measurement result;
+    result.scene = model.name;
+    for (const auto& branch : comparison.branches) {
+        for (const auto& reason : branch.inconclusive)
+            result.inconclusive.push_back(fmt::format("branch '{}': {}", branch.branch, reason));
+        const LegRun& recursive = branch.runs[static_cast<std::size_t>(Leg::recursive)];
+        const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
+        const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+
+        GatedBranch kept{branch.branch, {}};
+        std::vector<std::size_t> at;
+        const std::size_t points = std::min(recursive.curve.load.size(), equilibrium.curve.load.size());
+        const std::size_t count = std::min<std::size_t>(points, points_per_branch);
+        for (std::size_t k = 0; k < count; ++k)
+            at.push_back(count == 1 ? 0 : (k * (points - 1) + (count - 1) / 2) / (count - 1));
+        for (const std::size_t k : at) kept.loads.push_back(rounded(equilibrium.curve.load[k]));
+
+        for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+            if (!comparison.unique[c]) continue;
+            const auto& channel = comparison.channels[c];
+            const std::string unit = symbol(channel.unit);
+            for (const auto& [quantity, run] :
+                 {std::pair{Quantity::recursive, &recursive}, {Quantity::equilibrium, &equilibrium}}) {
+                Series curve{branch.branch, quantity, channel.name, unit, {}};
+                for (const std::size_t k : at) curve.values.push_back(rounded(run->curve.values[k][c]));
+                result.series.push_back(std::move(curve));
+            }
+            for (const auto& [quantity, reading] :
+                 {std::pair{Quantity::deviation_at_equal_load, &branch.deviation.equal_load},
+                  {Quantity::deviation_at_equal_travel, &branch.deviation.equal_travel}})
+                if (c < reading->channels.size())
+                    result.series.push_back(
+                        {branch.branch, quantity, channel.name, unit, {rounded(reading->channels[c].max)}});
+        }
+        add_counters(branch.branch, Quantity::work_recursive, recursive, result.series);
+        add_counters(branch.branch, Quantity::work_equilibrium, equilibrium, result.series);
+        add_counters(branch.branch, Quantity::work_energy, energy, result.series);
+        result.branches.push_back(std::move(kept));
+    }
+    std::ranges::sort(result.series, [](const Series& a, const Series& b) { return key(a) < key(b); });
+    return result;
+}
+
+Verdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind) {
+    Verdict verdict;
+    verdict.kind = kind;
+    verdict.reasons = measurement.inconclusive;
+    if (baseline.reason.find_first_not_of(" \t\r\n") == std::string::npos)
+        verdict.reasons.push_back("the baseline gives no reason for its acceptance");
+    if (baseline.accepted.scene != measurement.scene)
+        verdict.reasons.push_back(fmt::format("the baseline is of scene '{}', this is '{}'",
+                                              baseline.accepted.scene, measurement.scene));
+    judge_branches(baseline, measurement, verdict);
+
+    const auto tolerances = baseline.tolerances.find(kind);
+    static const Tolerances none;
+    for (const auto& was : baseline.accepted.series)
+        judge_series(baseline, tolerances == baseline.tolerances.end() ? none : tolerances->second, was,
+                     measurement, verdict);
+    for (const auto& is : measurement.series)
+        if (find(baseline.accepted, is.branch, is.quantity, is.channel) == nullptr)
+            verdict.reasons.push_back(described(is) + " is new: the baseline does not have it");
+    for (const auto& limit : baseline.limits) judge_limit(limit, measurement, verdict);
+    if (verdict.compared == 0) verdict.reasons.emplace_back("nothing was compared");
+
+    std::ranges::stable_sort(verdict.offences, std::ranges::greater{}, &Offence::share);
+    return verdict;
+}
+
+}  // namespace elastocheck::compare

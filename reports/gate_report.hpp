@@ -1,0 +1,36 @@
+// What the gate found, as people and CI read it. Pure functions of the verdicts. Tables and annotations show
+// the worst number of each channel; JUnit holds them all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/gate.hpp"
+
+namespace elastocheck::reports {
+
+struct GatedScene {
+    std::string file;                // of the scene, as the user knows it
+    std::string baseline_file;       //
+    compare::Measurement accepted;   // what the baseline holds; empty when there is none
+    std::string reason;              // of the last acceptance
+    std::string differs;             // builds: why the class is not same-build
+    std::vector<std::string> notes;  // worth saying, not worth failing
+    bool bad_input = false;          // the scene itself could not be read: verdict.reasons says why
+    compare::Verdict verdict;
+};
+
+// 1 where a limit is broken anywhere, else 2 where a scene could not be read, else 3 where anything could not
+// be judged, else 0. No scene at all is 3.
+int exit_code(const std::vector<GatedScene>& scenes);
+
+// "branch 'jounce', recursive: toe at load 3000: accepted -1.52 deg, measured ..."
+std::string story(const compare::Offence& offence);
+
+std::string gate_table(const GatedScene& scene);                     // for a terminal
+std::string gate_conclusion(const std::vector<GatedScene>& scenes);  // its last line
+std::string junit(const std::vector<GatedScene>& scenes);
+std::string step_summary(const std::vector<GatedScene>& scenes);  // Markdown, under 1 MiB
+std::string annotations(const std::vector<GatedScene>& scenes);   // GitHub workflow commands, at most ten
+
+}  // namespace elastocheck::reports

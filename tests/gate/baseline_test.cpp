@@ -1,0 +1,154 @@
+// Baseline files: what is written is read again, and nothing misspelt is read as something else.
+#include "reports/baseline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "models/compile.hpp"
+#include "reports/files.hpp"
+#include "tests/support/command.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Quantity;
+using compare::ToleranceClass;
+
+std::string committed(const std::string& scene) {
+    return read_whole(std::string(ELASTOCHECK_SCENES) + "/baselines/" + scene + ".json");
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+TEST(Baseline, IsReadAndWrittenWithoutChangingALetter) {
+    for (const auto& scene : support::scene_names()) {
+        const std::string text = committed(scene);
+        EXPECT_EQ(baseline_text(parse_baseline(text, scene)), text) << scene;
+    }
+}
+
+TEST(Baseline, IsSmallEnoughToReview) {
+    for (const auto& scene : support::scene_names()) {
+        EXPECT_LT(committed(scene).size(), 50'000u) << scene;
+        EXPECT_NE(parse_baseline(committed(scene), scene).baseline.reason, "") << scene;
+    }
+}
+
+TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
+    const Model model = compile(support::scene("pendulum"));
+    const auto measurement = compare::measure(model, compare::compare(model));
+    for (const auto& branch : measurement.branches) {
+        ASSERT_EQ(branch.loads.size(), 11u);
+        EXPECT_EQ(branch.loads.front(), 0);
+        EXPECT_EQ(std::abs(branch.loads.back()), 1500);
+    }
+    BaselineFile file;
+    file.baseline.accepted = measurement;
+    file.baseline.reason = "a \"test\"\n";
+    file.scene_file = "../s.yaml";
+    for (const auto kind : compare::tolerance_classes)
+        file.baseline.tolerances[kind] = compare::default_tolerances(kind);
+    file.baseline.limits = {{Quantity::deviation_at_equal_load, "bob_x", 0.1}};
+    const BaselineFile again = parse_baseline(baseline_text(file), "s");
+    EXPECT_EQ(baseline_text(again), baseline_text(file));
+    ASSERT_EQ(again.baseline.accepted.series.size(), measurement.series.size());
+    for (std::size_t k = 0; k < measurement.series.size(); ++k)
+        EXPECT_EQ(again.baseline.accepted.series[k].values, measurement.series[k].values);
+    EXPECT_EQ(again.baseline.reason, file.baseline.reason);
+    EXPECT_EQ(again.baseline.limits.size(), 1u);
+}
+
+TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
+    const std::string good = committed("single_bushing");
+    struct Damage {
+        std::string text, answer;
+    };
+    for (const auto& [text, answer] : std::vector<Damage>{
+             {"", "the file is empty"},
+             {" \n", "is not the JSON of a baseline"},
+             {"{}", "has no schema"},
+             {"[]", "has no schema"},
+             {"null", "has no schema"},
+             {good.substr(0, good.size() / 2), "is not the JSON of a baseline"},
+             {good.substr(0, good.size() - 3), "is not the JSON of a baseline"},
+             {good + "x", "is not the JSON of a baseline"},
+             {replaced(good, "baseline/1", "baseline/0"),
+              "'elastocheck/baseline/0' cannot be read by this version"},
+             {replaced(good, "\"limits\"", "\"limit\""), "'limits' is missing"},
+             {replaced(good, "\"limits\": []", "\"limits\": [], \"more\": 1"), "'more' is not known"},
+             {replaced(good, "\"limits\": []", R"("limits": [{"of":"recursive","channel":"x","max":1}])"),
+              "limits.of: 'recursive' is not known"},
+             {replaced(good, "\"limits\": []",
+                       R"("limits": [{"of":"deviation at equal load","channel":"x"}])"),
+              "limits: 'max' is missing"},
+             {replaced(good, "\"atol\"", "\"atoll\""), "'atol' is missing"},
+             {replaced(good, "\"physical\"", "\"physic\""), "'physical' is missing"},
+             {replaced(good, "\"values\":[100.0", "\"values\":[\"0\""), "is not a number"},
+             {replaced(good, "\"unit\":\"mm\"", "\"unit\":\"inch\""), "'inch' is not known"},
+             {replaced(good, "\"of\":\"recursive\"", "\"of\":\"recursiv\""), "'recursiv' is not known"},
+             {replaced(good, "\"of\":\"equilibrium\"", "\"of\":\"recursive\""), "is there twice"},
+         }) {
+        try {
+            parse_baseline(text, "b.json");
+            ADD_FAILURE() << "was read: " << answer;
+        } catch (const BaselineError& error) {
+            EXPECT_TRUE(support::contains(error.what(), "b.json: ")) << error.what();
+            EXPECT_TRUE(support::contains(error.what(), answer)) << answer << ": " << error.what();
+        }
+    }
+}
+
+TEST(Baseline, ANullIsNoNumber) {
+    const auto file =
+        parse_baseline(replaced(committed("single_bushing"), "\"values\":[100.0", "\"values\":[null"), "b");
+    EXPECT_TRUE(std::isnan(file.baseline.accepted.series[0].values[0]));
+}
+
+TEST(Baseline, BuildsAreTheSameOnlyWhenNothingThatRoundsDiffers) {
+    const Provenance here = provenance();
+    EXPECT_EQ(distance(here, here).kind, ToleranceClass::same_build);
+    Provenance other = here;
+    other.commit = "another", other.dirty = !here.dirty, other.version = "9";
+    EXPECT_EQ(distance(here, other).kind, ToleranceClass::same_build);
+    for (std::string Provenance::*field : {&Provenance::compiler, &Provenance::flags, &Provenance::cpu}) {
+        other = here;
+        other.*field += "!";
+        EXPECT_EQ(distance(here, other).kind, ToleranceClass::cross_build);
+        EXPECT_TRUE(support::contains(distance(here, other).differs, "!"));
+    }
+    other = here;
+    other.libraries[0].version = "0";
+    EXPECT_EQ(distance(here, other).kind, ToleranceClass::cross_build);
+}
+
+TEST(Baseline, OnlyWhatIsCommittedCanHaveBeenReviewed) {
+    const support::Folder folder;
+    const auto git = [&](const std::string& arguments) {
+        return support::says("git -C " + folder.path.string() +
+                             " -c user.name=t -c user.email=t@example.org -c init.defaultBranch=main " +
+                             arguments)
+            .code;
+    };
+    const std::string file = folder.write("it's.json", "1");
+    EXPECT_EQ(not_committed(file), "it is not committed to a git repository");
+    ASSERT_EQ(git("init -q"), 0);
+    EXPECT_EQ(not_committed(file), "it is not committed to a git repository");
+    ASSERT_EQ(git("add ."), 0);
+    EXPECT_EQ(not_committed(file), "it is not committed to a git repository");
+    ASSERT_EQ(git("commit -q -m x"), 0);
+    EXPECT_EQ(not_committed(file), "");
+    folder.write("it's.json", "2");
+    EXPECT_EQ(not_committed(file), "it differs from what is committed");
+    ASSERT_EQ(git("add ."), 0);
+    EXPECT_EQ(not_committed(file), "it differs from what is committed");
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

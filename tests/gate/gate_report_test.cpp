@@ -1,0 +1,183 @@
+// What the gate tells people and CI, from hand-made verdicts.
+#include "reports/gate_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <pugixml.hpp>
+
+#include "tests/support/command.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Quantity;
+using support::contains;
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
+compare::Offence offence(double is) {
+    compare::Offence o;
+    o.branch = "jounce";
+    o.channel = "toe";
+    o.unit = "deg";
+    o.has_load = true;
+    o.load = 3000;
+    o.was = 1;
+    o.is = is;
+    o.tolerance = 0.25;
+    return o;
+}
+
+GatedScene passed() {
+    GatedScene scene;
+    scene.file = "scenes/good.yaml";
+    scene.reason = "as the paper says";
+    scene.accepted.series = {{"jounce", Quantity::recursive, "toe", "deg", {1}},
+                             {"jounce", Quantity::equilibrium, "toe", "deg", {1}},
+                             {"jounce", Quantity::work_recursive, "steps", "count", {1}}};
+    scene.verdict.compared = 7;
+    return scene;
+}
+
+GatedScene failed() {
+    GatedScene scene = passed();
+    scene.file = "scenes/bad.yaml";
+    scene.verdict.offences = {offence(3.5), offence(1.5)};
+    return scene;
+}
+
+GatedScene unjudged() {
+    GatedScene scene;
+    scene.file = "scenes/new.yaml";
+    scene.verdict.reasons = {"there is no baseline", "<nothing> | \"compared\"\x01"};
+    return scene;
+}
+
+TEST(GateReport, ExitCodesAreRanked) {
+    GatedScene bad = unjudged();
+    bad.bad_input = true;
+    EXPECT_EQ(exit_code({passed(), passed()}), 0);
+    EXPECT_EQ(exit_code({}), 3);
+    EXPECT_EQ(exit_code({passed(), unjudged()}), 3);
+    EXPECT_EQ(exit_code({unjudged(), bad, passed()}), 2);
+    EXPECT_EQ(exit_code({unjudged(), bad, failed(), passed()}), 1);
+    GatedScene empty = passed();
+    empty.verdict.compared = 0;
+    EXPECT_EQ(exit_code({passed(), empty}), 3);
+}
+
+TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
+    EXPECT_EQ(
+        story(offence(0.5)),
+        "branch 'jounce', recursive: toe at load 3000: accepted 1 deg, measured 0.5 deg, difference -0.5, "
+        "2 times the tolerance of 0.25");
+    compare::Offence limit = offence(0.007);
+    limit.of_limit = true, limit.has_load = false, limit.was = limit.tolerance = 0.005;
+    limit.quantity = Quantity::deviation_at_equal_travel;
+    EXPECT_EQ(story(limit),
+              "branch 'jounce', deviation at equal travel: toe: 0.007 deg is over its limit of 0.005 deg");
+    const std::string table = gate_table(failed());
+    EXPECT_TRUE(contains(table, "scenes/bad.yaml: FAILED: 2 of 7 numbers out of tolerance, same-build"))
+        << table;
+    EXPECT_TRUE(contains(table, "+2.5         10        2\n")) << table;
+    EXPECT_FALSE(contains(table, "1.5")) << table;  // of the same channel and not the worst
+    EXPECT_TRUE(contains(gate_conclusion({failed(), passed()}),
+                         "FAILED: 2 of 14 numbers out of tolerance, in 1 of 2 scenes"));
+}
+
+TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
+    const std::string xml = junit({passed(), failed(), unjudged()});
+    pugi::xml_document document;
+    ASSERT_TRUE(document.load_string(xml.c_str())) << xml;
+    const auto suites = document.child("testsuites");
+    const auto suite = [&](const char* file) { return suites.find_child_by_attribute("name", file); };
+    EXPECT_EQ(suite("scenes/good.yaml").attribute("tests").as_int(), 3);
+    EXPECT_EQ(suite("scenes/good.yaml").attribute("failures").as_int(), 0);
+    EXPECT_EQ(suite("scenes/bad.yaml").attribute("failures").as_int(), 1);
+    EXPECT_EQ(suite("scenes/bad.yaml").attribute("errors").as_int(), 0);
+    EXPECT_EQ(suite("scenes/new.yaml").attribute("errors").as_int(), 1);
+    EXPECT_EQ(suite("scenes/new.yaml").attribute("tests").as_int(), 1);
+    const auto failure =
+        suite("scenes/bad.yaml").find_child_by_attribute("name", "jounce: toe").child("failure");
+    EXPECT_TRUE(contains(failure.text().get(), "accepted 1 deg, measured 3.5 deg"));
+    EXPECT_TRUE(contains(failure.text().get(), "measured 1.5 deg"));
+    const auto error = suite("scenes/new.yaml").child("testcase").child("error");
+    EXPECT_STREQ(error.attribute("message").value(), "there is no baseline");
+    EXPECT_TRUE(contains(error.text().get(), "<nothing>"));
+    for (const auto& of_suite : suites)
+        EXPECT_EQ(of_suite.attribute("tests").as_int(), std::distance(of_suite.begin(), of_suite.end()));
+}
+
+TEST(GateReport, JUnitIsWellFormedWhateverTheTextsHold) {
+    if (support::says("xmllint --version").code != 0) GTEST_SKIP() << "xmllint is not installed";
+    GatedScene odd = unjudged();
+    for (int c = 1; c < 128; ++c) odd.verdict.reasons[0] += static_cast<char>(c);
+    odd.file += "<&\"'>]]>";
+    const support::Folder folder;
+    const auto said = support::says("xmllint --noout " + folder.write("j.xml", junit({failed(), odd})));
+    EXPECT_EQ(said.code, 0) << said.err;
+}
+
+TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
+    const std::string page = step_summary({passed(), failed(), unjudged()});
+    EXPECT_TRUE(
+        page.starts_with("# elastocheck gate: FAILED\n\nFAILED: 2 of 14 numbers out of tolerance, in 1 of 3"))
+        << page;
+    EXPECT_LT(
+        page.find("| scenes/bad.yaml | jounce | recursive | toe \\[deg] | 3000 | 1 | 3.5 | +2.5 | 10 | 2 |"),
+        page.find("<details>"))
+        << page;
+    EXPECT_GT(page.find("| scenes/good.yaml | passed | 7 |"), page.find("<details>")) << page;
+    EXPECT_TRUE(contains(page, "&lt;nothing> \\| \"compared\"")) << page;
+    EXPECT_TRUE(step_summary({passed()}).starts_with("# elastocheck gate: passed")) << page;
+    EXPECT_FALSE(contains(step_summary({passed()}), "accepted |"));
+}
+
+TEST(GateReport, TheSummaryStaysBelowAMebibyteHoweverMuchIsWrong) {
+    GatedScene scene = failed();
+    scene.file = std::string(1000, '|');
+    scene.reason = scene.differs = std::string(1000, '&');
+    scene.notes.assign(50, scene.reason);
+    std::vector<GatedScene> scenes(400, scene);  // two offences each
+    scenes[0].verdict.offences.assign(1200, offence(2));
+    for (std::size_t k = 0; k < 1200; ++k)
+        scenes[0].verdict.offences[k].channel = std::to_string(k) + std::string(1000, '<');
+    scenes[0].verdict.reasons.assign(1000, std::string(1000, '_'));
+    const std::string page = step_summary(scenes);
+    EXPECT_LT(page.size(), 1u << 20);
+    EXPECT_GT(page.size(), 1u << 18);  // the bound was put to the test
+    for (const char* part :
+         {"... and 1499 more channels.", "... and 900 more.", "... and 100 more.", "</details>"})
+        EXPECT_TRUE(contains(page, part)) << part;
+}
+
+TEST(GateReport, AnnotationsAreAtMostTenWorstFirstAndEscaped) {
+    GatedScene scene = failed();
+    scene.file = "a:b,c.yaml";
+    scene.verdict.offences.clear();
+    for (int k = 20; k > 0; --k) {
+        scene.verdict.offences.push_back(offence(1 + k));
+        if (k < 20) scene.verdict.offences.back().channel += std::to_string(k);
+    }
+    scene.verdict.offences.push_back(offence(1.5));
+    GatedScene other = unjudged();
+    other.verdict.reasons = {"100 %\nand a\rline"};
+    const std::string lines = annotations({passed(), other, scene});
+    EXPECT_EQ(count(lines, "::error "), 10u);
+    EXPECT_EQ(count(lines, "\n"), 10u);
+    EXPECT_TRUE(lines.starts_with(
+        "::error file=a%3Ab%2Cc.yaml,title=elastocheck gate%3A out of tolerance::branch "
+        "'jounce', recursive: toe at load 3000: accepted 1 deg, measured 21 deg, difference "
+        "+20, 80 times the tolerance of 0.25; 2 numbers of it in all\n"))
+        << lines;
+    EXPECT_TRUE(contains(annotations({other}), "::100 %25%0Aand a%0Dline\n"));
+    EXPECT_EQ(annotations({passed()}), "");
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

@@ -1,0 +1,229 @@
+// The gate's judgement on hand-made numbers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "compare/gate.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Two branches; tolerances that are exact in binary.
+Measurement measurement() {
+    Measurement m;
+    m.scene = "s";
+    for (const char* branch : {"in", "out"}) {
+        m.branches.push_back({branch, {0, 10, 20}});
+        m.series.push_back({branch, Quantity::recursive, "toe", "deg", {0, 1, 4}});
+        m.series.push_back({branch, Quantity::equilibrium, "toe", "deg", {0, 1, 2}});
+        m.series.push_back({branch, Quantity::deviation_at_equal_travel, "toe", "deg", {0.5}});
+        m.series.push_back({branch, Quantity::recursive, "travel", "mm", {0, 16, 32}});
+        m.series.push_back({branch, Quantity::work_recursive, "steps", "count", {100}});
+    }
+    return m;
+}
+
+Baseline baseline() {
+    Baseline b;
+    b.accepted = measurement();
+    b.reason = "a test";
+    for (const auto kind : tolerance_classes)
+        b.tolerances[kind] = {{"deg", {0.125, 0}}, {"mm", {0, 0.25}}, {"count", {0, 0.125}}};
+    return b;
+}
+
+Verdict judged(const Baseline& b, const Measurement& m) { return judge(b, m, ToleranceClass::same_build); }
+
+double& value(Measurement& m, Quantity quantity, const std::string& channel, std::size_t k) {
+    for (auto& s : m.series)
+        if (s.quantity == quantity && s.channel == channel) return s.values.at(k);
+    throw std::logic_error(channel);
+}
+
+TEST(Gate, WhatIsAsAcceptedPassesAndEveryNumberIsCounted) {
+    const Verdict verdict = judged(baseline(), measurement());
+    EXPECT_EQ(verdict.judgement(), Judgement::passed);
+    EXPECT_EQ(verdict.compared, 2 * (3 + 3 + 1 + 3 + 1));
+}
+
+TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
+    struct Edge {
+        Quantity quantity;
+        const char* channel;
+        std::size_t k;
+        double was, tolerance;
+    };
+    for (const auto& [quantity, channel, k, was, tolerance] :
+         {Edge{Quantity::recursive, "toe", 1, 1, 0.125},  // atol
+          Edge{Quantity::recursive, "travel", 0, 0, 8},   // rtol × range 32
+          Edge{Quantity::deviation_at_equal_travel, "toe", 0, 0.5, 0.125},
+          Edge{Quantity::work_recursive, "steps", 0, 100, 12.5}}) {  // rtol × 100
+        for (const double sign : {1.0, -1.0}) {
+            Measurement m = measurement();
+            const double edge = was + sign * tolerance;
+            value(m, quantity, channel, k) = edge;
+            EXPECT_EQ(judged(baseline(), m).judgement(), Judgement::passed)
+                << name(quantity) << channel << sign;
+            value(m, quantity, channel, k) = std::nextafter(edge, sign * infinity);
+            const Verdict verdict = judged(baseline(), m);
+            EXPECT_EQ(verdict.judgement(), Judgement::failed) << name(quantity) << channel << sign;
+            ASSERT_EQ(verdict.offences.size(), 1u);
+            const Offence& offence = verdict.offences[0];
+            EXPECT_EQ(offence.branch, "in");
+            EXPECT_EQ(offence.channel, channel);
+            EXPECT_EQ(offence.was, was);
+            EXPECT_EQ(offence.tolerance, tolerance);
+            EXPECT_GT(sign * offence.difference(), tolerance);
+            EXPECT_EQ(offence.has_load, quantity == Quantity::recursive);
+            EXPECT_EQ(offence.load, offence.has_load ? 10.0 * static_cast<double>(k) : 0);
+        }
+    }
+}
+
+TEST(Gate, ADeviationsRelativeToleranceIsAShareOfTheReferencesRange) {
+    Baseline b = baseline();
+    b.tolerances[ToleranceClass::same_build]["deg"] = {0, 0.25};  // the equilibrium leg's toe spans 2
+    Measurement m = measurement();
+    value(m, Quantity::deviation_at_equal_travel, "toe", 0) = 1;
+    EXPECT_EQ(judged(b, m).judgement(), Judgement::passed);
+    value(m, Quantity::deviation_at_equal_travel, "toe", 0) = 1.001;
+    EXPECT_EQ(judged(b, m).judgement(), Judgement::failed);
+}
+
+TEST(Gate, AChannelsOwnToleranceGoesBeforeItsUnits) {
+    Baseline b = baseline();
+    b.tolerances[ToleranceClass::same_build]["toe"] = {0.5, 0};
+    Measurement m = measurement();
+    value(m, Quantity::recursive, "toe", 1) = 1.5;
+    EXPECT_EQ(judged(b, m).judgement(), Judgement::passed);
+    b.tolerances[ToleranceClass::same_build]["toe"] = {0.25, 0};
+    EXPECT_EQ(judged(b, m).judgement(), Judgement::failed);
+}
+
+TEST(Gate, TheClassDecidesWhichTolerancesHold) {
+    Baseline b = baseline();
+    b.tolerances[ToleranceClass::physical]["deg"] = {1, 0};
+    Measurement m = measurement();
+    value(m, Quantity::recursive, "toe", 1) = 2;
+    EXPECT_EQ(judge(b, m, ToleranceClass::physical).judgement(), Judgement::passed);
+    EXPECT_EQ(judge(b, m, ToleranceClass::cross_build).judgement(), Judgement::failed);
+}
+
+TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
+    struct Damage {
+        const char* what;
+        std::function<void(Baseline&, Measurement&)> inflict;
+    };
+    const std::vector<Damage> damages{
+        {"not a finite number", [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = nan; }},
+        {"not a finite number", [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = infinity; }},
+        {"not a finite number in the baseline",
+         [](auto& b, auto&) { value(b.accepted, Quantity::recursive, "toe", 1) = nan; }},
+        {"not a finite number in the baseline",
+         [](auto& b, auto& m) {
+             value(b.accepted, Quantity::recursive, "toe", 1) = nan;
+             value(m, Quantity::recursive, "toe", 1) = nan;
+         }},
+        {"was not measured", [](auto&, auto& m) { m.series.erase(m.series.begin()); }},
+        {"toe is new", [](auto& b, auto&) { b.accepted.series.erase(b.accepted.series.begin()); }},
+        {"3 numbers in the baseline, 2 were measured", [](auto&, auto& m) { m.series[0].values.pop_back(); }},
+        {"2 numbers in the baseline, 3 were measured",
+         [](auto& b, auto&) { b.accepted.series[0].values.pop_back(); }},
+        {"no numbers in the baseline",
+         [](auto& b, auto& m) { b.accepted.series[0].values.clear(), m.series[0].values.clear(); }},
+        {"not as many numbers as its branch has loads",
+         [](auto& b, auto& m) { b.accepted.branches[0].loads.pop_back(), m.branches[0].loads.pop_back(); }},
+        {"at other loads", [](auto&, auto& m) { m.branches[0].loads.back() = 21; }},
+        {"at other loads", [](auto&, auto& m) { m.branches[0].loads.pop_back(); }},
+        {"branch 'out' is in the baseline", [](auto&, auto& m) { m.branches.pop_back(); }},
+        {"branch 'out' is new", [](auto& b, auto&) { b.accepted.branches.pop_back(); }},
+        {"was in deg and is in mm", [](auto&, auto& m) { m.series[0].unit = "mm"; }},
+        {"nothing was compared", [](auto& b, auto& m) { b.accepted.series.clear(), m.series.clear(); }},
+        {"the references disagree", [](auto&, auto& m) { m.inconclusive = {"the references disagree"}; }},
+        {"no reason for its acceptance", [](auto& b, auto&) { b.reason = " \n"; }},
+        {"of scene 's', this is 't'", [](auto&, auto& m) { m.scene = "t"; }},
+        {"no usable tolerance", [](auto& b, auto&) { b.tolerances.clear(); }},
+        {"no usable tolerance", [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build].erase("mm"); }},
+        {"no usable tolerance",
+         [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build]["mm"].atol = nan; }},
+        {"no usable tolerance",
+         [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build]["mm"].rtol = infinity; }},
+        {"no usable tolerance",
+         [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build]["mm"].atol = -1; }},
+        {"nothing of that name was measured",
+         [](auto& b, auto&) {
+             b.limits.push_back({Quantity::deviation_at_equal_travel, "to", 1});
+         }},
+        {"nothing of that name was measured",
+         [](auto& b, auto&) {
+             b.limits.push_back({Quantity::deviation_at_equal_load, "toe", 1});
+         }},
+        {"nothing finite to compare",
+         [](auto& b, auto&) {
+             b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", nan});
+         }},
+        {"nothing finite to compare",
+         [](auto& b, auto&) {
+             b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", infinity});
+         }},
+    };
+    for (const auto& [what, inflict] : damages) {
+        Baseline b = baseline();
+        Measurement m = measurement();
+        inflict(b, m);
+        const Verdict verdict = judged(b, m);
+        EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge) << what;
+        bool said = false;
+        for (const auto& reason : verdict.reasons) said = said || reason.find(what) != std::string::npos;
+        EXPECT_TRUE(said) << what << ": " << (verdict.reasons.empty() ? "" : verdict.reasons[0]);
+    }
+}
+
+TEST(Gate, SwappedChannelsFail) {
+    Measurement m = measurement();
+    std::swap(m.series[0].values, m.series[1].values);
+    EXPECT_EQ(judged(baseline(), m).judgement(), Judgement::failed);
+}
+
+TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
+    Measurement m = measurement();
+    value(m, Quantity::recursive, "toe", 1) = 7;
+    value(m, Quantity::recursive, "travel", 1) = nan;
+    const Verdict verdict = judged(baseline(), m);
+    EXPECT_EQ(verdict.judgement(), Judgement::failed);
+    EXPECT_EQ(verdict.reasons.size(), 1u);
+}
+
+TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
+    Baseline b = baseline();
+    b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", 0.5});
+    Verdict verdict = judged(b, measurement());
+    EXPECT_EQ(verdict.judgement(), Judgement::passed);
+    EXPECT_EQ(verdict.compared, 2 * 11 + 2);
+    b.limits[0].max = std::nextafter(0.5, 0);
+    verdict = judged(b, measurement());
+    EXPECT_EQ(verdict.judgement(), Judgement::failed);
+    ASSERT_EQ(verdict.offences.size(), 2u);  // in both branches
+    EXPECT_TRUE(verdict.offences[0].of_limit);
+    EXPECT_EQ(verdict.offences[0].is, 0.5);
+}
+
+TEST(Gate, TheWorstOffenceComesFirst) {
+    Measurement m = measurement();
+    value(m, Quantity::recursive, "toe", 1) = 1.5;       // 4 tolerances
+    value(m, Quantity::recursive, "travel", 1) = 0;      // 2
+    value(m, Quantity::work_recursive, "steps", 0) = 0;  // 8
+    const Verdict verdict = judged(baseline(), m);
+    ASSERT_EQ(verdict.offences.size(), 3u);
+    EXPECT_EQ(verdict.offences[0].share(), 8);
+    EXPECT_EQ(verdict.offences[1].share(), 4);
+    EXPECT_EQ(verdict.offences[2].share(), 2);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

@@ -1,0 +1,192 @@
+#!/bin/sh
+# Alarms that are shown to ring: puts each fault of faults.txt into a copy of the tree, rebuilds what changed, runs the
+# alarms (every GoogleTest suite, the gate on every scene) and writes the matrix fault × alarm.
+#
+#   mutate.sh [-n] [-s] [-o DIR] [-w WORK] [FAULT...]
+#
+# FAULT: names from faults.txt, default all, with -s the sample; -n only looks whether each still has its place in the
+# code. DIR gets results.md and results.csv (default: here). WORK keeps the copy and
+# its build between runs (default: build/mutation). Exit code 1: a fault survived, or an alarm rings without a fault.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+output=$here
+work=$root/build/mutation
+dry='' chosen=''
+while getopts nso:w: option; do
+    case $option in
+    n) dry=yes ;;
+    s) chosen=sample ;;
+    o) output=$OPTARG ;;
+    w) work=$OPTARG ;;
+    *) exit 2 ;;
+    esac
+done
+shift $((OPTIND - 1))
+faults=$here/faults.txt
+tree=$work/tree
+build=$work/build
+unset CI GITHUB_ACTIONS  # the copy's baselines are not committed anywhere
+
+# field FAULT KEY: its value in faults.txt
+field() {
+    awk -v fault="$1" -v key="$2" '
+        $1 == "fault" { inside = $2 == fault }
+        inside && $1 == key { sub(/^[ ]*[^ ]+ ?/, ""); print; exit }' "$faults"
+}
+names() { awk -v sample="$chosen" '$1 == "fault" { name = $2 } $1 == (sample == "" ? "fault" : "sample") { print name }' "$faults"; }
+
+# replace FAULT PREFIX: the one occurrence of its text in the copy; fails when there is not exactly one.
+replace() {
+    file=$(field "$1" "$2file")
+    FIND=$(field "$1" "$2find") MAKE=$(field "$1" "$2make") awk '
+        BEGIN { find = ENVIRON["FIND"]; make = ENVIRON["MAKE"] }
+        {
+            at = index($0, find)
+            if (find != "" && at > 0) {
+                ++count
+                rest = substr($0, at + length(find))
+                if (index(rest, find) > 0) ++count
+                $0 = substr($0, 1, at - 1) make rest
+            }
+            print
+        }
+        END { exit count != 1 }' "$tree/$file" >"$work/mutant" || {
+        echo "mutate: $1: what it replaces does not occur exactly once in $file" >&2
+        return 1
+    }
+    cat "$work/mutant" >"$tree/$file"
+}
+files() { field "$1" file && field "$1" also-file; }
+# The sound files are kept, so that the tree may be worked on meanwhile.
+apply() {
+    rm -rf "$work/kept"
+    for file in $(files "$1" | sort -u); do
+        mkdir -p "$(dirname "$work/kept/$file")" && cp -p "$tree/$file" "$work/kept/$file"
+    done
+    replace "$1" '' || return 1
+    [ -z "$(field "$1" also-file)" ] || replace "$1" also-
+}
+# Newer than what was built from the fault.
+revert() { for file in $(files "$1" | sort -u); do cp "$work/kept/$file" "$tree/$file"; done; }
+
+# The alarms one by one, as "suite" lines of what is run, in the order in which they are asked.
+alarms() {
+    for test in $tests; do
+        "$build/tests/$test" --gtest_list_tests | awk '/^[^ ]+\./ { sub(/\..*/, ""); print }'
+    done
+    for scene in "$tree"/models/scenes/*.yaml; do echo "gate:$(basename "$scene" .yaml)"; done
+}
+tests='models/test_models recursive/test_recursive recursive/test_allocation reference/test_equilibrium
+    reference/test_energy compare/test_compare compare/test_trade gate/test_gate reports/test_reports'
+
+# ring FOLDER [STAMP]: runs the alarms (those built since STAMP) and leaves "alarm <tab> test <tab> margin" of those that
+# rang in FOLDER/rang. A margin is measured over allowed, where the message tells both.
+ring() {
+    rm -rf "$1" && mkdir -p "$1"
+    command=$build/reports/elastocheck
+    for test in $tests; do
+        case $test in
+        gate/* | reports/*) touched="$build/tests/$test $command" ;;  # these run the command
+        *) touched="$build/tests/$test" ;;
+        esac
+        # shellcheck disable=SC2086 # a list of words
+        if [ $# -lt 2 ] || [ -n "$(find $touched -newer "$2")" ]; then echo "$test"; fi
+    done | OUT=$1 BUILD=$build xargs -P "$(nproc)" -I{} sh -c '
+        log=$OUT/$(basename {}).log
+        timeout 300 "$BUILD/tests/{}" --gtest_brief=1 >"$log" 2>&1 || echo "exit $?" >>"$log"'
+    timeout 300 "$command" gate "$tree"/models/scenes/*.yaml --class cross-build >"$1/gate.log" 2>&1 || true
+    for test in $tests; do
+        log=$1/$(basename "$test").log
+        [ ! -f "$log" ] || awk -v run="$(basename "$test")" '
+            function ratio(a, b) { return b + 0 > 0 ? sprintf("%.2g", a / b) : "" }
+            / vs / && match($0, /actual: [-+0-9.e]+ vs [-+0-9.e]+/) && margin == "" {
+                split(substr($0, RSTART + 8, RLENGTH - 8), side, " vs ")
+                if (side[1] + 0 > side[2] + 0) margin = ratio(side[1], side[2])
+            }
+            /^The difference between/ && match($0, / is [-+0-9.e]+, which exceeds/) {
+                split(substr($0, RSTART + 4), word, ","); difference = word[1]
+            }
+            / evaluates to [-+0-9.e]+\.$/ && difference != "" && margin == "" {
+                bound = $NF; sub(/\.$/, "", bound); last = bound
+            }
+            /^\[  FAILED  \] .* ms\)$/ {
+                if (margin == "" && difference != "") margin = ratio(difference, last)
+                sub(/,$/, "", $4)
+                split($4, name, ".")
+                print name[1] "\t" $4 "\t" margin
+                margin = difference = ""; any = 1
+            }
+            /^exit / { code = $2 }
+            END { if (code == 124) print run "\t" run " (no end)\t"; else if (code != "" && !any) print run "\t" run " (crash)\t" }' "$log"
+    done >"$1/rang"
+    awk '
+        function tell() { if (scene != "") print "gate:" scene "\tgate: " scene "\t" margin }
+        /^[^ ].*\.yaml: / {
+            tell(); scene = ""; margin = ""
+            if ($0 !~ /: passed: /) { scene = $1; sub(/:$/, "", scene); sub(/.*\//, "", scene); sub(/\.yaml$/, "", scene) }
+            row = 0; next
+        }
+        /^  branch / { row = 1; next }
+        row == 1 { margin = sprintf("%.2g", $(NF - 1)); row = 2 }
+        END { tell() }' "$1/gate.log" >>"$1/rang"
+    if ! grep -q ' numbers out of tolerance, in ' "$1/gate.log"; then printf 'gate:all\tgate (crash)\t\n' >>"$1/rang"; fi
+}
+
+# shellcheck disable=SC2046 # lists of words
+if [ $# -eq 0 ]; then set -- $(names); fi
+for fault in "$@"; do
+    [ -n "$(field "$fault" file)" ] || { echo "mutate: no fault '$fault' in faults.txt" >&2; exit 2; }
+done
+
+# What differs gets a new time, older sources included and what an interrupted run left: times are what a build goes by.
+mkdir -p "$tree" "$output"
+(cd "$root" && find CMakeLists.txt models recursive reference compare reports tests -type f) | while read -r file; do
+    cmp -s "$root/$file" "$tree/$file" || { mkdir -p "$tree/$(dirname "$file")" && cp "$root/$file" "$tree/$file"; }
+done
+(cd "$tree" && find . -type f) | while read -r file; do [ -f "$root/$file" ] || rm "$tree/$file"; done
+if [ "$dry" ]; then
+    for fault in "$@"; do
+        apply "$fault" || exit 2
+        revert "$fault"
+    done
+    echo "mutate: $# faults have their place"
+    exit
+fi
+[ -f "$build/build.ninja" ] || cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w" >"$work/configure.log"
+targets="elastocheck_command $(for test in $tests; do basename "$test"; done)"
+# shellcheck disable=SC2086 # a list of words
+compile() { cmake --build "$build" --target $targets >"$work/build.log" 2>&1; }
+echo "mutate: building the copy"
+compile || { tail -30 "$work/build.log" >&2; exit 2; }
+ring "$work/sound"
+if [ -s "$work/sound/rang" ]; then
+    echo "mutate: these alarms ring without a fault:" >&2
+    cat "$work/sound/rang" >&2
+    exit 1
+fi
+
+alarms >"$work/alarms"
+rm -rf "$work/results" && mkdir -p "$work/results"
+for fault in "$@"; do
+    stamp=$work/stamp
+    touch "$stamp" && sleep 1
+    apply "$fault" || exit 2
+    if compile; then
+        ring "$work/results/$fault" "$stamp"
+    else
+        revert "$fault"
+        echo "mutate: $fault does not compile" >&2
+        tail -5 "$work/build.log" >&2
+        exit 2
+    fi
+    revert "$fault"
+    if [ -s "$work/results/$fault/rang" ]; then
+        echo "$fault: $(head -1 "$work/results/$fault/rang" | cut -f2) ($(cut -f1 "$work/results/$fault/rang" | sort -u | wc -l) alarms)"
+    else
+        echo "$fault: SURVIVED"
+    fi
+done
+
+sh "$here/matrix.sh" "$faults" "$work" "$output" "$@"
