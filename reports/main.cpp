@@ -20,8 +20,12 @@
 #include "recursive/diagnosis.hpp"
 #include "reports/csv.hpp"
 #include "reports/document.hpp"
+#include "reports/field.hpp"
 #include "reports/files.hpp"
+#include "reports/gnuplot.hpp"
 #include "reports/inspection.hpp"
+#include "reports/measurement.hpp"
+#include "reports/report_command.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/tables.hpp"
 #include "reports/trade_tables.hpp"
@@ -29,6 +33,7 @@
 namespace {
 
 using namespace elastocheck;
+using json = nlohmann::ordered_json;
 
 enum Exit { fine = 0, bad_input = 2, could_not_judge = 3, bug = 4 };
 
@@ -42,6 +47,34 @@ std::string read_text(const std::string& file) {
 // One line that is written over, on a terminal; nothing in a pipe.
 void progress(std::string_view what) {
     if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", what);
+}
+
+// The command as it was given, for a shell.
+std::string command_line;
+std::string quoted_command(int argc, char** argv) {
+    std::string line = "elastocheck";
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view word = argv[k];
+        const bool plain = !word.empty() && word.find_first_not_of(
+                                                "abcdefghijklmnopqrstuvwxyz"
+                                                "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                                "-_./=,:+@%") == word.npos;
+        line += ' ';
+        if (plain) {
+            line += word;
+            continue;
+        }
+        line += '\'';
+        for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += '\'';
+    }
+    return line;
+}
+
+void write_result(const std::filesystem::path& folder, json part) {
+    json result = reports::document(command_line, reports::provenance());
+    result["scenes"].push_back(std::move(part));
+    reports::write_whole(folder / "result.json", result.dump(1) + "\n");
 }
 
 int inspect(const std::string& file) {
@@ -81,10 +114,11 @@ int compare_legs(const std::string& file, int steps, const std::string& folder) 
     progress("");
     fmt::print("{}", reports::tables(model, comparison));
     if (!folder.empty()) {
-        const auto result = reports::document(scene, read_text(file), model, recursive::diagnose(model),
-                                              comparison, reports::provenance());
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        reports::add_comparison(part, scene, model, comparison);
+        reports::add_verdict(part, comparison.compared, reports::reasons_of(comparison));
         const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        write_result(base, std::move(part));
         reports::write_whole(base / "curves.csv", reports::curves_csv(comparison));
         fmt::print("Written: {0}/result.json, {0}/curves.csv\n", folder);
     }
@@ -113,11 +147,11 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     progress("");
     fmt::print("{}", reports::study_tables(model, study, attribution));
     if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
-                                             reports::provenance());
-        result["convergence"] = reports::study_json(study, attribution);
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        part["convergence"] = reports::study_json(study, attribution);
+        reports::add_verdict(part, 0, study.inconclusive);
         const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        write_result(base, std::move(part));
         reports::write_whole(base / "convergence.csv", reports::study_csv(study));
         reports::write_whole(base / "attribution.csv", reports::attribution_csv(study, attribution));
         fmt::print("Written: {0}/result.json, {0}/convergence.csv, {0}/attribution.csv\n", folder);
@@ -136,12 +170,13 @@ int trade(const std::string& file, const std::string& tolerance, const std::stri
     progress("");
     fmt::print("{}\n{}", reports::trade_table(model, trade), reports::precision_table(precision));
     if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
-                                             reports::provenance());
-        result["trade"] = reports::trade_json(trade);
-        result["precision"] = reports::precision_json(precision);
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        part["trade"] = reports::trade_json(trade);
+        part["precision"] = reports::precision_json(precision);
+        reports::add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
+                             trade.inconclusive);
         const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        write_result(base, std::move(part));
         reports::write_whole(base / "trade.csv", reports::trade_csv(trade));
         reports::write_whole(base / "precision.csv", reports::precision_csv(precision));
         fmt::print("Written: {0}/result.json, {0}/trade.csv, {0}/precision.csv\n", folder);
@@ -236,8 +271,13 @@ int run(int argc, char** argv) {
     trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
     trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv");
 
+    ReportRequest request;
+    const auto* report_command = add_report_command(app, request);
+
     try {
+        command_line = quoted_command(argc, argv);
         app.parse(argc, argv);
+        if (*report_command) return report(request, command_line, progress);
         if (*inspect_command) return inspect(scene);
         if (*solve_command) {
             const auto leg = static_cast<compare::Leg>(std::ranges::find(methods, method) - methods.begin());
@@ -265,6 +305,12 @@ int main(int argc, char** argv) {
     } catch (const SceneError& error) {
         return fail(bad_input, error.what());
     } catch (const reports::FileError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::ResultError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::MeasurementError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::PlotError& error) {
         return fail(bad_input, error.what());
     } catch (const std::invalid_argument& error) {
         return fail(bad_input, error.what());

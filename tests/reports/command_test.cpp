@@ -75,7 +75,7 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
                              "recursive    converged", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["scene"]["name"], "McPherson strut (Kang 2004, section 3)");
+    EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (Kang 2004, section 3)");
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "curves.csv"), "rebound,energy,-3000,"));
 }
 
@@ -89,8 +89,8 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
     EXPECT_TRUE(contains(said.out, "INCONCLUSIVE")) << said.out;
     EXPECT_TRUE(contains(said.out, "branch lost")) << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "result.json"));
-    EXPECT_EQ(result["verdict"]["conclusive"], false);
-    EXPECT_FALSE(result["verdict"]["reasons"].empty());
+    EXPECT_EQ(result["scenes"][0]["verdict"]["conclusive"], false);
+    EXPECT_FALSE(result["scenes"][0]["verdict"]["reasons"].empty());
 }
 
 TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
@@ -144,8 +144,8 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
                              "|Φ|, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(result["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,320,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));

@@ -1,0 +1,21 @@
+// Numbers as people read them.
+#pragma once
+
+#include <string>
+
+namespace elastocheck::reports {
+
+// Three to four significant digits, a true minus sign, powers of ten as such: "2.91", "−0.0018",
+// "2.6 × 10⁻¹³". A dash for what is not finite.
+std::string number(double value, int digits = 3);
+std::string signed_number(double value, int digits = 3);  // with a plus
+
+// Below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's: 0.
+std::string deviation_number(double value);
+
+// "2.9 %"; two significant digits, "< 0.001 %" for less.
+std::string percent(double share);
+
+std::string whole_number(long value);  // "12 345", with thin spaces
+
+}  // namespace elastocheck::reports
