@@ -1,4 +1,5 @@
 # Writes OUTPUT: every *.mustache under FOLDER by its name, as text in the program.
+cmake_minimum_required(VERSION 3.25)
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*.mustache)
 list(SORT files)
 set(entries "")

@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* dash = "–";
 constexpr const char* minus = "−";
-constexpr const char* thin_space = " ";
+constexpr const char* narrow_space = "\u202f";  // not broken at the end of a line
+constexpr const char* solid_space = "\u00a0";   // neither
 
 std::string raised(int exponent) {
     constexpr const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -45,20 +46,28 @@ std::string deviation_number(double value) { return std::abs(value) < 1e-9 ? "0"
 std::string percent(double share) {
     if (!std::isfinite(share)) return dash;
     const double size = 100 * std::abs(share);
-    if (size == 0) return "0 %";
-    if (size < 0.001) return "< 0.001 %";
-    return fmt::format("{}{} %", share < 0 ? minus : "",
-                       size < 100 ? number(size, 2) : fmt::format("{:.0f}", size));
+    if (size == 0) return fmt::format("0{}%", solid_space);
+    if (size < 0.001) return fmt::format("< 0.001{}%", solid_space);
+    return fmt::format("{}{}{}%", share < 0 ? minus : "",
+                       size < 100 ? number(size, 2) : fmt::format("{:.0f}", size), solid_space);
 }
 
 std::string whole_number(long value) {
     const std::string digits = std::to_string(std::abs(value));
     std::string text = value < 0 ? minus : "";
     for (std::size_t k = 0; k < digits.size(); ++k) {
-        if (k > 0 && (digits.size() - k) % 3 == 0) text.append(thin_space);
+        if (k > 0 && (digits.size() - k) % 3 == 0) text.append(narrow_space);
         text.push_back(digits[k]);
     }
     return text;
+}
+
+std::string quantity(double value, std::string_view unit) {
+    return fmt::format("{}{}{}", number(value, 2), solid_space, unit);
+}
+
+std::string setting(double value, std::string_view unit) {
+    return value >= 1e-4 ? fmt::format("{:g}{}{}", value, solid_space, unit) : quantity(value, unit);
 }
 
 }  // namespace elastocheck::reports

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace elastocheck::reports {
 
@@ -16,6 +17,10 @@ std::string deviation_number(double value);
 // "2.9 %"; two significant digits, "< 0.001 %" for less.
 std::string percent(double share);
 
-std::string whole_number(long value);  // "12 345", with thin spaces
+std::string whole_number(long value);  // "12 345", with narrow spaces
+
+// Two significant digits and the unit, kept on one line: "0.0018 deg".
+std::string quantity(double value, std::string_view unit);
+std::string setting(double value, std::string_view unit);  // as somebody gave it: "0.01 mm"
 
 }  // namespace elastocheck::reports

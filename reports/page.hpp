@@ -25,7 +25,7 @@ struct Table {
 enum Colour { ink, vermilion, blue, green, purple, ochre, slate, pink, sky, faint };
 
 struct Series {
-    enum class Style { line, wide, dashed, thin, points, line_points, bars, outline };
+    enum class Style { line, wide, dashed, thin, points, rings, line_points, bars };
     std::string title{};  // empty: not in the key
     Style style = Style::line;
     Colour colour = ink;
@@ -39,11 +39,6 @@ struct Band {
     Colour colour = green;
 };
 
-struct Mark {
-    double x = 0, y = 0;
-    std::string text;
-};
-
 struct Figure {
     std::string id{};           // within its scene
     std::string title{};        // short, above the plot
@@ -52,10 +47,10 @@ struct Figure {
     bool log_x = false, log_y = false, equal_axes = false, reversed_x = false, reversed_y = false;
     bool key = true;
     double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: as the data ask
-    double height = 1;                                                        // share of the usual one
+    double x_tick = 0, y_tick = 0;  // distance of ticks; 0: as the data ask
+    double width = 1, height = 1;   // shares of the usual ones
     std::vector<Series> series{};
     std::vector<Band> bands{};
-    std::vector<Mark> marks{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
 };
 

@@ -31,13 +31,13 @@ constexpr int width = 440, height = 290;  // [px] of a figure, for the type to k
 const char* style_of(Series::Style style) {
     switch (style) {
         case Series::Style::line: return "lines linewidth 1.8";
-        case Series::Style::wide: return "lines linewidth 5";
+        case Series::Style::wide: return "lines linewidth 4";
         case Series::Style::dashed: return "lines linewidth 1.6 dashtype (6,4)";
         case Series::Style::thin: return "lines linewidth 1.2";
         case Series::Style::points: return "points linewidth 1.4 pointsize 0.75";
         case Series::Style::line_points: return "linespoints linewidth 1.4 pointsize 0.7";
+        case Series::Style::rings: return "points linewidth 1.5 pointsize 1.3";
         case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
-        case Series::Style::outline: return "lines linewidth 1";
     }
     return "lines";
 }
@@ -48,10 +48,11 @@ json range_of(double low, double high) {
 }
 
 json script_data(const Figure& figure, const std::string& name) {
-    json series = json::array(), bands = json::array(), marks = json::array(), ticks = json::array();
+    json series = json::array(), bands = json::array(), ticks = json::array();
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
         const Series& s = figure.series[k];
-        const bool points = s.style == Series::Style::points || s.style == Series::Style::line_points;
+        const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
+                            s.style == Series::Style::line_points;
         constexpr int symbols[] = {7, 5, 9, 11, 13, 6, 7, 4, 6, 8};
         series.push_back({{"index", k},
                           {"title", s.title},
@@ -66,17 +67,13 @@ json script_data(const Figure& figure, const std::string& name) {
                          {"high", fmt::format("{:.9g}", band.high)},
                          {"label", band.label},
                          {"colour", palette[band.colour].light}});
-    for (const auto& mark : figure.marks)
-        marks.push_back({{"x", fmt::format("{:.9g}", mark.x)},
-                         {"y", fmt::format("{:.9g}", mark.y)},
-                         {"text", mark.text}});
     for (const auto& [at, text] : figure.y_ticks)
         ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
     return {{"name", name},
             {"title", figure.title},
-            {"width", width},
+            {"width", std::lround(width * figure.width)},
             {"height", std::lround(height * figure.height)},
-            {"width_in", fmt::format("{:.2f}", width / 96.0)},
+            {"width_in", fmt::format("{:.2f}", width * figure.width / 96.0)},
             {"height_in", fmt::format("{:.2f}", height * figure.height / 96.0)},
             {"x", figure.x},
             {"y", figure.y},
@@ -86,10 +83,11 @@ json script_data(const Figure& figure, const std::string& name) {
             {"reversed_x", figure.reversed_x},
             {"reversed_y", figure.reversed_y},
             {"y_range", range_of(figure.y_low, figure.y_high)},
+            {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
+            {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
             {"ticks", ticks},
             {"series", series},
             {"bands", bands},
-            {"marks", marks},
             {"ink", palette[ink].light},
             {"slate", palette[slate].light},
             {"faint", palette[faint].light}};
@@ -123,16 +121,20 @@ std::string read_text(const fs::path& file) {
     return text.str();
 }
 
-Illustration draw(const Figure& figure, const std::string& name, const fs::path& folder, bool pdf) {
+// `id` begins every id in the figure, so it is short.
+Illustration draw(const Figure& figure, const std::string& name, const std::string& id,
+                  const fs::path& folder, const ReportOptions& options) {
     const fs::path figures = folder / "figures";
     write_whole(figures / (name + ".csv"), figure_data(figure));
     write_whole(figures / (name + ".gp"), render("figure.gp", script_data(figure, name), Escape::gnuplot));
     const std::string script = "figures/" + name + ".gp";
     run_gnuplot(folder, {script});
-    if (pdf) run_gnuplot(folder, {"-e", "pdf=1", script});
+    if (options.pdf) run_gnuplot(folder, {"-e", "pdf=1", script});
     const fs::path svg = figures / (name + ".svg");
-    const Illustration picture = illustrate(read_text(svg), name, figure.title, figure.description);
+    const Illustration picture = illustrate(read_text(svg), id, figure.title, figure.description);
     write_whole(svg, picture.alone);
+    if (options.archive)
+        for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));
     return picture;
 }
 
@@ -168,6 +170,7 @@ struct Page {
     fs::path folder;
     ReportOptions options;
     std::set<std::string> names{};
+    int drawn = 0;
 
     std::string unique(const std::string& wanted) {
         std::string name = wanted;
@@ -178,7 +181,7 @@ struct Page {
     json figure(const Figure& figure, const std::string& scene) {
         const std::string name = unique(fmt::format("{}-{}", scene, figure.id));
         if (options.progress) options.progress("figure " + name);
-        const Illustration picture = draw(figure, name, folder, options.pdf);
+        const Illustration picture = draw(figure, name, fmt::format("f{}", ++drawn), folder, options);
         return {{"name", name},
                 {"title", figure.title},
                 {"description", figure.description},
@@ -272,6 +275,37 @@ std::string curves_csv(const Field& result) {
 
 }  // namespace
 
+std::string numbers_csv(const json& result, const std::string& file) {
+    std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
+    const Field root{&result, "", &file};
+    const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
+                         const char* quantity, double value, double tolerance) {
+        csv += fmt::format(
+            "{},{},{},{},{},{:.9g},{:.1g}\n", quoted(fs::path(scene["source"].text()).stem().string()),
+            quoted(branch["name"].text()), channel.name, channel.unit, quantity, value, tolerance);
+    };
+    for (const auto& scene : root["scenes"].items())
+        for (const auto& branch : scene["branches"].items()) {
+            const LegCurve truth = curve_of(branch, "equilibrium");
+            for (const auto& channel : main_channels_of(scene)) {
+                const auto values = truth.channel(channel.name);
+                const auto load = branch["deviation"]["at_equal_load"]["channels"].find(channel.name);
+                if (values.empty() || !load) continue;
+                // The references agree to far better; a deviation carries the rounding of its many steps.
+                const double range = (*load)["range"].number(), fine = 1e-7, coarse = 1e-7 + 1e-6 * range;
+                row(scene, branch, channel, "equilibrium at full load", values.back(), fine);
+                row(scene, branch, channel, "published at equal load: deviation at full load",
+                    (*load)["end"].number(), coarse);
+                row(scene, branch, channel, "published at equal load: largest deviation",
+                    (*load)["max"].number(), coarse);
+                if (const auto travel = branch["deviation"]["at_equal_travel"]["channels"].find(channel.name))
+                    row(scene, branch, channel, "published at equal travel: largest deviation",
+                        (*travel)["max"].number(), coarse);
+            }
+        }
+    return csv;
+}
+
 json parse_result(std::string_view text, const std::string& file) {
     json result = json::parse(text, nullptr, false);
     const Field root{&result, "", &file};
@@ -303,10 +337,16 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         {"provenance", provenance(root)},
         {"reproduce", root["reproduce"].text()},
         {"tints", tints}};
-    if (options.html) write_whole(staging.path() / "report.html", render("html/page", data, Escape::html));
-    write_whole(staging.path() / "report.md", render("markdown/page", data, Escape::markdown));
-    write_whole(staging.path() / "result.json", result.dump(1) + "\n");
-    write_whole(staging.path() / "curves.csv", curves_csv(root));
+    const std::string markdown = render("markdown/page", data, Escape::markdown);
+    if (options.archive) {
+        write_whole(staging.path() / "README.md", markdown);
+        write_whole(staging.path() / "numbers.csv", numbers_csv(result, file));
+    } else {
+        write_whole(staging.path() / "report.html", render("html/page", data, Escape::html));
+        write_whole(staging.path() / "report.md", markdown);
+        write_whole(staging.path() / "result.json", result.dump(1) + "\n");
+        write_whole(staging.path() / "curves.csv", curves_csv(root));
+    }
     staging.publish();
 }
 

@@ -12,8 +12,8 @@ namespace elastocheck::reports {
 nlohmann::ordered_json parse_result(std::string_view text, const std::string& file);
 
 struct ReportOptions {
-    bool pdf = false;  // figures as PDF too
-    bool html = true;  // false: Markdown only
+    bool pdf = false;      // figures as PDF too
+    bool archive = false;  // only what belongs in version control: README.md, numbers.csv, figures/*.svg
     std::function<void(std::string_view)> progress = {};
 };
 
@@ -22,5 +22,9 @@ struct ReportOptions {
 // report is then untouched.
 void write_report(const nlohmann::ordered_json& result, const std::string& file,
                   const std::filesystem::path& folder, const ReportOptions& options = {});
+
+// scene,branch,output,unit,quantity,value,tolerance: the numbers by which a later run is told from this one,
+// and how far each may move with the compiler.
+std::string numbers_csv(const nlohmann::ordered_json& result, const std::string& file);
 
 }  // namespace elastocheck::reports

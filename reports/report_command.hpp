@@ -16,7 +16,7 @@ struct ReportRequest {
     std::string measured;  // CSV
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";
-    bool no_times = false;
+    bool archive = false;
 };
 
 CLI::App* add_report_command(CLI::App& app, ReportRequest& request);

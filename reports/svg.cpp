@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <pugixml.hpp>
@@ -31,12 +33,14 @@ std::optional<std::size_t> colour_of(const char* text) {
 
 void classes_for_colours(xml_node node) {
     std::string classes;
-    for (const auto& [attribute, letter] : {std::pair{"stroke", 's'}, std::pair{"fill", 'f'}, std::pair{"color", 'k'}}) {
+    for (const auto& [attribute, letter] :
+         {std::pair{"stroke", 's'}, std::pair{"fill", 'f'}, std::pair{"color", 'k'}}) {
         const auto colour = colour_of(node.attribute(attribute).value());
         if (!colour) continue;
         classes += fmt::format("{}e-{}{}", classes.empty() ? "" : " ", letter, *colour);
         node.remove_attribute(attribute);
     }
+    node.remove_attribute("class");
     if (!classes.empty()) node.append_attribute("class") = classes.c_str();
     if (std::strcmp(node.attribute("color").value(), "black") == 0) node.remove_attribute("color");
     node.remove_attribute("font-family");
@@ -71,6 +75,67 @@ void keep_used_symbols(xml_node svg) {
     }
 }
 
+// Numbers to a tenth of a pixel, single spaces.
+std::string coarser(std::string_view text) {
+    std::string result;
+    for (std::size_t k = 0; k < text.size();) {
+        const std::size_t end = std::min(text.find_first_not_of("0123456789.", k), text.size());
+        const std::string_view word = text.substr(k, end - k);
+        if (word.find('.') != word.npos) {
+            std::string number = fmt::format("{:.1f}", std::strtod(std::string(word).c_str(), nullptr));
+            if (number.ends_with(".0")) number.resize(number.size() - 2);
+            result += number;
+        } else if (!word.empty()) {
+            result += word;
+        } else if (const bool space = std::isspace(static_cast<unsigned char>(text[k])) != 0;
+                   !space || (!result.empty() && result.back() != ' ')) {
+            result.push_back(space ? ' ' : text[k]);
+        }
+        k = word.empty() ? k + 1 : end;
+    }
+    while (result.ends_with(' ')) result.pop_back();
+    return result;
+}
+
+bool same_attributes(const xml_node& a, const xml_node& b) {
+    auto x = a.first_attribute(), y = b.first_attribute();
+    for (; x && y; x = x.next_attribute(), y = y.next_attribute())
+        if (std::strcmp(x.name(), y.name()) != 0 || std::strcmp(x.value(), y.value()) != 0) return false;
+    return !x && !y;
+}
+
+// What nearly every group says again; said once, by the root.
+constexpr std::pair<const char*, const char*> usual[] = {{"fill", "none"},
+                                                         {"stroke", "currentColor"},
+                                                         {"stroke-linecap", "round"},
+                                                         {"stroke-linejoin", "round"},
+                                                         {"font-size", "11.00"}};
+
+// gnuplot opens a group for nearly every stroke; neighbours that look alike become one. Many figures go into
+// one page.
+void shrink(xml_node root) {
+    std::set<std::string> used;
+    for_each(root, [&](xml_node node) { used.insert(node.attribute("xlink:href").value()); });
+    for_each(root, [&](xml_node node) {
+        if (!used.contains(fmt::format("#{}", node.attribute("id").value()))) node.remove_attribute("id");
+        for (const auto& [name, value] : usual)
+            if (is(node, "g") && std::strcmp(node.attribute(name).value(), value) == 0)
+                node.remove_attribute(name);
+        for (const char* name : {"d", "points", "transform"})
+            if (auto attribute = node.attribute(name)) attribute = coarser(attribute.value()).c_str();
+    });
+    for (const auto& [name, value] : usual) root.append_attribute(name) = value;
+    for_each(root, [](xml_node node) {
+        xml_node before = node.previous_sibling();
+        if (!is(node, "g") || !is(before, "g") || !same_attributes(node, before) ||
+            node.attribute("transform"))
+            return;
+        // for_each is on its way to the next sibling: gather into the later one
+        while (const xml_node child = before.last_child()) node.prepend_move(child);
+        before.parent().remove_child(before);
+    });
+}
+
 std::string text(const xml_node& node) {
     std::ostringstream out;
     node.print(out, "", pugi::format_raw);
@@ -90,6 +155,11 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
     });
     keep_used_symbols(root);
     for_each(root, [](xml_node node) {
+        // the canvas it would paint if it were told a background
+        if (is(node, "rect") && std::strcmp(node.attribute("fill").value(), "none") == 0)
+            node.parent().remove_child(node);
+    });
+    for_each(root, [](xml_node node) {
         if (is(node, "g") && !node.first_child()) node.parent().remove_child(node);
     });
     classes_for_colours(root);
@@ -99,6 +169,7 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
         if (auto reference = node.attribute("xlink:href"))
             reference = fmt::format("#{}-{}", id, reference.value() + 1).c_str();
     });
+    shrink(root);
     const std::string title_id = id + "-title", description_id = id + "-desc";
     root.append_attribute("role") = "img";
     root.append_attribute("aria-labelledby") = fmt::format("{} {}", title_id, description_id).c_str();

@@ -32,7 +32,7 @@ std::optional<FigureGroup> group(const Field& branch) {
     if (shares.empty()) return std::nullopt;
     const std::string name = branch["name"].text();
     Figure figure{.id = fmt::format("gap-{}", slug(name)),
-                  .title = fmt::format("What the gap is made of, {}", name),
+                  .title = fmt::format("{}: contributions to the gap", name),
                   .description = {},
                   .x = "contribution at full load [% of the output’s range]",
                   .y = ""};

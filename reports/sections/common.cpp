@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/numbers.hpp"
+
 namespace elastocheck::reports {
 
 std::string ChannelInfo::label() const {
@@ -90,6 +92,15 @@ std::string enumerated(const std::vector<std::string>& words) {
     for (std::size_t k = 0; k < words.size(); ++k)
         text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
     return text;
+}
+
+std::string configuration(const Field& chosen) {
+    const std::string method = chosen["method"].text();
+    if (const auto steps = chosen.find("steps"))
+        return fmt::format("{}, {} steps", method, whole_number(steps->whole()));
+    if (const auto own = chosen.find("own_tolerance_m"))
+        return fmt::format("{}, told {}", method, setting(1e3 * own->number(), "mm"));
+    return method + " leg";
 }
 
 std::string slug(const std::string& text) {

@@ -46,6 +46,9 @@ double largest(const std::vector<double>& values);  // in size; NaN where one is
 // "a", "a and b", "a, b and c"
 std::string enumerated(const std::vector<std::string>& words);
 
+// "tangent, 60 steps"; "adaptive, told 0.1 mm"; "equilibrium leg". Of a point or a recommendation.
+std::string configuration(const Field& chosen);
+
 std::string slug(const std::string& text);  // for ids and file names: a-z, 0-9, -
 
 }  // namespace elastocheck::reports

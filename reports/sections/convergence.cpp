@@ -54,7 +54,7 @@ std::optional<FigureGroup> group(const std::string& branch, const Field& method,
         if (method[key].items().empty()) continue;
         const Levels levels = levels_of(method[key], steps.size());
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
-                      .title = fmt::format("Error over steps, {}", name),
+                      .title = fmt::format("{}: {}", branch, name),
                       .description = {},
                       .x = "steps per branch",
                       .y = "at the end of the branch [mm]",
@@ -63,7 +63,7 @@ std::optional<FigureGroup> group(const std::string& branch, const Field& method,
         figure.series = {
             {"error to the truth", Series::Style::line_points, vermilion, 6, rows(steps, levels.truth)},
             {"step error", Series::Style::line_points, blue, 4, rows(steps, levels.step)},
-            {"|Φ|, eq. (31)", Series::Style::line_points, green, 8, rows(steps, phi)}};
+            {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
         std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
         if (figure.series.empty()) continue;
         figure.description = fmt::format(

@@ -56,7 +56,7 @@ Profile equal_travel(const LegCurve& a, const LegCurve& b, const std::vector<Cha
 void append(Series& series, const std::vector<double>& load, const Profile& profile) {
     if (!series.rows.empty()) series.rows.emplace_back();
     for (const auto k : thinned(profile.size(), 60))
-        if (profile[k] > 1e-16) series.rows.push_back({load[k], profile[k]});
+        if (profile[k] >= 0) series.rows.push_back({load[k], profile[k]});
 }
 
 struct Curves {
@@ -86,12 +86,12 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
                      {fmt::format("published, equal travel [{}]", unit)}};
     const auto recommended = scene.find("recommended");
     if (recommended) {
-        curves.recommended.title = (*recommended)["text"].text() + ", at equal load";
-        table.columns.push_back({fmt::format("{} [{}]", (*recommended)["text"].text(), unit)});
+        curves.recommended.title = configuration(*recommended) + ", at equal load";
+        table.columns.push_back({fmt::format("{} [{}]", configuration(*recommended), unit)});
     }
     table.columns.push_back({fmt::format("references apart [{}]", unit)});
 
-    double low = 1, high = 1e-16;
+    double high = 1e-9;
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
@@ -134,36 +134,49 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
                   .title = angle ? "Angles: worst deviation" : "Positions: worst deviation",
                   .x = fmt::format("load [{}]", sweep.load_unit),
                   .y = fmt::format("deviation from equilibrium [{}]", unit),
-                  .log_y = true};
+                  .log_y = true,
+                  .height = 1.12};
     std::vector<std::string> names;
     for (const auto& c : channels) names.push_back(c.label());
-    for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
+    for (const auto* series : {&curves.load, &curves.travel, &curves.recommended})
         for (const auto& row : series->rows)
-            if (row.size() == 2) low = std::min(low, row[1]), high = std::max(high, row[1]);
-        if (!series->rows.empty()) figure.series.push_back(*series);
-    }
+            if (row.size() == 2) high = std::max(high, row[1]);
     double tolerance = NAN;
     if (const auto trade = scene.find("trade"))
         if (const auto asked = (*trade)["tolerance"].find(std::string(unit))) tolerance = asked->number();
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
-    if (!(high > low)) return std::nullopt;
-    figure.y_low = std::pow(10, std::floor(std::log10(low)));
+    // Six decades hold everything that matters; what is below touches the lower edge.
+    const double apart = peak(curves.references);
+    figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
+    for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
+        for (auto& row : series->rows)
+            if (row.size() == 2) row[1] = std::max(row[1], figure.y_low);
+        const bool seen = std::ranges::any_of(
+            series->rows, [&](const auto& row) { return row.size() == 2 && row[1] > figure.y_low; });
+        if (seen) figure.series.push_back(*series);
+    }
+    if (figure.series.empty()) return std::nullopt;
     figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.5)));
     if (std::isfinite(tolerance))
-        figure.bands.push_back(
-            {figure.y_low, tolerance, fmt::format("within {} {}", number(tolerance, 2), unit)});
+        figure.bands.push_back({figure.y_low, tolerance, "within " + setting(tolerance, unit)});
     figure.description = fmt::format(
         "Logarithmic plot over the load from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
         "published at equal load up to {}, at equal travel up to {} {}{}; the references are at most {} {} "
         "apart.",
         number(sweep.branches.back()["to"].number(), 4), number(sweep.branches.front()["to"].number(), 4),
         sweep.load_unit, enumerated(names), number(peak(curves.load), 2), number(peak(curves.travel), 2),
-        unit, std::isfinite(tolerance) ? fmt::format(", tolerance {} {}", number(tolerance, 2), unit) : "",
-        number(peak(curves.references), 2), unit);
+        unit, std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", number(apart, 2),
+        unit);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
-    return FigureGroup{fmt::format("{}: worst of {}.", sweep.name, enumerated(names)), {figure}, table};
+    return FigureGroup{fmt::format("Worst of {}. The references are at most {} {} apart.", enumerated(names),
+                                   number(apart, 2), unit),
+                       {figure},
+                       table};
 }
+
+// Below 1e-9 it is the arithmetic's.
+std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
 
 // One row per channel worth it: main ones, and of each joint the force and moment component that is worst.
 Table deviations(const Field& scene, const Field& branch) {
@@ -202,12 +215,12 @@ Table deviations(const Field& scene, const Field& branch) {
                                      number(d["range"].number(), 4),
                                      deviation_number(d["signed_max"].number()),
                                      number(d["at"].number(), 4),
-                                     number(d["rms"].number(), 2),
+                                     small(d["rms"].number()),
                                      percent(max / d["range"].number())};
         if (const auto t = travel.find(channel.name)) {
-            row.insert(row.end(), {deviation_number((*t)["signed_max"].number()),
-                                   number((*t)["at"].number(), 4), number((*t)["rms"].number(), 2),
-                                   percent((*t)["max"].number() / (*t)["range"].number())});
+            row.insert(row.end(),
+                       {deviation_number((*t)["signed_max"].number()), number((*t)["at"].number(), 4),
+                        small((*t)["rms"].number()), percent((*t)["max"].number() / (*t)["range"].number())});
         } else {
             row.insert(row.end(), {"–", "–", "–", "–"});
         }

@@ -53,6 +53,24 @@ void add_circle(Series& series, const Points& points, const View& view) {
     if (!points.empty()) series.rows.emplace_back();
 }
 
+// The same on both axes, so that squares look square: 1, 2 or 5 times a power of ten, four or so on the
+// longer.
+double tick(const Figure& figure) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (const auto& series : figure.series)
+        for (const auto& row : series.rows)
+            for (std::size_t axis = 0; axis < row.size(); ++axis) {
+                low[axis] = std::min(low[axis], row[axis]);
+                high[axis] = std::max(high[axis], row[axis]);
+            }
+    const double span = std::max(high[0] - low[0], high[1] - low[1]);
+    if (!(span > 0) || !std::isfinite(span)) return 0;
+    const double power = std::pow(10, std::floor(std::log10(span / 4)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (step * power >= span / 5) return step * power;
+    return 10 * power;
+}
+
 }  // namespace
 
 std::optional<Section> drawing_section(const Field& scene) {
@@ -101,7 +119,8 @@ std::optional<Section> drawing_section(const Field& scene) {
                       .equal_axes = true,
                       .reversed_x = view.reversed_x,
                       .reversed_y = view.reversed_y,
-                      .height = 1.25};
+                      .width = 0.75,
+                      .height = 1.3};
         for (std::size_t e = 0; e < ends.size() && e < std::size(moved); ++e) {
             Series series{fmt::format("{}, full load", ends[e].branch), Series::Style::thin, moved[e]};
             for (const auto& line : lines) add(series, ends[e].points, line, view);
@@ -118,6 +137,7 @@ std::optional<Section> drawing_section(const Field& scene) {
                 {p[static_cast<std::size_t>(view.horizontal)], p[static_cast<std::size_t>(view.vertical)]});
         for (auto* series : {&wheel, &rods, &bodies, &joints})
             if (!series->rows.empty()) figure.series.push_back(std::move(*series));
+        figure.x_tick = figure.y_tick = tick(figure);
         std::vector<std::string> names;
         for (const auto& end : ends) names.push_back(end.branch);
         figure.description = fmt::format(

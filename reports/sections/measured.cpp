@@ -21,7 +21,7 @@ std::optional<Series> measured_series(const Field& scene, const std::string& cha
         const auto start = (*measured)["design"].find(channel);
         if (start) first = start->number();
     }
-    Series series{"measured", Series::Style::points, purple, 8};
+    Series series{"measured", Series::Style::rings, purple, 5};
     for (std::size_t k = 0; k < x.size(); ++k) series.rows.push_back({x[k], y[k] - first});
     return series;
 }

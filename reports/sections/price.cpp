@@ -14,10 +14,9 @@ namespace {
 
 constexpr Colour colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
-std::string setting(const Field& point) {
+std::string setting_of(const Field& point) {
     if (const auto steps = point.find("steps")) return whole_number(steps->whole());
-    if (const auto own = point.find("own_tolerance_m"))
-        return fmt::format("{} mm", number(1e3 * own->number(), 1));
+    if (const auto own = point.find("own_tolerance_m")) return setting(1e3 * own->number(), "mm");
     return "";
 }
 
@@ -59,7 +58,7 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
         low = std::min(low, tolerance->number());
         figure.y_low = std::pow(10, std::floor(std::log10(low)));
         figure.bands.push_back(
-            {figure.y_low, tolerance->number(), fmt::format("within {} mm", number(tolerance->number(), 2))});
+            {figure.y_low, tolerance->number(), "within " + setting(tolerance->number(), "mm")});
         figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.2)));
     }
     if (const auto chosen = trade.find("recommendation")) {
@@ -67,7 +66,7 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
         const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
         if (at >= all.size()) (*chosen)["position"].fail("no such point");
         const double x = all[at][price].number(), y = all[at]["error"]["mm"].number();
-        if (x > 0 && y > 0) figure.marks.push_back({x, y, "recommended"});
+        if (x > 0 && y > 0) figure.series.push_back({"recommended", Series::Style::rings, ink, 5, {{x, y}}});
     }
     std::vector<std::string> names;
     for (const auto& s : figure.series)
@@ -95,7 +94,7 @@ Table ladder(const Field& trade) {
     if (times) table.columns.push_back({"time [ratio]"});
     table.columns.push_back({"remark", true});
     for (const auto& point : trade["points"].items()) {
-        std::vector<std::string> row{point["method"].text(), setting(point),
+        std::vector<std::string> row{point["method"].text(), setting_of(point),
                                      number(point["error"]["mm"].number(), 2)};
         if (angles)
             row.push_back(point["error"].find("deg") ? number(point["error"]["deg"].number(), 2) : "–");
@@ -138,11 +137,11 @@ std::optional<Section> price_section(const Field& scene) {
         section.figures.push_back(std::move(group));
     if (const auto chosen = trade->find("recommendation")) {
         const auto both = [](const Field& f) {
-            std::string text = number(f["mm"].number(), 2) + " mm";
-            if (const auto deg = f.find("deg")) text += fmt::format(", {} deg", number(deg->number(), 2));
+            std::string text = quantity(f["mm"].number(), "mm");
+            if (const auto deg = f.find("deg")) text += ", " + quantity(deg->number(), "deg");
             return text;
         };
-        section.words["chosen"] = {{"text", (*chosen)["text"].text()},
+        section.words["chosen"] = {{"text", configuration(*chosen)},
                                    {"low", both((*chosen)["low"])},
                                    {"high", both((*chosen)["high"])},
                                    {"band_from", (*chosen)["band_from"].text()},

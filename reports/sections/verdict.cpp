@@ -19,7 +19,7 @@ struct Worst {
     double max = -1, end = 0, range = 0;
 
     double share() const { return max / range; }
-    std::string text() const { return fmt::format("{} {}", number(max, 2), unit); }
+    std::string text() const { return quantity(max, unit); }
     json words() const {
         return {{"value", text()}, {"channel", channel}, {"branch", branch}, {"share", percent(share())}};
     }
@@ -87,9 +87,8 @@ json gap_words(const Field& scene) {
         }
     if (!std::isfinite(gap)) return nullptr;
     const double share = gap / worst;
-    json words = {{"value", fmt::format("{} {}", number(std::abs(gap), 2), unit)},
-                  {"share", percent(share)},
-                  {"share_number", share}};
+    json words = {
+        {"value", quantity(std::abs(gap), unit)}, {"share", percent(share)}, {"share_number", share}};
     if (std::abs(gap) <= std::max(band, nothing))
         words["none"] = true;
     else if (share < 0)
@@ -105,9 +104,15 @@ json gap_words(const Field& scene) {
     return words;
 }
 
-std::string accuracy(const Field& f) {
-    std::string text = fmt::format("{} mm", number(f["mm"].number(), 2));
-    if (const auto deg = f.find("deg")) text += fmt::format(" and {} deg", number(deg->number(), 2));
+// What it was off at most, on the ladder and when it was run again, and what the references leave open.
+std::string held(const Field& chosen) {
+    std::string text;
+    for (const char* unit : {"mm", "deg"}) {
+        const auto found = chosen["expected_error"].find(unit), again = chosen["confirmed_error"].find(unit);
+        if (!found || !again) continue;
+        if (!text.empty()) text += " and ";
+        text += quantity(std::max(found->number(), again->number()), unit);
+    }
     return text;
 }
 
@@ -123,24 +128,32 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     const Field tolerance = (*trade)["tolerance"];
     std::vector<std::string> asked;
     for (const char* unit : {"mm", "deg"})
-        if (const auto t = tolerance.find(unit))
-            asked.push_back(fmt::format("{} {}", number(t->number(), 2), unit));
+        if (const auto t = tolerance.find(unit)) asked.push_back(setting(t->number(), unit));
     json words = {{"asked", enumerated(asked)}};
     const auto chosen = trade->find("recommendation");
     if (!chosen) {
         words["none"] = true;
         return words;
     }
-    words["found"] = {{"text", (*chosen)["text"].text()},
+    words["found"] = {{"text", configuration(*chosen)},
                       {"method", (*chosen)["method"].text()},
-                      {"holds", accuracy((*chosen)["high"])},
+                      {"holds", held(*chosen)},
                       {"numbers", whole_number((*chosen)["confirmed_numbers"].whole())}};
-    if (const auto steps = chosen->find("steps")) words["found"]["steps"] = steps->whole();
+    if (const auto steps = chosen->find("steps"))
+        words["found"]["steps"] = whole_number(steps->whole());
+    else if (const auto own = chosen->find("own_tolerance_m"))
+        words["found"]["own"] = setting(1e3 * own->number(), "mm");
+    words["found"]["factorisations"] = [&] {
+        const auto all = (*trade)["points"].items();
+        const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
+        if (at >= all.size()) (*chosen)["position"].fail("no such point");
+        return whole_number(all[at]["factorisations"].whole());
+    }();
     const double ratio = (*chosen)["time_ratio"].number();
     if (std::isfinite(ratio)) words["found"]["time"] = time_ratio(ratio);
-    tiles.push_back({{"value", (*chosen)["text"].text()},
-                     {"label", fmt::format("cheapest within {}: holds {}", enumerated(asked),
-                                           accuracy((*chosen)["high"]))}});
+    tiles.push_back(
+        {{"value", configuration(*chosen)},
+         {"label", fmt::format("cheapest within {}: holds {}", enumerated(asked), held(*chosen))}});
     return words;
 }
 
@@ -199,11 +212,12 @@ std::optional<Section> verdict_section(const Field& scene) {
                 published["load"] = load->words();
                 if (travel && rate) {
                     published["travel"] = travel->words();
+                    published["travel"]["exact"] = travel->max < nothing;
                     published["but"] = !(std::abs(rate->off) <= 10 * travel->share());
                     published["rate"] = {{"value", percent(std::abs(rate->off))},
                                          {"soft", rate->off < 0},
                                          {"branch", rate->branch},
-                                         {"travel", fmt::format("{} mm", number(std::abs(rate->travel), 2))}};
+                                         {"travel", quantity(std::abs(rate->travel), "mm")}};
                 }
                 published["gap"] = gap_words(scene);
             }
@@ -224,8 +238,7 @@ std::optional<Section> verdict_section(const Field& scene) {
         words["published"] = published;
         std::vector<std::string> agreement;
         for (const char* unit : {"mm", "deg"})
-            if (const auto d = disagreement(scene, unit))
-                agreement.push_back(fmt::format("{} {}", number(*d, 2), unit));
+            if (const auto d = disagreement(scene, unit)) agreement.push_back(quantity(*d, unit));
         if (!agreement.empty()) words["agreement"] = enumerated(agreement);
     }
     words["recommendation"] = recommendation_words(scene, tiles);

@@ -145,7 +145,8 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(),
+              6u);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,320,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
