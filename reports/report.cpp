@@ -281,7 +281,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
     const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
                          const char* quantity, double value, double tolerance) {
         csv += fmt::format(
-            "{},{},{},{},{},{:.9g},{:.1g}\n", quoted(fs::path(scene["source"].text()).stem().string()),
+            "{},{},{},{},{},{:.12g},{:.1g}\n", quoted(fs::path(scene["source"].text()).stem().string()),
             quoted(branch["name"].text()), channel.name, channel.unit, quantity, value, tolerance);
     };
     for (const auto& scene : root["scenes"].items())
@@ -292,7 +292,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
                 const auto load = branch["deviation"]["at_equal_load"]["channels"].find(channel.name);
                 if (values.empty() || !load) continue;
                 // The references agree to far better; a deviation carries the rounding of its many steps.
-                const double range = (*load)["range"].number(), fine = 1e-7, coarse = 1e-7 + 1e-6 * range;
+                const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
                 row(scene, branch, channel, "equilibrium at full load", values.back(), fine);
                 row(scene, branch, channel, "published at equal load: deviation at full load",
                     (*load)["end"].number(), coarse);

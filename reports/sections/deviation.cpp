@@ -66,11 +66,10 @@ struct Curves {
     Series references{"references apart", Series::Style::thin, slate};
 };
 
-double peak(const Series& series) {
-    double most = 0;
-    for (const auto& row : series.rows)
-        if (row.size() == 2) most = std::max(most, row[1]);
-    return most;
+// Of what was compared; points that the other leg does not reach are NaN.
+void raise_peak(double& most, const Profile& profile) {
+    for (const double value : profile)
+        if (value > most) most = value;
 }
 
 // The worst deviation per unit: a figure with its table.
@@ -91,13 +90,16 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     }
     table.columns.push_back({fmt::format("references apart [{}]", unit)});
 
-    double high = 1e-9;
+    double high = 1e-9, load_peak = 0, travel_peak = 0, apart = 0;
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
         const Profile by_load = equal_load(a, b, channels), by_travel = equal_travel(a, b, channels),
                       doubt = equal_load(a, e, channels);
+        raise_peak(load_peak, by_load);
+        raise_peak(travel_peak, by_travel);
+        raise_peak(apart, doubt);
         append(curves.load, a.load, by_load);
         append(curves.travel, a.load, by_travel);
         append(curves.references, a.load, doubt);
@@ -146,7 +148,6 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         if (const auto asked = (*trade)["tolerance"].find(std::string(unit))) tolerance = asked->number();
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
     // Six decades hold everything that matters; what is below touches the lower edge.
-    const double apart = peak(curves.references);
     figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
     for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
         for (auto& row : series->rows)
@@ -164,9 +165,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         "published at equal load up to {}, at equal travel up to {} {}{}; the references are at most {} {} "
         "apart.",
         number(sweep.branches.back()["to"].number(), 4), number(sweep.branches.front()["to"].number(), 4),
-        sweep.load_unit, enumerated(names), number(peak(curves.load), 2), number(peak(curves.travel), 2),
-        unit, std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", number(apart, 2),
-        unit);
+        sweep.load_unit, enumerated(names), number(load_peak, 2), number(travel_peak, 2), unit,
+        std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", number(apart, 2), unit);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
     return FigureGroup{fmt::format("Worst of {}. The references are at most {} {} apart.", enumerated(names),
