@@ -76,21 +76,25 @@ std::vector<double> evaluate(const Model& model, const Equilibrium& state) {
     return values;
 }
 
-Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points) {
+std::optional<Vector3d> travel_direction(const Branch& branch) {
     Vector3d direction = Vector3d::Zero();
     for (const auto& load : branch.loads)
         if (const auto* force = std::get_if<DeadForce>(&load.kind)) direction += force->f;
+    if (direction.isZero(0)) return std::nullopt;
+    return direction.normalized();
+}
+
+Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points) {
+    const auto direction = travel_direction(branch);
     const auto leading = leading_point(model);
-    const bool has_travel = leading && !direction.isZero(0);
 
     Curve result;
     for (const auto& point : points) {
         result.load.push_back(point.load);
         result.values.push_back(evaluate(model, point));
-        if (has_travel)
+        if (direction && leading)
             result.travel.push_back(
-                millimetres *
-                direction.normalized().dot(position(point, *leading) - position(points.front(), *leading)));
+                millimetres * direction->dot(position(point, *leading) - position(points.front(), *leading)));
     }
     return result;
 }

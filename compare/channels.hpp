@@ -43,4 +43,7 @@ struct Curve {
 // force of the branch. For a vertical load that is wheel travel. A branch of moments alone has none.
 Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points);
 
+// Unit vector of the resultant force of a branch; none for moments alone.
+std::optional<Eigen::Vector3d> travel_direction(const Branch& branch);
+
 }  // namespace elastocheck::compare

@@ -95,15 +95,16 @@ bool Comparison::conclusive() const {
     return compared > 0;
 }
 
-LegRun run(const Model& model, const Branch& branch, Leg leg, int steps) {
-    const int N = steps > 0 ? steps : branch.steps;
+LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {
+    const int N = recursion.steps > 0 ? recursion.steps : branch.steps;
     std::vector<double> loads;
     for (int k = 0; k <= N; ++k) loads.push_back(branch.to * k / N);
 
-    LegRun run{leg, {}, {}, 0, {}};
+    LegRun run{leg, {}, {}, {}, 0, {}};
+    if (leg == Leg::recursive) run.method = recursion.method.name;
     const auto start = std::chrono::steady_clock::now();
     switch (leg) {
-        case Leg::recursive: run.path = recursive::solve(model, branch, {.steps = N}); break;
+        case Leg::recursive: run.path = recursive::solve(model, branch, recursion); break;
         case Leg::equilibrium: run.path = reference::equilibrium::solve(model, branch, loads); break;
         case Leg::energy: run.path = reference::energy::solve(model, branch, loads); break;
     }
@@ -132,7 +133,7 @@ Comparison compare(const Model& model, const Options& options) {
         b.branch = branch.name;
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
-            b.runs.push_back(run(model, branch, leg, options.steps));
+            b.runs.push_back(run(model, branch, leg, options.recursion));
         }
         const auto pair = [&](Leg a, Leg c) {
             const Curve& curve_a = b.runs[static_cast<std::size_t>(a)].curve;

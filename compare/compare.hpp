@@ -11,6 +11,7 @@
 #include "compare/deviation.hpp"
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/solve.hpp"
 
 namespace elastocheck::compare {
 
@@ -21,14 +22,16 @@ const char* name(Leg leg);
 // One leg along one branch.
 struct LegRun {
     Leg leg = Leg::recursive;
+    std::string method = {};  // of the recursion, else empty
     EquilibriumPath path;
     Curve curve;
     double seconds = 0;
     std::array<Residuals, legs.size()> judged;  // worst over the points, by the equations of each leg
 };
 
-// The recursion steps as the branch says (or `steps`); the references visit the same load factors.
-LegRun run(const Model& model, const Branch& branch, Leg leg, int steps = 0);
+// The recursion goes as `recursion` says, the published one unless it says otherwise; the references visit
+// the load factors of its steps.
+LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion = {});
 
 // Deviation of b from a.
 struct Pair {
@@ -65,7 +68,7 @@ struct Agreement {
 };
 
 struct Options {
-    int steps = 0;  // 0: as each branch says
+    recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
     Agreement agreement;
     std::function<void(std::string_view)> progress = {};  // told what is being solved
 };

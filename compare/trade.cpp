@@ -94,6 +94,8 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
     const double per_step = std::pow(unknowns, 3) * static_cast<double>(model.branches.size());
     for (const auto& method : recursive::methods) {
         const std::string label(method.name);
+        if (!options.methods.empty() && std::ranges::find(options.methods, label) == options.methods.end())
+            continue;
         if (!recursive::has_steps(method)) {
             for (int digits = 3; digits <= (method.series ? 12 : 9); ++digits)
                 all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
@@ -153,6 +155,12 @@ bool same_ladder(const TradePoint& a, const TradePoint& b) {
     return a.leg == b.leg && a.method == b.method && a.again == b.again;
 }
 
+// What is compared: time, or, where none was taken, the work that takes it.
+double price_of(const Trade& trade, const TradePoint& point) {
+    return trade.rounds > 0 ? point.ratio
+                            : static_cast<double>(point.work.factorisations + point.work.evaluations);
+}
+
 // Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at
 // steps too few to show that the method is unstable, is good by luck.
 bool eligible(const Trade& trade, std::size_t k) {
@@ -162,16 +170,16 @@ bool eligible(const Trade& trade, std::size_t k) {
         const TradePoint& point = trade.points[finer];
         if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
     }
-    return std::isfinite(trade.points[k].ratio);
+    return std::isfinite(price_of(trade, trade.points[k]));
 }
 
 // The cheapest by time; within the noise the one with fewer factorisations, then fewer solves.
 std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::size_t>& candidates) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto k : candidates) least = std::min(least, trade.points[k].ratio);
+    for (const auto k : candidates) least = std::min(least, price_of(trade, trade.points[k]));
     std::optional<std::size_t> best;
     for (const auto k : candidates) {
-        if (!(trade.points[k].ratio <= least * (1 + trade.noise))) continue;
+        if (!(price_of(trade, trade.points[k]) <= least * (1 + trade.noise))) continue;
         const auto key = [&](std::size_t i) {
             const Work& work = trade.points[i].work;
             return std::tuple{work.factorisations, work.solves, work.evaluations};
@@ -331,8 +339,8 @@ std::vector<bool> pareto_front(std::span<const WorkError> points) {
 }
 
 Trade trade(const Model& model, const TradeOptions& options) {
-    if (options.points < 1 || options.rounds < 1)
-        throw std::invalid_argument("trade: points and rounds must be positive");
+    if (options.points < 1 || options.rounds < 0)
+        throw std::invalid_argument("trade: points must be positive and rounds not negative");
     const auto tell = [&](std::string_view what) {
         if (options.progress) options.progress(what);
     };
@@ -390,7 +398,7 @@ Trade trade(const Model& model, const TradeOptions& options) {
         });
     }
 
-    if (result.points.front().outcome == Outcome::converged) {
+    if (options.rounds > 0 && result.points.front().outcome == Outcome::converged) {
         tell("times");
         const Times times = take_turns(jobs, options.rounds);
         for (std::size_t j = 0; j < timed.size(); ++j) {

@@ -82,10 +82,11 @@ struct Recommendation {
 
 struct TradeOptions {
     Tolerance tolerance{0.01, 0.001};
+    std::vector<std::string> methods = {};  // of the recursion; empty: all
     int points = 10;  // output points per branch, beside load factor 0; the ladder starts with as many steps
     int most_steps = 2560;
     double work_budget = 5e8;  // of one configuration: steps · branches · (unknowns)³
-    int rounds = 7;            // of timing
+    int rounds = 7;            // of timing; 0: no times, the price is factorisations + evaluations
     std::function<void(std::string_view)> progress = {};
 };
 

@@ -33,9 +33,16 @@ struct Probe {
     Point at;
 };
 
+// A named position of the design, ground axes [m]. For drawings; no leg sees it.
+struct Hardpoint {
+    std::string name;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
 struct Scene {
     std::string name;
     std::string source;  // file it was read from, empty when built in code
+    std::vector<Hardpoint> hardpoints;
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<Elastic> elastics;

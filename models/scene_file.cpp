@@ -47,6 +47,7 @@ Scene read_tree(const Cursor& scene) {
     result.name = scene.require("name").text("the name of the scene");
     const Definitions defs = read_definitions(scene);
     result.bodies = defs.bodies;
+    for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
     const auto section = [&](const char* key, auto& list, auto read) {
         if (const auto field = scene.optional(key))

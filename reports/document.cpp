@@ -1,5 +1,7 @@
 #include "reports/document.hpp"
 
+#include "reports/drawing.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -62,6 +64,7 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
         values[channels[c].name] = column;
     }
     return {{"leg", name(run.leg)},
+            {"method", run.method},
             {"outcome", elastocheck::name(run.path.outcome)},
             {"detail", run.path.detail},
             {"counts",
@@ -97,6 +100,12 @@ json reading_json(const compare::Reading& reading, const compare::Comparison& al
     return result;
 }
 
+const char* load_unit(const Branch& branch) {
+    for (const auto& load : branch.loads)
+        if (std::holds_alternative<DeadForce>(load.kind)) return "N";
+    return "N·m";
+}
+
 json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
     return {{"of", name(pair.b)},
             {"from", name(pair.a)},
@@ -106,18 +115,24 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
 
 }  // namespace
 
-json document_head(const Scene& scene, std::string_view input, const Model& model,
-                   const recursive::Diagnosis& diagnosis, const Provenance& provenance) {
+json document(const std::string& reproduce, const Provenance& provenance) {
     return {{"schema", result_schema},
-            {"scene", {{"name", scene.name}, {"source", scene.source}, {"input_hash", input_hash(input)}}},
+            {"reproduce", reproduce},
             {"provenance", provenance_json(provenance)},
+            {"scenes", json::array()}};
+}
+
+json scene_document(const Scene& scene, std::string_view input, const Model& model,
+                    const recursive::Diagnosis& diagnosis) {
+    return {{"name", scene.name},
+            {"source", scene.source},
+            {"input_hash", input_hash(input)},
             {"model", model_json(model, diagnosis)}};
 }
 
-json document(const Scene& scene, std::string_view input, const Model& model,
-              const recursive::Diagnosis& diagnosis, const compare::Comparison& comparison,
-              const Provenance& provenance) {
-    json channels = json::array(), branches = json::array(), reasons = json::array();
+void add_comparison(json& scene_document, const Scene& scene, const Model& model,
+                    const compare::Comparison& comparison) {
+    json channels = json::array(), branches = json::array();
     for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
         const auto& channel = comparison.channels[c];
         channels.push_back({{"name", channel.name},
@@ -125,23 +140,38 @@ json document(const Scene& scene, std::string_view input, const Model& model,
                             {"main", channel.main},
                             {"unique", static_cast<bool>(comparison.unique[c])}});
     }
-    for (const auto& branch : comparison.branches) {
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const auto& branch = comparison.branches[b];
         json legs = json::array();
         for (const auto& run : branch.runs) legs.push_back(run_json(run, comparison.channels));
-        for (const auto& reason : branch.inconclusive) reasons.push_back(branch.branch + ": " + reason);
+        json load_names = json::array();
+        for (const auto& load : model.branches[b].loads) load_names.push_back(load.name);
         branches.push_back({{"name", branch.branch},
+                            {"to", model.branches[b].to},
+                            {"load_unit", load_unit(model.branches[b])},
+                            {"loads", load_names},
                             {"legs", legs},
                             {"deviation", pair_json(branch.deviation, comparison)},
                             {"cross_check", pair_json(branch.cross_check, comparison)},
-                            {"reference_uncertainty", pair_json(branch.uncertainty, comparison)}});
+                            {"reference_uncertainty", pair_json(branch.uncertainty, comparison)},
+                            {"inconclusive", branch.inconclusive}});
     }
-    json result = document_head(scene, input, model, diagnosis, provenance);
-    result["verdict"] = {{"conclusive", comparison.conclusive()},
-                         {"numbers_compared", comparison.compared},
-                         {"reasons", reasons}};
-    result["channels"] = channels;
-    result["branches"] = branches;
-    return result;
+    scene_document["channels"] = channels;
+    scene_document["branches"] = branches;
+    scene_document["drawing"] = drawing_json(scene, model, comparison);
+}
+
+std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
+    std::vector<std::string> reasons;
+    for (const auto& branch : comparison.branches)
+        for (const auto& reason : branch.inconclusive) reasons.push_back(branch.branch + ": " + reason);
+    if (comparison.compared == 0) reasons.emplace_back("nothing was compared");
+    return reasons;
+}
+
+void add_verdict(json& scene_document, int numbers_compared, const std::vector<std::string>& reasons) {
+    scene_document["verdict"] = {
+        {"conclusive", reasons.empty()}, {"numbers_compared", numbers_compared}, {"reasons", reasons}};
 }
 
 }  // namespace elastocheck::reports

@@ -12,18 +12,26 @@
 namespace elastocheck::reports {
 
 // Raised when a field changes its meaning or vanishes; new fields may appear without.
-inline constexpr const char* result_schema = "elastocheck/result/1";
+inline constexpr const char* result_schema = "elastocheck/result/2";
 
-// Lengths in mm, angles in deg, forces in N, moments in N·m, as every key or neighbouring "unit" says. A
-// number that is not finite is null.
+// {schema, reproduce, provenance, scenes: [...]}. Lengths in mm, angles in deg, forces in N, moments in N·m,
+// as every key or neighbouring "unit" says. A number that is not finite is null. `reproduce` is the command
+// that made it.
+nlohmann::ordered_json document(const std::string& reproduce, const Provenance& provenance);
 
-// What every result.json begins with: schema, scene, provenance, model as compiled.
-nlohmann::ordered_json document_head(const Scene& scene, std::string_view input, const Model& model,
-                                     const recursive::Diagnosis& diagnosis, const Provenance& provenance);
+// A scene in it: name, source, hash, model as compiled. What was computed is added by those below, each under
+// a key of its own; a part that was not asked for is absent.
+nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input, const Model& model,
+                                      const recursive::Diagnosis& diagnosis);
 
-// The head and a comparison.
-nlohmann::ordered_json document(const Scene& scene, std::string_view input, const Model& model,
-                                const recursive::Diagnosis& diagnosis, const compare::Comparison& comparison,
-                                const Provenance& provenance);
+// "channels" and "branches": every point of every leg, deviations, certificates; "drawing": where the
+// hardpoints are at the design position and along the branches.
+void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
+                    const compare::Comparison& comparison);
+
+// "verdict": whether all that was computed could be judged, on how many numbers, and why not.
+void add_verdict(nlohmann::ordered_json& scene_document, int numbers_compared,
+                 const std::vector<std::string>& reasons);
+std::vector<std::string> reasons_of(const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

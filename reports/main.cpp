@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "compare/compare.hpp"
+#include "compare/order_study.hpp"
 #include "compare/precision.hpp"
+#include "compare/rates.hpp"
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
@@ -21,9 +23,15 @@
 #include "reports/csv.hpp"
 #include "reports/document.hpp"
 #include "reports/exit_code.hpp"
+#include "reports/field.hpp"
 #include "reports/files.hpp"
 #include "reports/gate_command.hpp"
+#include "reports/gnuplot.hpp"
 #include "reports/inspection.hpp"
+#include "reports/measurement.hpp"
+#include "reports/order_tables.hpp"
+#include "reports/recursion_options.hpp"
+#include "reports/report_command.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/tables.hpp"
 #include "reports/trade_tables.hpp"
@@ -32,6 +40,7 @@ namespace {
 
 using namespace elastocheck;
 using namespace elastocheck::reports;
+using json = nlohmann::ordered_json;
 
 std::string read_text(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
@@ -45,26 +54,79 @@ void progress(std::string_view what) {
     if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", what);
 }
 
+// The command as it was given, for a shell.
+std::string command_line;
+std::string quoted_command(int argc, char** argv) {
+    std::string line = "elastocheck";
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view word = argv[k];
+        const bool plain = !word.empty() && word.find_first_not_of(
+                                                "abcdefghijklmnopqrstuvwxyz"
+                                                "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                                "-_./=,:+@%") == word.npos;
+        line += ' ';
+        if (plain) {
+            line += word;
+            continue;
+        }
+        line += '\'';
+        for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += '\'';
+    }
+    return line;
+}
+
+void write_result(const std::filesystem::path& folder, json part) {
+    json result = reports::document(command_line, reports::provenance());
+    result["scenes"].push_back(std::move(part));
+    reports::write_whole(folder / "result.json", result.dump(1) + "\n");
+}
+
 int inspect(const std::string& file) {
     const Model model = compile(read_scene(file));
     fmt::print("{}", reports::inspection(model, recursive::diagnose(model)));
     return fine;
 }
 
-int solve(const std::string& file, compare::Leg leg, int steps, const std::string& output) {
+// The rates of a polynomial branch beside its curve: travel and main channels per unit of the load factor.
+std::string rates_csv(const Model& model, const recursive::Options& how) {
+    std::string csv = "branch,load factor,travel [mm per unit]";
+    for (const auto& channel : compare::channels(model))
+        if (channel.main) csv += fmt::format(",{} [{} per unit]", channel.name, symbol(channel.unit));
+    csv += "\n";
+    for (const auto& branch : model.branches) {
+        const auto path = recursive::series::follow(model, branch, how.series);
+        const int steps = how.steps > 0 ? how.steps : branch.steps;
+        for (int k = 0; k <= steps; ++k) {
+            const double load = branch.to * k / steps;
+            const auto place = recursive::series::find(path, load);
+            if (!place) break;
+            const auto rates = compare::channel_rates(model, branch, path, *place);
+            csv += fmt::format("{},{:.17g},{:.17g}", branch.name, load, rates.travel);
+            for (const double slope : rates.slope) csv += fmt::format(",{:.17g}", slope);
+            csv += "\n";
+        }
+    }
+    return csv;
+}
+
+int solve(const std::string& file, compare::Leg leg, const recursive::Options& how, const std::string& rates,
+          const std::string& output) {
     const Model model = compile(read_scene(file));
     std::string csv = reports::curves_header(compare::channels(model));
     int code = fine;
     for (const auto& branch : model.branches) {
         progress(branch.name);
-        const compare::LegRun run = compare::run(model, branch, leg, steps);
+        const compare::LegRun run = compare::run(model, branch, leg, how);
         csv += reports::curves_rows(branch.name, run);
         if (run.path.outcome == Outcome::converged) continue;
         progress("");
-        fmt::print(stderr, "{}: {}: {}\n", name(leg), name(run.path.outcome), run.path.detail);
+        fmt::print(stderr, "{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
+                   name(run.path.outcome), run.path.detail);
         code = could_not_judge;
     }
     progress("");
+    if (!rates.empty()) reports::write_whole(rates, rates_csv(model, how));
     if (output.empty())
         fmt::print("{}", csv);
     else
@@ -72,20 +134,21 @@ int solve(const std::string& file, compare::Leg leg, int steps, const std::strin
     return code;
 }
 
-int compare_legs(const std::string& file, int steps, const std::string& folder) {
+int compare_legs(const std::string& file, const recursive::Options& how, const std::string& folder) {
     const Scene scene = read_scene(file);
     const Model model = compile(scene);
     compare::Options options;
-    options.steps = steps;
+    options.recursion = how;
     options.progress = progress;
     const compare::Comparison comparison = compare::compare(model, options);
     progress("");
     fmt::print("{}", reports::tables(model, comparison));
     if (!folder.empty()) {
-        const auto result = reports::document(scene, read_text(file), model, recursive::diagnose(model),
-                                              comparison, reports::provenance());
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        reports::add_comparison(part, scene, model, comparison);
+        reports::add_verdict(part, comparison.compared, reports::reasons_of(comparison));
         const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        write_result(base, std::move(part));
         reports::write_whole(base / "curves.csv", reports::curves_csv(comparison));
         fmt::print("Written: {0}/result.json, {0}/curves.csv\n", folder);
     }
@@ -109,21 +172,44 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     options.methods = methods_named(names);
     if (!steps.empty()) options.steps = steps;
     options.progress = progress;
-    const compare::Study study = compare::study(model, options);
-    const auto attribution = compare::attribute_gap(model, progress);
-    progress("");
-    fmt::print("{}", reports::study_tables(model, study, attribution));
-    if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
-                                             reports::provenance());
-        result["convergence"] = reports::study_json(study, attribution);
-        const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
-        reports::write_whole(base / "convergence.csv", reports::study_csv(study));
-        reports::write_whole(base / "attribution.csv", reports::attribution_csv(study, attribution));
-        fmt::print("Written: {0}/result.json, {0}/convergence.csv, {0}/attribution.csv\n", folder);
+    compare::Study study;
+    std::vector<compare::BranchAttribution> attribution;
+    if (!options.methods.empty()) {
+        study = compare::study(model, options);
+        attribution = compare::attribute_gap(model, progress);
     }
-    return study.conclusive() ? fine : could_not_judge;
+    std::vector<compare::BranchOrders> orders;
+    if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
+        orders = compare::order_study(model, {.progress = progress});
+    progress("");
+    if (!options.methods.empty()) fmt::print("{}", reports::study_tables(model, study, attribution));
+    fmt::print("{}", reports::order_table(orders));
+    const bool conclusive =
+        (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
+    if (!folder.empty()) {
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        const std::filesystem::path base(folder);
+        std::string written = "result.json";
+        const auto keep = [&](const char* what, const std::string& csv) {
+            reports::write_whole(base / what, csv);
+            written += fmt::format(", {}/{}", folder, what);
+        };
+        if (!options.methods.empty()) {
+            part["convergence"] = reports::study_json(study, attribution);
+            keep("convergence.csv", reports::study_csv(study));
+            keep("attribution.csv", reports::attribution_csv(study, attribution));
+        }
+        if (!orders.empty()) {
+            part["orders"] = reports::orders_json(orders);
+            keep("orders.csv", reports::orders_csv(orders));
+        }
+        auto reasons = study.inconclusive;
+        if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
+        reports::add_verdict(part, 0, reasons);
+        write_result(base, std::move(part));
+        fmt::print("Written: {}/{}\n", folder, written);
+    }
+    return conclusive ? fine : could_not_judge;
 }
 
 int trade(const std::string& file, const std::string& tolerance, const std::string& folder) {
@@ -137,12 +223,13 @@ int trade(const std::string& file, const std::string& tolerance, const std::stri
     progress("");
     fmt::print("{}\n{}", reports::trade_table(model, trade), reports::precision_table(precision));
     if (!folder.empty()) {
-        auto result = reports::document_head(scene, read_text(file), model, recursive::diagnose(model),
-                                             reports::provenance());
-        result["trade"] = reports::trade_json(trade);
-        result["precision"] = reports::precision_json(precision);
+        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        part["trade"] = reports::trade_json(trade);
+        part["precision"] = reports::precision_json(precision);
+        reports::add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
+                             trade.inconclusive);
         const std::filesystem::path base(folder);
-        reports::write_whole(base / "result.json", result.dump(1) + "\n");
+        write_result(base, std::move(part));
         reports::write_whole(base / "trade.csv", reports::trade_csv(trade));
         reports::write_whole(base / "precision.csv", reports::precision_csv(precision));
         fmt::print("Written: {0}/result.json, {0}/trade.csv, {0}/precision.csv\n", folder);
@@ -192,11 +279,15 @@ int run(int argc, char** argv) {
         "Scene files are described in models/scenes/README.md.");
 
     std::string scene, output;
-    int steps = 0;
-    std::string method = name(compare::Leg::recursive);
-    std::vector<std::string> methods;
-    methods.reserve(compare::legs.size());
+    // A leg, or a method of the recursion; its first one, the published, goes by the leg's name too.
+    std::vector<std::string> methods, rungs_of_recursion;
     for (const auto leg : compare::legs) methods.emplace_back(name(leg));
+    for (const auto& rung : recursive::methods) {
+        methods.emplace_back(rung.name);
+        rungs_of_recursion.emplace_back(rung.name);
+    }
+    RecursionRequest recursion_request;
+    std::string method = "published", rates;
 
     auto* inspect_command = app.add_subcommand(
         "inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
@@ -210,21 +301,33 @@ int run(int argc, char** argv) {
     const GateCommand gate_command = add_gate(app, progress);
     for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
         command->add_option("SCENE", scene, "scene file (YAML)")->required();
-    for (auto* command : {solve_command, compare_command})
-        command->add_option("--steps", steps, "load steps per branch (default: as the scene says)")
-            ->check(CLI::Range(1, 10'000'000));
-    solve_command->add_option("--method", method, "recursive (default), equilibrium or energy")
+    for (auto* command : {solve_command, compare_command}) add_recursion_options(*command, recursion_request);
+    solve_command
+        ->add_option(
+            "--method", method,
+            "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive or "
+            "series; equilibrium; energy")
         ->check(CLI::IsMember(methods).description(""));
+    compare_command
+        ->add_option(
+            "--method", method,
+            "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
+            "or series")
+        ->check(CLI::IsMember(rungs_of_recursion).description(""));
+    solve_command->add_flag("--arc-length", recursion_request.arc_length,
+                            "series: follow the path by arc length, through limit points");
+    solve_command->add_option("--rates", rates,
+                              "series: write the derivatives of travel and outputs to this CSV file");
     solve_command->add_option("-o,--output", output, "write the CSV to this file instead");
     compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv");
 
     std::vector<std::string> rungs{"published"}, known_rungs{"all"};
     for (const auto& rung : recursive::methods)
-        if (recursive::has_steps(rung)) known_rungs.emplace_back(rung.name);
+        if (!rung.adaptive) known_rungs.emplace_back(rung.name);
     std::vector<int> levels;
     converge_command
         ->add_option("--method", rungs,
-                     "published (default), closed, balanced, tangent, chord, midpoint, or all")
+                     "published (default), closed, balanced, tangent, chord, midpoint, series, or all")
         ->delimiter(',')
         ->check(CLI::IsMember(known_rungs).description(""));
     converge_command
@@ -238,14 +341,25 @@ int run(int argc, char** argv) {
     trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
     trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv");
 
+    ReportRequest request;
+    const auto* report_command = add_report_command(app, request);
+
     try {
+        command_line = quoted_command(argc, argv);
         app.parse(argc, argv);
+        if (*report_command) return report(request, command_line, progress);
         if (*inspect_command) return inspect(scene);
-        if (*solve_command) {
-            const auto leg = static_cast<compare::Leg>(std::ranges::find(methods, method) - methods.begin());
-            return solve(scene, leg, steps, output);
+        if (*solve_command || *compare_command) {
+            const auto leg =
+                std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });
+            const bool reference = leg != compare::legs.end() && *leg != compare::Leg::recursive;
+            if (leg == compare::legs.end()) recursion_request.method = method;
+            const recursive::Options how = recursion(recursion_request);
+            if (!rates.empty() && !how.method.series)
+                throw std::invalid_argument("--rates: only with --method series");
+            if (*compare_command) return compare_legs(scene, how, output);
+            return solve(scene, reference ? *leg : compare::Leg::recursive, how, rates, output);
         }
-        if (*compare_command) return compare_legs(scene, steps, output);
         if (*gate_command.parsed) return gate_command.run();
         if (*converge_command) return converge(scene, rungs, levels, output);
         return trade(scene, tolerance, output);
@@ -268,6 +382,12 @@ int main(int argc, char** argv) {
     } catch (const SceneError& error) {
         return fail(bad_input, error.what());
     } catch (const reports::FileError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::ResultError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::MeasurementError& error) {
+        return fail(bad_input, error.what());
+    } catch (const reports::PlotError& error) {
         return fail(bad_input, error.what());
     } catch (const std::invalid_argument& error) {
         return fail(bad_input, error.what());

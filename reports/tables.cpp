@@ -96,7 +96,8 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
                    "factor.", "iter.", "eval.", "ms",
                    "its states in the others' equations: force N, moment N·m, constraint mm");
     for (const auto& run : branch.runs) {
-        fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ", name(run.leg),
+        fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ",
+                       run.method.empty() || run.method == "published" ? name(run.leg) : run.method,
                        elastocheck::name(run.path.outcome), run.path.points.size(),
                        run.path.counts.factorisations, run.path.counts.iterations,
                        run.path.counts.evaluations, 1e3 * run.seconds);

@@ -77,10 +77,14 @@ void adaptive() {  // 0.01 mm, 0.001 deg
     });
 }
 
-void series(int record) {  // to the last bit it can, 1e-12 m
+void series() {  // 1e-12 m
+    points([](const Branch& b, const auto&) {
+        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("series"), .steps = 300});
+    });
+}
+void branches(int order) {  // 1e-12 m, nothing evaluated
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(recursive::solve(
-            mcpherson(), branch, {.method = *recursive::find_method("series"), .record = record}));
+        benchmark::DoNotOptimize(recursive::series::follow(mcpherson(), branch, {.order = order}));
 }
 void published() { sweep(recursive::Method{}); }
 
@@ -119,10 +123,10 @@ int main(int argc, char** argv) {
     add("points/equilibrium", equilibrium, equilibrium);
     add("points/energy", energy, equilibrium);
     add("points/adaptive", adaptive, equilibrium);
-    add(
-        "points/series", [] { series(300); }, equilibrium);
-    add(
-        "branches/series", [] { series(1); }, published);
+    add("points/series", series, equilibrium);
+    for (const int order : {8, 12, 16, 20, 24})
+        add(
+            "branches/series order " + std::to_string(order), [order] { branches(order); }, published);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

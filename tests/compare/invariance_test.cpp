@@ -10,9 +10,26 @@
 namespace elastocheck::compare {
 namespace {
 
-class EveryLeg : public testing::TestWithParam<Leg> {
+// A leg, and of the recursion a method.
+struct Way {
+    Leg leg;
+    const char* method;
+};
+constexpr Way ways[] = {{Leg::recursive, "published"},
+                        {Leg::recursive, "midpoint"},
+                        {Leg::recursive, "series"},
+                        {Leg::equilibrium, ""},
+                        {Leg::energy, ""}};
+
+class EveryLeg : public testing::TestWithParam<Way> {
   protected:
-    double bound() const { return GetParam() == Leg::energy ? 1e-7 : 1e-9; }
+    double bound() const { return GetParam().leg == Leg::energy ? 1e-7 : 1e-9; }
+
+    static LegRun solve(const Model& model, const Branch& branch) {
+        recursive::Options how{.steps = 20};
+        if (const auto method = recursive::find_method(GetParam().method)) how.method = *method;
+        return run(model, branch, GetParam().leg, how);
+    }
 
     // Every output of `other` at all points of all branches against `sign` times those of `scene`; by name.
     void expect_same(const Scene& scene, const Scene& other,
@@ -20,8 +37,7 @@ class EveryLeg : public testing::TestWithParam<Leg> {
         const Model a = compile(scene), b = compile(other);
         const auto names_a = channels(a), names_b = channels(b);
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
-            const LegRun run_a = run(a, a.branches[k], GetParam(), 20),
-                         run_b = run(b, b.branches[k], GetParam(), 20);
+            const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
             ASSERT_EQ(run_a.path.outcome, Outcome::converged) << run_a.path.detail;
             ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
             double largest[4] = {};  // of each unit: displacements, angles, forces, moments
@@ -80,8 +96,7 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
         const Model a = compile(support::scene(name)),
                     b = compile(support::moved(support::scene(name), R, t));
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
-            const LegRun run_a = run(a, a.branches[k], GetParam(), 20),
-                         run_b = run(b, b.branches[k], GetParam(), 20);
+            const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
             ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
             const auto list = channels(a);
             for (std::size_t c = 0; c + 2 < list.size(); ++c) {
@@ -109,8 +124,9 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(legs),
-                         [](const auto& leg) { return std::string(name(leg.param)); });
+INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(ways), [](const auto& way) {
+    return std::string(*way.param.method != 0 ? way.param.method : name(way.param.leg));
+});
 
 }  // namespace
 }  // namespace elastocheck::compare

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "compare/precision.hpp"
+#include "compare/profile.hpp"
 #include "compare/timing.hpp"
 #include "models/compile.hpp"
 #include "recursive/solve.hpp"
@@ -319,6 +320,7 @@ TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
         return nan;
     };
     TradeOptions options = quick({0.01}, 10);
+    options.methods = {"tangent", "adaptive"};
     options.tolerance.mm = 1.003 * error(trade(model, options));
     options.rounds = 7;
     const Trade result = trade(model, options);
@@ -400,6 +402,51 @@ TEST(Trade, TheEquilibriumLegIsTimedTwiceAndStandsAtOne) {
 }
 
 // ---- the arithmetic
+
+TEST(Trade, WithoutTimesTheRecommendationIsTheOneWithTheLeastWork) {
+    TradeOptions options = quick({0.01, 0.001}, 640);
+    options.rounds = 0;
+    const Model model = shipped("mcpherson");
+    const Trade result = trade(model, options);
+    ASSERT_TRUE(result.recommendation);
+    const auto work = [](const TradePoint& p) { return p.work.factorisations + p.work.evaluations; };
+    const TradePoint& chosen = result.points[result.recommendation->point];
+    for (const auto& point : result.points) {
+        EXPECT_TRUE(std::isnan(point.ratio) && std::isnan(point.work.seconds)) << describe(point);
+        if (point.method == "tangent" && share_of(result.tolerance, point.error) <= 1) {
+            EXPECT_LE(work(chosen), work(point)) << describe(point);
+        }
+    }
+    EXPECT_LE(result.recommendation->confirmed.mm, 0.01);
+    options.rounds = -1;
+    EXPECT_THROW((void)trade(model, options), std::invalid_argument);
+}
+
+TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
+    const Model model = shipped("mcpherson");
+    const auto channels = compare::channels(model);
+    for (const auto& branch : model.branches) {
+        const Profile found = profile(model, branch, {.method = "tangent", .steps = 40});
+        ASSERT_EQ(found.load.size(), 41u);
+        EXPECT_EQ(found.load.back(), branch.to);
+        const auto truth = reference::energy::solve(model, branch, std::vector{0.0, branch.to});
+        const auto path =
+            recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 40});
+        const auto u = evaluate(model, truth.points.back()), v = evaluate(model, path.points.back());
+        double mm = 0, deg = 0;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (channels[c].main)
+                (channels[c].unit == Unit::deg ? deg : mm) =
+                    std::max(channels[c].unit == Unit::deg ? deg : mm, std::abs(v[c] - u[c]));
+        EXPECT_NEAR(found.mm.back(), mm, 1e-6);
+        EXPECT_NEAR(found.deg.back(), deg, 1e-6);
+        EXPECT_GT(found.mm.back(), 1e-4);
+        for (const double error : profile(model, branch, {.leg = Leg::equilibrium}).mm) EXPECT_EQ(error, 0);
+    }
+    const auto adaptive = profile(model, model.branches[0], {.method = "adaptive", .own_tolerance = 1e-6});
+    EXPECT_EQ(adaptive.load.size(), static_cast<std::size_t>(model.branches[0].steps) + 1);
+    EXPECT_LE(*std::ranges::max_element(adaptive.mm), 1e-3);
+}
 
 TEST(Precision, FloorOfFloatIsAboveThatOfDoubleIsAboveThatOfLongDouble) {
     PrecisionOptions options;

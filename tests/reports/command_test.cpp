@@ -1,6 +1,9 @@
 // The command as a user runs it: output, exit codes, typos.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command.hpp"
@@ -50,6 +53,65 @@ TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
+TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
+    const Folder folder;
+    const std::string scene = scenes + "/mcpherson.yaml", rates = (folder.path / "rates.csv").string();
+    const Said solved = elastocheck_says("solve " + scene + " --method series --steps 10 --rates " + rates);
+    EXPECT_EQ(solved.code, 0) << solved.err;
+    EXPECT_EQ(std::ranges::count(solved.out, '\n'), 1 + 2 * 11);
+    EXPECT_TRUE(
+        contains(text_of(rates), "branch,load factor,travel [mm per unit],wheel_centre_x [mm per unit]"));
+
+    const Said compared = elastocheck_says("compare " + scene + " --method series --steps 10 -o " +
+                                           (folder.path / "compared").string());
+    EXPECT_EQ(compared.code, 0) << compared.err;
+    EXPECT_TRUE(contains(compared.out, "series       converged")) << compared.out;
+    const auto result = nlohmann::json::parse(text_of(folder.path / "compared/result.json"));
+    const auto& leg = result["scenes"][0]["branches"][0]["legs"][0];
+    EXPECT_EQ(leg["method"], "series");
+    const auto& deviation = result["scenes"][0]["branches"][0]["deviation"]["at_equal_load"]["channels"];
+    EXPECT_LE(deviation["toe"]["max"], 1e-9);
+
+    const Said studied =
+        elastocheck_says("converge " + scene + " --method series -o " + (folder.path / "studied").string());
+    EXPECT_EQ(studied.code, 0) << studied.err;
+    EXPECT_TRUE(contains(studied.out, "the series over its order")) << studied.out;
+    EXPECT_TRUE(contains(text_of(folder.path / "studied/orders.csv"), "jounce,1e-12,16,converged"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "studied/convergence.csv"));
+}
+
+TEST(Command, SeriesSaysWhereThePathEndsAndGoesOnByArcLength) {
+    const Folder folder;
+    std::string text = text_of(scenes + "/two_spring_arch.yaml");
+    const auto to = text.find("to: -200");
+    ASSERT_NE(to, std::string::npos);
+    const auto scene = folder.write("arch.yaml", text.replace(to, 8, "to: -400"));
+    const Said ended = elastocheck_says("solve " + scene + " --method series");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(contains(ended.err, "limit point near load factor -211.51659")) << ended.err;
+    const Said through = elastocheck_says("solve " + scene + " --method series --arc-length --steps 40");
+    EXPECT_EQ(through.code, 0) << through.err;
+    EXPECT_TRUE(contains(through.out, "down,recursive,-400")) << through.out;
+}
+
+TEST(Command, OptionsOfAnotherMethodAreRefused) {
+    const std::string scene = scenes + "/pinned_bar.yaml";
+    for (const char* option : {"--order 8", "--expansions 5", "--arc-length", "--rates x.csv"}) {
+        const Said said = elastocheck_says("solve " + scene + " --method tangent " + option);
+        EXPECT_EQ(said.code, 2) << option;
+        EXPECT_TRUE(contains(said.err, "only with --method series")) << said.err;
+    }
+    const Said said = elastocheck_says("solve " + scene + " --tolerance 1mm");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "--tolerance: only with --method adaptive or series")) << said.err;
+    EXPECT_EQ(elastocheck_says("solve " + scene + " --method series --tolerance 1deg").code, 2);
+    EXPECT_EQ(elastocheck_says("solve " + scene + " --method sries").code, 2);
+    EXPECT_EQ(elastocheck_says("solve " + scene + " --method series --order 0").code, 2);
+    EXPECT_EQ(elastocheck_says("compare " + scene + " --method energy").code, 2);
+    for (const char* method : {"recursive", "published", "adaptive --tolerance 1e-3mm", "energy"})
+        EXPECT_EQ(elastocheck_says("solve " + scene + " --steps 4 --method " + method).code, 0) << method;
+}
+
 TEST(Command, CompareWritesTheTableAndTheResult) {
     const Folder folder;
     const Said said = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 20 -o " +
@@ -60,7 +122,7 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
                              "recursive    converged", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["scene"]["name"], "McPherson strut (Kang 2004, section 3)");
+    EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (Kang 2004, section 3)");
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "curves.csv"), "rebound,energy,-3000,"));
 }
 
@@ -74,8 +136,8 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
     EXPECT_TRUE(contains(said.out, "INCONCLUSIVE")) << said.out;
     EXPECT_TRUE(contains(said.out, "branch lost")) << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "result.json"));
-    EXPECT_EQ(result["verdict"]["conclusive"], false);
-    EXPECT_FALSE(result["verdict"]["reasons"].empty());
+    EXPECT_EQ(result["scenes"][0]["verdict"]["conclusive"], false);
+    EXPECT_FALSE(result["scenes"][0]["verdict"]["reasons"].empty());
 }
 
 TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
@@ -116,7 +178,7 @@ TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
                       word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
     const Said said = elastocheck_says("solve " + folder.write("p.yaml", scene));
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.err, "recursive: diverged: branch 'up': at load factor")) << said.err;
+    EXPECT_TRUE(contains(said.err, "published: diverged: branch 'up': at load factor")) << said.err;
 }
 
 TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
@@ -129,8 +191,9 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
                              "|Φ|, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(result["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(), 6u);
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(),
+              6u);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,320,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
@@ -169,7 +232,8 @@ TEST(Command, TyposAreAnsweredWithTheNearestWord) {
           Typo{"inspet x", "did you mean 'inspect'?"},
           Typo{"compare --stpes 3 x", "unknown option '--stpes', did you mean '--steps'?"},
           Typo{"solve x --methd=energy", "did you mean '--method'?"},
-          Typo{"solve x --method enrgy", "--method: enrgy not in {recursive,equilibrium,energy}"},
+          Typo{"solve x --method enrgy",
+               "--method: enrgy not in {recursive,equilibrium,energy,published,closed"},
           Typo{"solve x --steps 0", "--steps"}, Typo{"solve", "SCENE is required"},
           Typo{"", "subcommand is required"}}) {
         const Said said = elastocheck_says(arguments);

@@ -19,47 +19,54 @@ struct Made {
 
     Made() {
         compare::Options options;
-        options.steps = 12;
+        options.recursion.steps = 12;
         comparison = compare::compare(model, options);
     }
     json document(std::string_view input = "input") const {
-        return reports::document(scene, input, model, recursive::diagnose(model), comparison, provenance());
+        json whole = reports::document("elastocheck compare x", provenance());
+        json part = scene_document(scene, input, model, recursive::diagnose(model));
+        add_comparison(part, scene, model, comparison);
+        add_verdict(part, comparison.compared, reasons_of(comparison));
+        whole["scenes"].push_back(part);
+        return whole;
     }
 };
 
 TEST(Document, CarriesWhatItTakesToTrustAndReproduceIt) {
     const json d = Made().document();
+    const json& s = d["scenes"][0];
     EXPECT_EQ(d["schema"], result_schema);
-    EXPECT_EQ(d["scene"]["input_hash"], input_hash("input"));
+    EXPECT_EQ(s["input_hash"], input_hash("input"));
     for (const char* key : {"elastocheck", "commit", "compiler", "flags", "cpu"})
         EXPECT_FALSE(d["provenance"][key].get<std::string>().empty()) << key;
     for (const char* key : {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt"})
         EXPECT_FALSE(d["provenance"]["libraries"][key].get<std::string>().empty()) << key;
-    EXPECT_EQ(d["model"]["unknowns"], 27);
-    EXPECT_EQ(d["model"]["idle_modes"].size(), 1u);
-    EXPECT_EQ(d["verdict"]["conclusive"], true);
-    EXPECT_GT(d["verdict"]["numbers_compared"], 1000);
+    EXPECT_EQ(s["model"]["unknowns"], 27);
+    EXPECT_EQ(s["model"]["idle_modes"].size(), 1u);
+    EXPECT_EQ(s["verdict"]["conclusive"], true);
+    EXPECT_GT(s["verdict"]["numbers_compared"], 1000);
 }
 
 TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
     const Made made;
     const json d = json::parse(made.document().dump());
-    ASSERT_EQ(d["branches"].size(), 2u);
-    for (const auto& branch : d["branches"]) {
+    const json& s = d["scenes"][0];
+    ASSERT_EQ(s["branches"].size(), 2u);
+    for (const auto& branch : s["branches"]) {
         ASSERT_EQ(branch["legs"].size(), 3u);
         for (const auto& leg : branch["legs"]) {
             EXPECT_EQ(leg["outcome"], "converged");
             EXPECT_EQ(leg["curve"]["load"].size(), 13u);
             EXPECT_EQ(leg["curve"]["travel_mm"].size(), 13u);
-            for (const auto& channel : d["channels"])
+            for (const auto& channel : s["channels"])
                 EXPECT_EQ(leg["curve"]["values"][channel["name"].get<std::string>()].size(), 13u);
             EXPECT_EQ(leg["residuals_by"].size(), 3u);
         }
         for (const char* pair : {"deviation", "cross_check", "reference_uncertainty"})
             for (const char* reading : {"at_equal_load", "at_equal_travel"})
-                EXPECT_EQ(branch[pair][reading]["channels"].size(), d["channels"].size()) << pair << reading;
+                EXPECT_EQ(branch[pair][reading]["channels"].size(), s["channels"].size()) << pair << reading;
     }
-    const auto& toe = d["branches"][0]["deviation"]["at_equal_load"]["channels"]["toe"];
+    const auto& toe = s["branches"][0]["deviation"]["at_equal_load"]["channels"]["toe"];
     EXPECT_EQ(toe["max"], made.comparison.branches[0].deviation.equal_load.channels[3].max);
     EXPECT_EQ(toe["unit"], "deg");
 }
@@ -70,9 +77,10 @@ TEST(Document, NumbersThatAreNotFiniteAreNull) {
     made.comparison.branches[0].deviation.equal_load.channels[0].max =
         std::numeric_limits<double>::infinity();
     const json d = json::parse(made.document().dump());
-    EXPECT_TRUE(d["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
+    const json& s = d["scenes"][0];
+    EXPECT_TRUE(s["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
     EXPECT_TRUE(
-        d["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
+        s["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
 }
 
 TEST(Document, InputHashIsFnv1a) {

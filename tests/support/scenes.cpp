@@ -61,6 +61,7 @@ std::vector<std::string> scene_names() {
 
 Scene moved(const Scene& original, const Quaterniond& R, const Vector3d& t) {
     Scene scene = original;
+    for (auto& point : scene.hardpoints) point.position = R * point.position + t;
     for (auto& body : scene.bodies) body.design = {R * body.design.r + t, R * body.design.p};
     for_each_feature(scene, [&](auto& feature) {
         if (feature.body != ground) return;
@@ -113,6 +114,7 @@ Scene mirrored(const Scene& original) {
         return Quaterniond(Eigen::Matrix3d(S * p.toRotationMatrix() * S));
     };
     Scene scene = original;
+    for (auto& point : scene.hardpoints) point.position = S * point.position;
     for (auto& body : scene.bodies) body.design = {S * body.design.r, rotation(body.design.p)};
     for_each_feature(scene, [&](auto& feature) {
         if constexpr (HasLocalPoint<decltype(feature)>) feature.s_local = S * feature.s_local;

@@ -1,0 +1,47 @@
+// The series over its order, as other methods over their steps: how many expansions, what they cost, how
+// near.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/trade.hpp"
+#include "models/model.hpp"
+#include "recursive/series/path.hpp"
+
+namespace elastocheck::compare {
+
+struct OrderLevel {
+    int order = 0;
+    double tolerance = 0;  // told [m]
+    Outcome outcome = Outcome::converged;
+    int expansions = 0, rejected = 0;
+    Work work;
+    double first_reach = 0;                  // of the first expansion, as a share of the branch
+    recursive::series::Singularity nearest;  // to the first expansion; radius as a share of the branch
+    double force = 0, error_end = 0;         // worst certificate: residual [N, N·m], error at an end [m]
+    Accuracy error;                          // to the equilibrium leg, over all points; NaN unless converged
+};
+
+struct BranchOrders {
+    std::string branch;
+    Accuracy uncertainty;  // distance of the references
+    std::vector<OrderLevel> levels;
+};
+
+struct OrderOptions {
+    std::vector<int> orders{2, 4, 6, 8, 12, 16, 20, 24};
+    std::vector<double> tolerances{1e-6, 1e-9, 1e-12};
+    int points = 20;        // where it is compared
+    int expansions = 2000;  // at most
+    std::function<void(std::string_view)> progress = {};
+};
+
+std::vector<BranchOrders> order_study(const Model& model, const OrderOptions& options = {});
+
+// Whether every branch has a level with a number.
+bool conclusive(const std::vector<BranchOrders>& orders);
+
+}  // namespace elastocheck::compare

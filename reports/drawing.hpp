@@ -1,0 +1,20 @@
+// Where the points of a suspension are, to draw it: at the design position and along every branch.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "compare/compare.hpp"
+#include "models/model.hpp"
+#include "models/scene.hpp"
+
+namespace elastocheck::reports {
+
+//   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body, position [mm]
+//   links      pairs of points joined by a line: of one body, of a rod (distance), of a spring
+//   bushings   points
+//   wheel      its circle, as points
+//   positions  of all points [mm], by the equilibrium leg, at the middle and the end of every branch
+nlohmann::ordered_json drawing_json(const Scene& scene, const Model& model,
+                                    const compare::Comparison& comparison);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,30 @@
+// Measured curves, read from a CSV file.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "compare/compare.hpp"
+#include "models/model.hpp"
+
+namespace elastocheck::reports {
+
+// "FILE:line: column: what is wrong, what is allowed".
+struct MeasurementError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// Adds "measured" to a scene document: the points, and how far every leg is from them.
+//
+// The first line names the columns, every further one is a point; an empty cell was not measured. Columns:
+//   travel_mm and/or load_N (load_Nm)   where the point is, as `elastocheck compare` counts them
+//   OUTPUT_UNIT                         toe_deg, camber_deg, wheel_centre_y_mm, ...: as it stands
+//   OUTPUT_change_UNIT                  ...: since the design position
+//   branch                              its branch; needed only where several branches have the same travel
+// Throws MeasurementError.
+void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv, const std::string& file,
+                     const Model& model, const compare::Comparison& comparison);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,26 @@
+// Numbers as people read them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace elastocheck::reports {
+
+// Three to four significant digits, a true minus sign, powers of ten as such: "2.91", "−0.0018",
+// "2.6 × 10⁻¹³". A dash for what is not finite.
+std::string number(double value, int digits = 3);
+std::string signed_number(double value, int digits = 3);  // with a plus
+
+// Below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's: 0.
+std::string deviation_number(double value);
+
+// "2.9 %"; two significant digits, "< 0.001 %" for less.
+std::string percent(double share);
+
+std::string whole_number(long value);  // "12 345", with narrow spaces
+
+// Two significant digits and the unit, kept on one line: "0.0018 deg".
+std::string quantity(double value, std::string_view unit);
+std::string setting(double value, std::string_view unit);  // as somebody gave it: "0.01 mm"
+
+}  // namespace elastocheck::reports

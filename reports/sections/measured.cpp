@@ -1,0 +1,60 @@
+#include "reports/sections/measured.hpp"
+
+#include <fmt/format.h>
+
+#include "reports/numbers.hpp"
+#include "reports/sections/common.hpp"
+#include "reports/sections/sections.hpp"
+
+namespace elastocheck::reports {
+
+std::optional<Series> measured_series(const Field& scene, const std::string& channel, bool change) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    const auto travel = (*measured)["columns"].find("travel_mm");
+    const auto column = (*measured)["columns"].find(channel == "load" ? "load_N" : channel);
+    if (!travel || !column) return std::nullopt;
+    const auto x = travel->numbers(), y = column->numbers();
+    if (x.size() != y.size()) column->fail("not as many numbers as travel_mm");
+    double first = 0;
+    if (change) {
+        const auto start = (*measured)["design"].find(channel);
+        if (start) first = start->number();
+    }
+    Series series{"measured", Series::Style::rings, purple, 5};
+    for (std::size_t k = 0; k < x.size(); ++k) series.rows.push_back({x[k], y[k] - first});
+    return series;
+}
+
+std::optional<Section> measured_section(const Field& scene) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    Section section{.id = "measured", .title = "Against the measurement"};
+    section.words = {{"file", (*measured)["file"].text()},
+                     {"hash", (*measured)["hash"].text()},
+                     {"points", (*measured)["points"].whole()}};
+    for (const auto& reading : (*measured)["readings"].items()) {
+        Table table{.caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
+                    .columns = {{"output", true},
+                                {"points"},
+                                {"published recursion, max"},
+                                {"rms"},
+                                {"equilibrium, max"},
+                                {"rms"},
+                                {"energy, max"},
+                                {"rms"}}};
+        for (const auto& row : reading["channels"].items()) {
+            std::vector<std::string> cells{fmt::format("{} [{}]", row["channel"].text(), row["unit"].text()),
+                                           whole_number(row["compared"].whole())};
+            for (const char* leg : {"recursive", "equilibrium", "energy"}) {
+                cells.push_back(signed_number(row[leg]["signed_max"].number()));
+                cells.push_back(number(row[leg]["rms"].number(), 2));
+            }
+            table.rows.push_back(cells);
+        }
+        section.tables.push_back(std::move(table));
+    }
+    return section;
+}
+
+}  // namespace elastocheck::reports

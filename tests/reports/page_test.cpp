@@ -1,0 +1,181 @@
+// The page as its readers get it: without a network, without eyes, on a phone, in a browser.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+
+#include "reports/report.hpp"
+#include "tests/reports/result.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/process.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using support::Folder;
+using support::text_of;
+using json = nlohmann::ordered_json;
+
+json two_scenes() {
+    json result = sample_result();
+    result["scenes"].push_back(sample_result("pinned_bar")["scenes"][0]);
+    return result;
+}
+
+std::string page() {
+    const Folder folder;
+    write_report(two_scenes(), "result.json", folder.path / "r");
+    return text_of(folder.path / "r" / "report.html");
+}
+
+std::vector<std::string> all(const std::string& text, const std::string& pattern, int group = 1) {
+    const std::regex expression(pattern);
+    std::vector<std::string> found;
+    for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end; ++at)
+        found.push_back((*at)[static_cast<std::size_t>(group)]);
+    return found;
+}
+
+// From each `open` to the next `close`.
+std::vector<std::string> parts(const std::string& text, const std::string& open, const std::string& close) {
+    std::vector<std::string> found;
+    for (auto at = text.find(open); at != text.npos; at = text.find(open, at + 1))
+        found.push_back(text.substr(at, text.find(close, at) - at + close.size()));
+    return found;
+}
+
+TEST(Page, AsksForNothingFromOutside) {
+    const std::string html = page();
+    EXPECT_NE(
+        html.find("Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\""),
+        html.npos);
+    for (const auto& target : all(html, "(?:href|src)=\"([^\"]*)\""))
+        EXPECT_TRUE(target.starts_with("#")) << target;
+    for (const char* fetching :
+         {"<script", "<img", "<link", "<iframe", "<object", "url(", "@import", "@font-face"})
+        EXPECT_EQ(html.find(fetching), html.npos) << fetching;
+    for (const auto& address : all(html, "(https?://[^\" <]*)"))
+        EXPECT_TRUE(address == "http://www.w3.org/2000/svg" || address == "http://www.w3.org/1999/xlink")
+            << address;
+}
+
+TEST(Page, HeadingsAreInOrderAndIdsAreUnique) {
+    const std::string html = page();
+    EXPECT_NE(html.find("<html lang=\"en\">"), html.npos);
+    int before = 0, first = 0;
+    for (const auto& level : all(html, "<h([1-6])[ >]")) {
+        const int now = std::stoi(level);
+        EXPECT_LE(now, before + 1);
+        first += now == 1;
+        before = now;
+    }
+    EXPECT_EQ(first, 1);
+    std::set<std::string> ids;
+    for (const auto& id : all(html, " id=\"([^\"]*)\"")) EXPECT_TRUE(ids.insert(id).second) << id;
+    for (const auto& reference : all(html, "(?:href|xlink:href)=\"#([^\"]*)\""))
+        EXPECT_TRUE(ids.contains(reference)) << reference;
+    for (const auto& list : all(html, "aria-labelledby=\"([^\"]*)\""))
+        for (const auto& reference : all(list, "([^ ]+)")) EXPECT_TRUE(ids.contains(reference)) << reference;
+}
+
+TEST(Page, EveryFigureHasASizeWordsAndATable) {
+    const std::string html = page();
+    const auto figures = parts(html, "<figure", "</figure>");
+    EXPECT_GE(figures.size(), 20u);
+    for (const auto& figure : figures) {
+        EXPECT_NE(figure.find("<figcaption>"), figure.npos);
+        EXPECT_NE(figure.find("<table>"), figure.npos);
+        EXPECT_NE(figure.find("<th scope=\"row\""), figure.npos);
+        const auto drawings = parts(figure, "<svg", "</svg>");
+        EXPECT_GE(drawings.size(), 1u);
+        for (const auto& svg : drawings) {
+            EXPECT_TRUE(std::regex_search(svg, std::regex("^<svg width=\"\\d+\" height=\"\\d+\" viewBox=")));
+            EXPECT_NE(svg.find("role=\"img\" aria-labelledby="), svg.npos);
+            const auto title = all(svg, "<title[^>]*>([^<]*)</title>"),
+                       words = all(svg, "<desc[^>]*>([^<]*)</desc>");
+            ASSERT_EQ(title.size(), 1u);
+            ASSERT_EQ(words.size(), 1u);
+            EXPECT_GT(words[0].size(), 40u) << title[0];
+        }
+    }
+    for (const auto& table : parts(html, "<table>", "</table>")) {
+        EXPECT_NE(table.find("<caption>"), table.npos);
+        EXPECT_NE(table.find("scope=\"col\""), table.npos);
+    }
+}
+
+TEST(Page, ColoursAreClassesSoThatDarkPaperCanChangeThem) {
+    for (const auto& svg : parts(page(), "<svg", "</svg>"))
+        for (const auto& colour : all(svg, "(?:stroke|fill|color)=['\"]((?:rgb|#)[^'\"]*)['\"]"))
+            ADD_FAILURE() << "a colour of its own: " << colour;
+}
+
+TEST(Page, TheMarkdownTwinSaysTheSame) {
+    const Folder folder;
+    write_report(two_scenes(), "result.json", folder.path / "r");
+    const std::string html = text_of(folder.path / "r" / "report.html"),
+                      md = text_of(folder.path / "r" / "report.md");
+    EXPECT_EQ(all(html, "<h3[^>]*>([^<]*)</h3>"), all(md, "\n### ([^\n]*)"));
+    EXPECT_EQ(all(html, "<caption>").size(), 0u + parts(md, "<details><summary>", "</summary>").size());
+    for (const auto& file : all(md, "\\]\\((figures/[^)]*)\\)"))
+        EXPECT_TRUE(std::filesystem::exists(folder.path / "r" / file)) << file;
+    EXPECT_EQ(all(md, "\\]\\((figures/)").size(), parts(html, "<svg", "</svg>").size());
+}
+
+// In a browser: a script that the test adds measures the page and leaves what it found in the body.
+json measured_in_a_browser(const std::string& width, const std::string& scheme) {
+    const Folder folder;
+    std::string html = page();
+    const std::string policy = all(html, "(<meta http-equiv[^>]*>)").at(0);
+    html.replace(html.find(policy), policy.size(), "");
+    html.insert(html.find("</head>"),
+                "<script>window.wrong=[];addEventListener('error',e=>wrong.push(e.message));</script>");
+    html.insert(html.find("</body>"), R"(<script>
+const boxes=[...document.querySelectorAll('svg')].map(s=>{const b=s.getBoundingClientRect();return [b.width,b.height]});
+const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x<=.04045?x/12.92:((x+.055)/1.055)**2.4);
+  return .2126*v[0]+.7152*v[1]+.0722*v[2]};
+const paper=luminance(getComputedStyle(document.body).backgroundColor);
+const contrast=e=>{const l=luminance(getComputedStyle(e)[e.closest('svg')?'fill':'color']);
+  return (Math.max(l,paper)+.05)/(Math.min(l,paper)+.05)};
+const words=[...document.querySelectorAll('p,h1,h2,h3,td,th,dt,dd,figcaption,caption,summary,svg text')];
+document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance.getEntriesByType('resource').length,
+  page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
+  contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';
+</script>)");
+    const auto file = folder.write("page.html", html);
+    const auto said = support::run(
+        "chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
+        "--user-data-dir=" +
+        (folder.path / "profile").string() + " --window-size=" + width +
+        ",900 --blink-settings=preferredColorScheme=" + scheme + " --dump-dom file://" + file);
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(said.err.find(":CONSOLE"), said.err.npos) << said.err;
+    const auto found = all(said.out, "<pre>(\\{.*\\})</pre>");
+    if (found.size() != 1) {
+        ADD_FAILURE() << said.out.substr(0, 2000) << said.err;
+        return nullptr;
+    }
+    return json::parse(found[0]);
+}
+
+TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
+    if (support::run("command -v chromium").code != 0) GTEST_SKIP() << "chromium is not installed";
+    for (const auto& [width, scheme] : {std::pair{"1280", "1"}, std::pair{"390", "0"}}) {
+        const json seen = measured_in_a_browser(width, scheme);
+        ASSERT_TRUE(seen.is_object());
+        EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
+        EXPECT_EQ(seen["requests"], 0);
+        EXPECT_GE(seen["boxes"].size(), 25u);
+        for (const auto& box : seen["boxes"]) {
+            EXPECT_GT(box[0], 100) << box;
+            EXPECT_GT(box[1], 100) << box;
+        }
+        EXPECT_LE(seen["page"], seen["window"]) << "it has to be scrolled sideways at " << width;
+        EXPECT_EQ(seen["dark"], scheme == std::string("0"));
+        EXPECT_GE(seen["contrast"], 4.0) << "of text to paper";
+        EXPECT_GT(seen["words"], 500);
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

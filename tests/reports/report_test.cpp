@@ -1,0 +1,305 @@
+// A report is a folder that is replaced in one step, and never somebody else's.
+#include "reports/report.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "reports/field.hpp"
+#include "reports/folder.hpp"
+#include "reports/templates.hpp"
+#include "tests/reports/result.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/process.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+using support::Folder;
+using support::text_of;
+
+const std::string command = ELASTOCHECK_COMMAND;
+
+using Contents = std::map<std::string, std::string>;
+Contents contents_of(const fs::path& folder) {
+    Contents contents;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file())
+            contents[entry.path().lexically_relative(folder).generic_string()] = text_of(entry.path());
+    return contents;
+}
+
+// Small: two figures.
+json small_result(const std::string& name) {
+    json result = sample_result("pinned_bar");
+    auto& scene = result["scenes"][0];
+    scene["name"] = name;
+    for (const char* part : {"convergence", "trade", "precision", "drawing"}) scene.erase(part);
+    return result;
+}
+
+std::string refusal(const fs::path& folder) {
+    try {
+        write_report(small_result("new"), "result.json", folder);
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "written";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
+    const Folder folder;
+    write_report(sample_result(), "result.json", folder.path / "a");
+    const std::string copy = text_of(folder.path / "a" / "result.json");
+    write_report(parse_result(copy, "copy"), "copy", folder.path / "b");
+    const Contents a = contents_of(folder.path / "a"), b = contents_of(folder.path / "b");
+    ASSERT_EQ(a.size(), b.size());
+    for (const auto& [name, text] : a) EXPECT_EQ(text, b.at(name)) << name;
+    for (const char* name :
+         {"report.html", "report.md", "result.json", "curves.csv", "files.txt",
+          "figures/mcpherson-toe-jounce-and-rebound.svg", "figures/mcpherson-toe-jounce-and-rebound.gp",
+          "figures/mcpherson-toe-jounce-and-rebound.csv"})
+        EXPECT_TRUE(a.contains(name)) << name;
+}
+
+TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
+    const Folder folder;
+    write_report(small_result("x"), "result.json", folder.path / "r");
+    int scripts = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path / "r" / "figures")) {
+        if (entry.path().extension() != ".gp") continue;
+        ++scripts;
+        fs::path svg = entry.path(), pdf = entry.path();
+        fs::remove(svg.replace_extension(".svg"));
+        const std::string script = "figures/" + entry.path().filename().string();
+        const std::string there = "cd " + (folder.path / "r").string() + " && ";
+        const auto said = support::run(there + "gnuplot " + script);
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_TRUE(said.err.empty()) << said.err;
+        EXPECT_TRUE(contains(text_of(svg), "<svg"));
+        EXPECT_EQ(support::run(there + "gnuplot -e pdf=1 " + script).code, 0);
+        EXPECT_TRUE(text_of(pdf.replace_extension(".pdf")).starts_with("%PDF"));
+    }
+    EXPECT_GE(scripts, 2);
+}
+
+TEST(Report, EveryFigureIsWellFormed) {
+    const Folder folder;
+    write_report(sample_result(), "result.json", folder.path / "r");
+    const auto said = support::run("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
+    EXPECT_EQ(said.code, 0) << said.err;
+}
+
+TEST(Report, NamesAreTextWhateverTheyContain) {
+    const Folder folder;
+    json result = small_result("<b>&\"'| `x` $(reboot) \\ *bold*");
+    auto& scene = result["scenes"][0];
+    for (auto& branch : scene["branches"]) branch["name"] = "'; system 'touch hacked'; '<script>";
+    write_report(result, "result.json", folder.path / "r");
+    const std::string html = text_of(folder.path / "r" / "report.html");
+    EXPECT_TRUE(contains(html, "<h1>&lt;b&gt;&amp;&quot;&apos;| `x` $(reboot) \\ *bold*</h1>"));
+    EXPECT_FALSE(contains(html, "<b>"));
+    EXPECT_FALSE(contains(html, "<script"));
+    EXPECT_TRUE(contains(text_of(folder.path / "r" / "report.md"),
+                         "# \\<b\\>\\&\"'\\| \\`x\\` $(reboot) \\\\ \\*bold\\*"));
+    EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
+}
+
+TEST(Report, TwoScenesOfOneNameShareAPage) {
+    const Folder folder;
+    json result = small_result("twin");
+    result["scenes"].push_back(result["scenes"][0]);
+    write_report(result, "result.json", folder.path / "r");
+    const std::string html = text_of(folder.path / "r" / "report.html");
+    EXPECT_TRUE(contains(html, "<article id=\"pinned-bar\""));
+    EXPECT_TRUE(contains(html, "<article id=\"pinned-bar-2\""));
+    EXPECT_TRUE(contains(html, "<a href=\"#pinned-bar-2\">twin</a>"));
+}
+
+TEST(Report, ReplacesAnOlderOneCompletely) {
+    const Folder folder;
+    write_report(sample_result(), "result.json", folder.path / "r");
+    write_report(small_result("new"), "result.json", folder.path / "r");
+    const Contents contents = contents_of(folder.path / "r");
+    for (const auto& [name, text] : contents) EXPECT_FALSE(contains(name, "mcpherson")) << name;
+    EXPECT_TRUE(contains(contents.at("report.html"), "<h1>new</h1>"));
+    int left = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path)) ++left;
+    EXPECT_EQ(left, 1);  // nothing beside it
+}
+
+TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
+    const Folder folder;
+    folder.write("notes.txt", "mine");
+    EXPECT_TRUE(contains(refusal(folder.path), "notes.txt: is no part of a report"));
+    write_report(small_result("old"), "result.json", folder.path / "r");
+    std::ofstream(folder.path / "r" / "figures" / "mine.svg") << "mine";
+    const Contents before = contents_of(folder.path / "r");
+    EXPECT_TRUE(contains(refusal(folder.path / "r"), "figures/mine.svg: is no part of a report"));
+    EXPECT_EQ(contents_of(folder.path / "r"), before);
+    const auto file = folder.write("file", "mine");
+    EXPECT_TRUE(contains(refusal(file), "is a file; a report is a folder"));
+    EXPECT_TRUE(contains(refusal("/"), "choose a folder below it"));
+    EXPECT_EQ(text_of(file), "mine");
+}
+
+TEST(Report, ReplacesWhatCompareLeftAndWhatALinkPointsTo) {
+    const Folder folder;
+    fs::create_directory(folder.path / "r");
+    std::ofstream(folder.path / "r" / "result.json") << "{\n \"schema\": \"elastocheck/result/1\"}";
+    std::ofstream(folder.path / "r" / "curves.csv") << "old";
+    fs::create_directory_symlink(folder.path / "r", folder.path / "link");
+    EXPECT_EQ(refusal(folder.path / "link"), "written");
+    EXPECT_TRUE(fs::is_symlink(folder.path / "link"));
+    EXPECT_TRUE(fs::exists(folder.path / "r" / "report.html"));
+}
+
+TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {
+    const Folder folder;
+    write_report(small_result("old"), "result.json", folder.path / "r");
+    const Contents before = contents_of(folder.path / "r");
+    json broken = small_result("new");
+    broken["scenes"][0]["branches"][1]["deviation"].erase("at_equal_load");
+    EXPECT_THROW(write_report(broken, "result.json", folder.path / "r"), ResultError);
+    EXPECT_EQ(contents_of(folder.path / "r"), before);
+}
+
+TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
+    const Folder folder;
+    const auto good = folder.write("result.json", small_result("good").dump());
+    const std::string out = (folder.path / "out").string();
+    EXPECT_EQ(support::run(command + " report --from " + good + " -o " + out + " --figures pdf").code, 0);
+    EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
+    bool pdf = false;
+    for (const auto& [name, text] : contents_of(out))
+        pdf = pdf || (name.ends_with(".pdf") && text.starts_with("%PDF"));
+    EXPECT_TRUE(pdf);
+    json bad = small_result("bad");
+    bad["scenes"][0]["branches"][0].erase("legs");
+    const auto missing =
+        support::run(command + " report --from " + folder.write("bad.json", bad.dump()) + " -o " + out);
+    EXPECT_EQ(missing.code, 2);
+    EXPECT_TRUE(contains(missing.err, "bad.json: scenes[0].branches[0].legs: missing")) << missing.err;
+    json doubtful = small_result("doubtful");
+    doubtful["scenes"][0]["verdict"] = {
+        {"conclusive", false}, {"numbers_compared", 0}, {"reasons", {"nothing was compared"}}};
+    const auto inconclusive =
+        support::run(command + " report --from " + folder.write("d.json", doubtful.dump()) + " -o " + out);
+    EXPECT_EQ(inconclusive.code, 3);
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
+}
+
+TEST(ReportCommand, SaysWhatItNeeds) {
+    const Folder folder;
+    const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
+    const auto document = folder.write("document.json", small_result("x").dump());
+    struct Case {
+        std::string arguments, why;
+    };
+    for (const auto& [arguments, why] :
+         {Case{"-o out", "needs scene files or --from"},
+          Case{scene + " --from " + document + " -o out", "one of the two"},
+          Case{scene, "--output is required"}, Case{"--from " + document + ".none -o out", "cannot be read"},
+          Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
+          Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
+          Case{scene + " --figures png -o out", "--figures"}}) {
+        const auto said =
+            support::run("cd " + folder.path.string() + " && " + command + " report " + arguments);
+        EXPECT_EQ(said.code, 2) << arguments;
+        EXPECT_TRUE(contains(said.err, why)) << arguments << ": " << said.err;
+        EXPECT_FALSE(fs::exists(folder.path / "out"));
+    }
+}
+
+TEST(ReportCommand, WithoutGnuplotItSaysSoAndWritesNothing) {
+    const Folder folder;
+    const auto document = folder.write("result.json", small_result("x").dump());
+    const auto said = support::run("PATH=" + folder.path.string() + " " + command + " report --from " +
+                                   document + " -o " + (folder.path / "out").string());
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "gnuplot cannot be run (No such file or directory)")) << said.err;
+    EXPECT_FALSE(fs::exists(folder.path / "out"));
+}
+
+TEST(ReportCommand, SolvesAndDrawsAScene) {
+    const Folder folder;
+    const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
+    const auto said = support::run(command + " report " + scene + " -o " + (folder.path / "out").string());
+    EXPECT_EQ(said.code, 0) << said.err;
+    const json result = json::parse(text_of(folder.path / "out" / "result.json"));
+    for (const char* part :
+         {"model", "branches", "drawing", "convergence", "trade", "recommended", "precision", "verdict"})
+        EXPECT_TRUE(result["scenes"][0].contains(part)) << part;
+    EXPECT_EQ(result["reproduce"], "elastocheck report " + scene + " -o " + (folder.path / "out").string());
+}
+
+// Whatever moment it dies at, the folder holds the old report or the new one.
+TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const std::string documents[] = {folder.write("a.json", small_result("first").dump()),
+                                     folder.write("b.json", small_result("second").dump())};
+    const auto draw = [&](const std::string& document) {
+        const char* argv[] = {command.c_str(), "report", "--from", document.c_str(), "-o",
+                              out.c_str(),     nullptr};
+        posix_spawn_file_actions_t quiet;
+        ::posix_spawn_file_actions_init(&quiet);
+        ::posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+        pid_t child = 0;
+        EXPECT_EQ(::posix_spawn(&child, argv[0], &quiet, nullptr, const_cast<char**>(argv), environ), 0);
+        ::posix_spawn_file_actions_destroy(&quiet);
+        return child;
+    };
+    const auto wait = [](pid_t child) {
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return WIFSIGNALED(status);
+    };
+    using clock = std::chrono::steady_clock;
+    Contents expected[2];
+    double whole = 0;
+    for (int which : {0, 1}) {
+        const auto start = clock::now();
+        ASSERT_FALSE(wait(draw(documents[which])));
+        whole = std::chrono::duration<double>(clock::now() - start).count();
+        expected[which] = contents_of(out);
+    }
+    ASSERT_NE(expected[0], expected[1]);
+    std::mt19937 random(7);
+    int killed = 0, changed = 0;
+    Contents before = expected[1];
+    for (int round = 0; round < 25; ++round) {
+        const pid_t child = draw(documents[round % 2]);
+        // Half of them late, where files are renamed and removed.
+        const double share = round % 2 == 0 ? std::uniform_real_distribution(0.0, 1.05)(random)
+                                            : std::uniform_real_distribution(0.8, 1.05)(random);
+        std::this_thread::sleep_for(std::chrono::duration<double>(share * whole));
+        ::kill(child, SIGKILL);
+        killed += wait(child);
+        const Contents now = contents_of(out);
+        EXPECT_TRUE(now == expected[0] || now == expected[1]) << "half a report in round " << round;
+        changed += now != before;
+        before = now;
+    }
+    EXPECT_GT(killed, 5);
+    ASSERT_FALSE(wait(draw(documents[0])));
+    EXPECT_EQ(contents_of(out), expected[0]);
+    int left = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path)) ++left;
+    EXPECT_EQ(left, 3) << "what the killed runs left behind is removed by the next one";
+    std::printf("killed %d of 25, the report changed in %d\n", killed, changed);
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

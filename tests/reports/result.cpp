@@ -1,0 +1,41 @@
+#include "tests/reports/result.hpp"
+
+#include <map>
+
+#include "compare/precision.hpp"
+#include "compare/study.hpp"
+#include "compare/trade.hpp"
+#include "models/compile.hpp"
+#include "reports/document.hpp"
+#include "reports/study_tables.hpp"
+#include "reports/trade_tables.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reports {
+
+using json = nlohmann::ordered_json;
+
+const json& sample_result(const std::string& name) {
+    static std::map<std::string, json> made;
+    if (const auto found = made.find(name); found != made.end()) return found->second;
+    const Scene scene = support::scene(name);
+    const Model model = compile(scene);
+    compare::Options options;
+    options.recursion.steps = 20;
+    const auto comparison = compare::compare(model, options);
+    json part = scene_document(scene, "input", model, recursive::diagnose(model));
+    part["source"] = name + ".yaml";
+    add_comparison(part, scene, model, comparison);
+    compare::StudyOptions study_options;
+    study_options.steps = {10, 20, 40, 80, 160};
+    const auto study = compare::study(model, study_options);
+    part["convergence"] = study_json(study, compare::attribute_gap(model));
+    part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
+    part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
+    add_verdict(part, comparison.compared, reasons_of(comparison));
+    json result = document("elastocheck report " + name + ".yaml -o out", provenance());
+    result["scenes"].push_back(part);
+    return made[name] = json::parse(result.dump());
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,198 @@
+// What a report says is a function of result.json, and a broken document is told by its broken field.
+#include "reports/sections/sections.hpp"
+
+#include <gtest/gtest.h>
+
+#include "reports/report.hpp"
+#include "reports/templates.hpp"
+#include "tests/reports/result.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+const std::string file = "result.json";
+
+std::vector<Section> sections(const json& result) {
+    return sections_of(Field{&result["scenes"][0], "scenes[0]", &file});
+}
+
+std::string said(const json& result) {
+    const auto all = sections(result);
+    return render("text/verdict", all.front().words, Escape::nothing);
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+// Calls f on every value of the document; of a list only on the first.
+template <class F>
+void for_each_place(const json& value, const json::json_pointer& place, F&& f) {
+    if (!place.empty()) f(place);
+    if (value.is_object())
+        for (const auto& [key, entry] : value.items()) for_each_place(entry, place / key, f);
+    if (value.is_array())
+        for (std::size_t k = 0; k < std::min<std::size_t>(1, value.size()); ++k)
+            for_each_place(value[k], place / k, f);
+}
+
+TEST(Sections, EveryPartOfADocumentBecomesASection) {
+    std::vector<std::string> ids;
+    for (const auto& section : sections(sample_result())) ids.push_back(section.id);
+    EXPECT_EQ(ids,
+              (std::vector<std::string>{"verdict", "deviation", "price", "drawing", "curves", "convergence",
+                                        "attribution", "arithmetic", "references", "model"}));
+    for (const auto& section : sections(sample_result()))
+        for (const auto& group : section.figures) {
+            EXPECT_FALSE(group.caption.empty());
+            EXPECT_FALSE(group.table.rows.empty()) << section.id << ": no table under " << group.caption;
+            for (const auto& row : group.table.rows) EXPECT_EQ(row.size(), group.table.columns.size());
+            for (const auto& figure : group.figures) {
+                EXPECT_GT(figure.description.size(), 40u) << figure.id;
+                EXPECT_FALSE(figure.series.empty()) << figure.id;
+            }
+        }
+}
+
+TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
+    json result = sample_result();
+    for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
+    for (const auto& section : sections(result))
+        EXPECT_TRUE(section.id != "price" && section.id != "convergence" && section.id != "arithmetic" &&
+                    section.id != "drawing");
+    const std::string text = said(result);
+    EXPECT_TRUE(contains(text, "too soft in wheel rate at full load.")) << text;  // no word on the gap
+    EXPECT_FALSE(contains(text, "rung")) << text;
+}
+
+TEST(Sections, ADamagedDocumentIsReadOrRefusedWithItsPlace) {
+    const json whole = sample_result("pinned_bar");
+    int refused = 0, read = 0;
+    for_each_place(whole["scenes"][0], json::json_pointer("/scenes/0"), [&](const json::json_pointer& place) {
+        if (place.back() == "0" && place.parent_pointer().to_string() == "/scenes") return;
+        for (const json& instead :
+             {json(), json("text"), json(7.5), json::array(), json::object(), json("gone")}) {
+            json damaged = whole;
+            if (instead == "gone" && damaged[place.parent_pointer()].is_object())
+                damaged[place.parent_pointer()].erase(place.back());
+            else if (instead == "gone")
+                damaged[place.parent_pointer()].erase(std::stoul(place.back()));
+            else
+                damaged[place] = instead;
+            try {
+                (void)sections(damaged);
+                ++read;
+            } catch (const ResultError& error) {
+                ++refused;
+                EXPECT_TRUE(std::string(error.what()).starts_with("result.json: scenes[0]")) << error.what();
+            } catch (const std::exception& error) {
+                ADD_FAILURE() << place.to_string() << " = " << instead << ": " << error.what();
+            }
+        }
+    });
+    EXPECT_GT(refused, 500);
+    EXPECT_GT(read, 100);
+}
+
+TEST(Sections, AMissingFieldIsNamed) {
+    json result = sample_result();
+    result["scenes"][0]["branches"][1]["legs"][0]["curve"].erase("load");
+    try {
+        (void)sections(result);
+        FAIL();
+    } catch (const ResultError& error) {
+        EXPECT_STREQ(error.what(), "result.json: scenes[0].branches[1].legs[0].curve.load: missing");
+    }
+}
+
+TEST(Verdict, IsMadeOfTheNumbers) {
+    json result = sample_result();
+    auto& branches = result["scenes"][0]["branches"];
+    const std::string before = said(result);
+    EXPECT_TRUE(contains(before, "The published recursion with 20 steps is within")) << before;
+    EXPECT_TRUE(contains(before, "in wheel rate at full load")) << before;
+    for (auto& branch : branches)
+        for (const char* name : {"toe", "camber"})
+            branch["deviation"]["at_equal_travel"]["channels"][name]["max"] = 0.25;
+    EXPECT_TRUE(contains(said(result), "within 0.25\u00a0deg (toe) at equal travel")) << said(result);
+    // The reference's last travel moved away from the recursion's: another rate.
+    for (auto& branch : branches) {
+        const double travel = branch["legs"][0]["curve"]["travel_mm"].back();
+        branch["legs"][1]["curve"]["travel_mm"].back() = travel * 1.25;
+    }
+    EXPECT_TRUE(contains(said(result), "25\u00a0% too stiff in wheel rate")) << said(result);
+}
+
+TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
+    struct Case {
+        double gap;
+        const char* words;
+    };
+    for (const auto& [share, words] :
+         {Case{0.97, "nearly all of it formulation gap that more steps cannot remove"},
+          Case{0.5, "50\u00a0% of it formulation gap that more steps cannot remove"},
+          Case{0.05, "nearly all of it step error that more steps remove"},
+          Case{1.6, "the formulation gap alone, which more steps cannot remove, is larger"},
+          Case{-0.5, "have opposite signs"}, Case{0, "none of it formulation gap: more steps remove it"}}) {
+        json result = sample_result();
+        auto& scene = result["scenes"][0];
+        for (std::size_t b = 0; b < 2; ++b)
+            for (auto& entry : scene["convergence"]["branches"][b]["methods"][0]["at_equal_load"]) {
+                const double end = scene["branches"][b]["deviation"]["at_equal_load"]["channels"]
+                                        [entry["channel"].get<std::string>()]["end"];
+                entry["gap"] = share * end;
+                entry["band"] = 1e-6;
+            }
+        EXPECT_TRUE(contains(said(result), words)) << share << ": " << said(result);
+    }
+}
+
+TEST(Verdict, InconclusiveIsSaidFirst) {
+    json result = sample_result();
+    result["scenes"][0]["verdict"] = {{"conclusive", false},
+                                      {"numbers_compared", 3},
+                                      {"reasons", {"jounce: energy leg: branch lost: at load 3"}}};
+    EXPECT_TRUE(said(result).starts_with("Inconclusive: jounce: energy leg: branch lost: at load 3; "))
+        << said(result);
+}
+
+TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
+    json result = sample_result();
+    result["scenes"][0]["trade"]["recommendation"] = nullptr;
+    EXPECT_TRUE(
+        contains(said(result), "Nothing tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
+        << said(result);
+}
+
+TEST(Verdict, NaNIsNeverASmallDeviation) {
+    json result = sample_result();
+    for (auto& branch : result["scenes"][0]["branches"])
+        branch["deviation"]["at_equal_travel"]["channels"]["camber"]["max"] = nullptr;
+    EXPECT_TRUE(contains(said(result), "within – deg") || contains(said(result), "within –\u00a0deg"))
+        << said(result);
+}
+
+TEST(ParseResult, RefusesWhatItCannotRead) {
+    const auto refusal = [](const std::string& text) {
+        try {
+            (void)parse_result(text, file);
+        } catch (const ResultError& error) {
+            return std::string(error.what());
+        }
+        return std::string("read");
+    };
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/1\", \"scene\": {}}").substr(0, 63),
+              "result.json: schema: 'elastocheck/result/1' is not a document t");
+    const std::string whole = sample_result().dump();
+    EXPECT_EQ(refusal(whole), "read");
+    EXPECT_EQ(refusal(whole.substr(0, whole.size() / 2)), "result.json: is no JSON, or was cut off");
+    EXPECT_EQ(refusal(""), "result.json: is no JSON, or was cut off");
+    EXPECT_EQ(refusal("[]"), "result.json: expected an object, found array");
+    EXPECT_EQ(refusal("{}"), "result.json: schema: missing");
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\"}"), "result.json: scenes: missing");
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\", \"scenes\": []}"),
+              "result.json: scenes: there is no scene in it");
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

@@ -1,0 +1,82 @@
+// The committed report in reports/validation/ says what the code says today.
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "models/compile.hpp"
+#include "reports/document.hpp"
+#include "reports/report.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+struct Number {
+    double value, tolerance;
+};
+using Numbers = std::map<std::string, Number>;
+
+// The last two cells are the value and its tolerance, what is before them is its name.
+Numbers numbers_in(const std::string& csv) {
+    Numbers numbers;
+    std::istringstream lines(csv);
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+        const auto last = line.rfind(','), second = line.rfind(',', last - 1);
+        numbers[line.substr(0, second)] = {std::stod(line.substr(second + 1)),
+                                           std::stod(line.substr(last + 1))};
+    }
+    return numbers;
+}
+
+std::vector<std::string> drift(const Numbers& committed, const Numbers& now) {
+    std::vector<std::string> found;
+    for (const auto& [name, number] : committed) {
+        const auto other = now.find(name);
+        if (other == now.end()) {
+            found.push_back(name + ": no longer computed");
+            continue;
+        }
+        const double off = std::abs(other->second.value - number.value);
+        if (!(std::isfinite(off) && off <= number.tolerance))
+            found.push_back(name + ": committed " + std::to_string(number.value) + ", now " +
+                            std::to_string(other->second.value));
+    }
+    for (const auto& [name, number] : now)
+        if (!committed.contains(name)) found.push_back(name + ": not in the committed report");
+    return found;
+}
+
+TEST(Validation, TheCommittedNumbersAreTheCodes) {
+    nlohmann::ordered_json result = document("", provenance());
+    for (const auto& name : support::scene_names()) {
+        const Scene scene = support::scene(name);
+        const Model model = compile(scene);
+        const auto comparison = compare::compare(model);
+        auto part = scene_document(scene, "", model, recursive::diagnose(model));
+        add_comparison(part, scene, model, comparison);
+        add_verdict(part, comparison.compared, reasons_of(comparison));
+        result["scenes"].push_back(part);
+    }
+    const Numbers committed = numbers_in(support::text_of(ELASTOCHECK_VALIDATION "/numbers.csv"));
+    const Numbers now = numbers_in(numbers_csv(nlohmann::ordered_json::parse(result.dump()), "now"));
+    EXPECT_GT(committed.size(), 100u);
+    for (const auto& line : drift(committed, now))
+        ADD_FAILURE() << line << "\nIf that is meant, run ./dev validation and commit what it writes.";
+}
+
+TEST(Validation, DriftIsSeen) {
+    const Numbers old{{"a", {1, 0.1}}, {"b", {2, 0.1}}};
+    EXPECT_TRUE(drift(old, {{"a", {1.05, 0.1}}, {"b", {2, 0.1}}}).empty());
+    EXPECT_EQ(drift(old, {{"a", {1.2, 0.1}}, {"b", {2, 0.1}}}).size(), 1u);
+    EXPECT_EQ(drift(old, {{"a", {NAN, 0.1}}, {"b", {2, 0.1}}}).size(), 1u);
+    EXPECT_EQ(drift(old, {{"b", {2, 0.1}}, {"c", {2, 0.1}}}).size(), 2u);
+}
+
+}  // namespace
+}  // namespace elastocheck::reports
