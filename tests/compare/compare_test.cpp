@@ -1,9 +1,11 @@
 // Three legs side by side: the numbers that must be reached, and when a comparison is not one.
 #include "compare/compare.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "models/compile.hpp"
 #include "recursive/solve.hpp"
@@ -136,6 +138,22 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     options = {};
     options.agreement.length = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(compare(compile(support::scene("pinned_bar")), options).conclusive());
+}
+
+TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
+    Options options;
+    options.agreement.residual_force = 0;  // nobody holds to the last bit
+    const auto branch = compare(compile(support::scene("pinned_bar")), options).branches.front();
+    ASSERT_EQ(branch.inconclusive.size(), 2u);
+    for (const auto& [run, other, reason] :
+         {std::tuple{Leg::equilibrium, Leg::energy, branch.inconclusive[0]},
+          std::tuple{Leg::energy, Leg::equilibrium, branch.inconclusive[1]}}) {
+        const auto& r = branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(other)];
+        EXPECT_EQ(
+            reason,
+            fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
+                        name(run), r.force, r.moment, 1e3 * r.length, name(other)));
+    }
 }
 
 TEST(Compare, NothingComparedIsNotConclusive) {
