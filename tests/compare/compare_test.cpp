@@ -156,6 +156,17 @@ TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
     }
 }
 
+TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
+    for (const auto& branch : mcpherson().branches) {
+        EXPECT_EQ(branch.deviation.a, Leg::equilibrium);
+        EXPECT_EQ(branch.deviation.b, Leg::recursive);
+        for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
+            EXPECT_EQ(branch.deviation.equal_load.channels[c].end,
+                      branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
+                << mcpherson().channels[c].name;
+    }
+}
+
 TEST(Compare, NothingComparedIsNotConclusive) {
     EXPECT_FALSE(Comparison{}.conclusive());
     Model model = compile(support::scene("pinned_bar"));
