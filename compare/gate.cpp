@@ -132,24 +132,31 @@ void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& ve
                                               name(limit.deviation), limit.channel));
 }
 
-// Branches, their loads and their order of loads must be the accepted ones.
-void judge_branches(const Baseline& baseline, const Measurement& measurement, Verdict& verdict) {
+// The branches that can be compared: there are both, at the same loads. Numbers at other loads answer another
+// question, so the series of the rest are not looked at.
+std::vector<std::string> common_branches(const Baseline& baseline, const Measurement& measurement,
+                                         Verdict& verdict) {
+    std::vector<std::string> common;
+    const auto cannot = [&](const std::string& branch, const std::string& why) {
+        verdict.reasons.push_back(fmt::format("branch '{}' {}", branch, why));
+    };
     for (const auto& was : baseline.accepted.branches) {
         const GatedBranch* is = find(measurement, was.name);
         if (is == nullptr)
-            verdict.reasons.push_back(
-                fmt::format("branch '{}' is in the baseline and was not measured", was.name));
+            cannot(was.name, "is in the baseline and was not measured");
         else if (is->loads != was.loads)
-            verdict.reasons.push_back(
-                fmt::format("branch '{}' is measured at other loads than the accepted ones ({} to {:g} "
-                            "instead of {} to {:g})",
-                            was.name, is->loads.size(), is->loads.empty() ? 0 : is->loads.back(),
-                            was.loads.size(), was.loads.empty() ? 0 : was.loads.back()));
+            cannot(was.name,
+                   fmt::format("is measured at other loads than the accepted ones ({} up to {:g} instead of "
+                               "{} up to {:g})",
+                               is->loads.size(), is->loads.empty() ? 0 : is->loads.back(), was.loads.size(),
+                               was.loads.empty() ? 0 : was.loads.back()));
+        else
+            common.push_back(was.name);
     }
     for (const auto& is : measurement.branches)
         if (find(baseline.accepted, is.name) == nullptr)
-            verdict.reasons.push_back(
-                fmt::format("branch '{}' is new: the baseline does not have it", is.name));
+            cannot(is.name, "is new: the baseline does not have it");
+    return common;
 }
 
 void add_counters(const std::string& branch, Quantity quantity, const LegRun& run,
@@ -283,15 +290,21 @@ Verdict judge(const Baseline& baseline, const Measurement& measurement, Toleranc
     if (baseline.accepted.scene != measurement.scene)
         verdict.reasons.push_back(fmt::format("the baseline is of scene '{}', this is '{}'",
                                               baseline.accepted.scene, measurement.scene));
-    judge_branches(baseline, measurement, verdict);
+    const auto common = common_branches(baseline, measurement, verdict);
+    // A series of a branch that neither side lists is looked at too: nothing may slip through.
+    const auto looked_at = [&](const std::string& branch) {
+        return std::ranges::find(common, branch) != common.end() ||
+               (find(baseline.accepted, branch) == nullptr && find(measurement, branch) == nullptr);
+    };
 
     const auto tolerances = baseline.tolerances.find(kind);
     static const Tolerances none;
     for (const auto& was : baseline.accepted.series)
-        judge_series(baseline, tolerances == baseline.tolerances.end() ? none : tolerances->second, was,
-                     measurement, verdict);
+        if (looked_at(was.branch))
+            judge_series(baseline, tolerances == baseline.tolerances.end() ? none : tolerances->second, was,
+                         measurement, verdict);
     for (const auto& is : measurement.series)
-        if (find(baseline.accepted, is.branch, is.quantity, is.channel) == nullptr)
+        if (looked_at(is.branch) && find(baseline.accepted, is.branch, is.quantity, is.channel) == nullptr)
             verdict.reasons.push_back(described(is) + " is new: the baseline does not have it");
     for (const auto& limit : baseline.limits) judge_limit(limit, measurement, verdict);
     if (verdict.compared == 0) verdict.reasons.emplace_back("nothing was compared");

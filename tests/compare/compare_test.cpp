@@ -1,9 +1,11 @@
 // Three legs side by side: the numbers that must be reached, and when a comparison is not one.
 #include "compare/compare.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "models/compile.hpp"
 #include "recursive/solve.hpp"
@@ -128,14 +130,41 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     Options options;
     options.agreement.length = 0;  // no two solvers agree to the last bit
     const auto comparison = compare(compile(support::scene("pinned_bar")), options);
-    EXPECT_FALSE(comparison.conclusive());
-    EXPECT_NE(comparison.branches[0].inconclusive[0].find("disagree on tip_x"), std::string::npos);
+    ASSERT_FALSE(comparison.conclusive());
+    EXPECT_NE(comparison.branches[0].inconclusive.at(0).find("disagree on tip_x"), std::string::npos);
     options = {};
     options.agreement.residual_force = 0;
     EXPECT_FALSE(compare(compile(support::scene("pinned_bar")), options).conclusive());
     options = {};
     options.agreement.length = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(compare(compile(support::scene("pinned_bar")), options).conclusive());
+}
+
+TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
+    Options options;
+    options.agreement.residual_force = 0;  // nobody holds to the last bit
+    const auto branch = compare(compile(support::scene("pinned_bar")), options).branches.front();
+    ASSERT_EQ(branch.inconclusive.size(), 2u);
+    for (const auto& [run, other, reason] :
+         {std::tuple{Leg::equilibrium, Leg::energy, branch.inconclusive[0]},
+          std::tuple{Leg::energy, Leg::equilibrium, branch.inconclusive[1]}}) {
+        const auto& r = branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(other)];
+        EXPECT_EQ(
+            reason,
+            fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
+                        name(run), r.force, r.moment, 1e3 * r.length, name(other)));
+    }
+}
+
+TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
+    for (const auto& branch : mcpherson().branches) {
+        EXPECT_EQ(branch.deviation.a, Leg::equilibrium);
+        EXPECT_EQ(branch.deviation.b, Leg::recursive);
+        for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
+            EXPECT_EQ(branch.deviation.equal_load.channels[c].end,
+                      branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
+                << mcpherson().channels[c].name;
+    }
 }
 
 TEST(Compare, NothingComparedIsNotConclusive) {

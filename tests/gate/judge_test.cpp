@@ -184,6 +184,26 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
     }
 }
 
+TEST(Gate, NumbersAtOtherLoadsAreNotComparedWithTheAcceptedOnes) {
+    Measurement m = measurement();
+    m.branches[0].loads.back() = 30;
+    value(m, Quantity::recursive, "toe", 2) = 9;
+    const Verdict verdict = judged(baseline(), m);
+    EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);
+    EXPECT_EQ(verdict.compared, 11);  // the other branch
+    EXPECT_EQ(verdict.reasons.size(), 1u);
+    EXPECT_TRUE(verdict.offences.empty());
+}
+
+TEST(Gate, ASeriesOfABranchThatNobodyListsIsNotAPass) {
+    Baseline b = baseline();
+    b.accepted.series[0].branch = "nowhere";
+    EXPECT_EQ(judged(b, measurement()).judgement(), Judgement::could_not_judge);
+    Measurement m = measurement();
+    m.series.push_back({"nowhere", Quantity::recursive, "toe", "deg", {0, 1, 4}});
+    EXPECT_EQ(judged(baseline(), m).judgement(), Judgement::could_not_judge);
+}
+
 TEST(Gate, SwappedChannelsFail) {
     Measurement m = measurement();
     std::swap(m.series[0].values, m.series[1].values);

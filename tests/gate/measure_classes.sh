@@ -1,6 +1,6 @@
 #!/bin/sh
-# Measures what the cross-build tolerances rest on: builds the command with several compilers and flags, lets each
-# measure every built-in scene, and prints how far apart they are, by unit.
+# Measures what the cross-build tolerances rest on: builds the command with several compilers and flags, lets
+# each measure every built-in scene, and prints how far apart they are, by unit.
 #
 #   ./dev classes
 set -eu
@@ -24,4 +24,5 @@ gcc-native|g++|-O3 -march=native -DNDEBUG -w
 clang-O3|clang++|-O3 -DNDEBUG
 BUILDS
 
-build/release/tests/gate/class_table "$work/gcc-O3/baselines" "$work"/gcc-O0/baselines "$work"/gcc-native/baselines "$work"/clang-O3/baselines
+build/release/tests/gate/class_table "$work/gcc-O3/baselines" "$work/gcc-O0/baselines" \
+    "$work/gcc-native/baselines" "$work/clang-O3/baselines"

@@ -1,14 +1,11 @@
 #!/bin/sh
-# matrix.sh FAULTS WORK OUTPUT FAULT...: results.md (for people) and results.csv (fault × alarm) from what mutate.sh left in
-# WORK. Exit code 1 when a fault survived.
+# matrix.sh FAULTS WORK OUTPUT FAULT...: results.md (for people) and results.csv (fault × alarm) from what mutate.sh
+# left in WORK. Exit code 1 when a fault survived.
 set -eu
 faults=$1 work=$2 output=$3
 shift 3
-field() {
-    awk -v fault="$1" -v key="$2" '
-        $1 == "fault" { inside = $2 == fault }
-        inside && $1 == key { sub(/^[ ]*[^ ]+ ?/, ""); print; exit }' "$faults"
-}
+here=$(dirname "$0")
+field() { awk -v fault="$1" -v key="$2" -f "$here/field.awk" "$faults"; }
 survived=0
 {
     printf 'fault'
@@ -37,7 +34,8 @@ alarm's: measured over allowed, where it tells both."
         else
             first='**survived**' margin='' survived=$((survived + 1))
         fi
-        echo "| $fault | $(field "$fault" file) | $(field "$fault" is) | $first | $margin | $(cut -f1 "$rang" | sort -u | wc -l) |"
+        alarms=$(cut -f1 "$rang" | sort -u | wc -l)
+        echo "| $fault | $(field "$fault" file) | $(field "$fault" is) | $first | $margin | $alarms |"
     done
     echo
     echo "$# faults, $survived survived, $(wc -l <"$work/alarms") alarms. Never rang:"

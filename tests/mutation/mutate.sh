@@ -1,12 +1,12 @@
 #!/bin/sh
-# Alarms that are shown to ring: puts each fault of faults.txt into a copy of the tree, rebuilds what changed, runs the
-# alarms (every GoogleTest suite, the gate on every scene) and writes the matrix fault × alarm.
+# Alarms that are shown to ring: puts each fault of faults.txt into a copy of the tree, rebuilds what changed, runs
+# the alarms (every GoogleTest suite, the gate on every scene) and writes the matrix fault × alarm.
 #
 #   mutate.sh [-n] [-s] [-o DIR] [-w WORK] [FAULT...]
 #
-# FAULT: names from faults.txt, default all, with -s the sample; -n only looks whether each still has its place in the
-# code. DIR gets results.md and results.csv (default: here). WORK keeps the copy and
-# its build between runs (default: build/mutation). Exit code 1: a fault survived, or an alarm rings without a fault.
+# FAULT: names from faults.txt, default all, with -s the sample; -n only looks whether each still has its place in
+# the code. DIR gets results.md and results.csv (default: here). WORK keeps the copy, its build and what was found
+# between runs (default: build/mutation). Exit code 1: a fault survived, or an alarm rings without a fault.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -29,12 +29,10 @@ build=$work/build
 unset CI GITHUB_ACTIONS  # the copy's baselines are not committed anywhere
 
 # field FAULT KEY: its value in faults.txt
-field() {
-    awk -v fault="$1" -v key="$2" '
-        $1 == "fault" { inside = $2 == fault }
-        inside && $1 == key { sub(/^[ ]*[^ ]+ ?/, ""); print; exit }' "$faults"
+field() { awk -v fault="$1" -v key="$2" -f "$here/field.awk" "$faults"; }
+names() {
+    awk -v key="${chosen:-fault}" '$1 == "fault" { name = $2 } $1 == key { print name }' "$faults"
 }
-names() { awk -v sample="$chosen" '$1 == "fault" { name = $2 } $1 == (sample == "" ? "fault" : "sample") { print name }' "$faults"; }
 
 # replace FAULT PREFIX: the one occurrence of its text in the copy; fails when there is not exactly one.
 replace() {
@@ -80,8 +78,8 @@ alarms() {
 tests='models/test_models recursive/test_recursive recursive/test_allocation reference/test_equilibrium
     reference/test_energy compare/test_compare compare/test_trade gate/test_gate reports/test_reports'
 
-# ring FOLDER [STAMP]: runs the alarms (those built since STAMP) and leaves "alarm <tab> test <tab> margin" of those that
-# rang in FOLDER/rang. A margin is measured over allowed, where the message tells both.
+# ring FOLDER [STAMP]: runs the alarms (those built since STAMP) and leaves "alarm <tab> test <tab> margin" of those
+# that rang in FOLDER/rang.
 ring() {
     rm -rf "$1" && mkdir -p "$1"
     command=$build/reports/elastocheck
@@ -94,43 +92,13 @@ ring() {
         if [ $# -lt 2 ] || [ -n "$(find $touched -newer "$2")" ]; then echo "$test"; fi
     done | OUT=$1 BUILD=$build xargs -P "$(nproc)" -I{} sh -c '
         log=$OUT/$(basename {}).log
-        timeout 300 "$BUILD/tests/{}" --gtest_brief=1 >"$log" 2>&1 || echo "exit $?" >>"$log"'
-    timeout 300 "$command" gate "$tree"/models/scenes/*.yaml --class cross-build >"$1/gate.log" 2>&1 || true
+        timeout 100 "$BUILD/tests/{}" --gtest_brief=1 >"$log" 2>&1 || echo "exit $?" >>"$log"'
+    timeout 100 "$command" gate "$tree"/models/scenes/*.yaml --class cross-build >"$1/gate.log" 2>&1 || true
     for test in $tests; do
         log=$1/$(basename "$test").log
-        [ ! -f "$log" ] || awk -v run="$(basename "$test")" '
-            function ratio(a, b) { return b + 0 > 0 ? sprintf("%.2g", a / b) : "" }
-            / vs / && match($0, /actual: [-+0-9.e]+ vs [-+0-9.e]+/) && margin == "" {
-                split(substr($0, RSTART + 8, RLENGTH - 8), side, " vs ")
-                if (side[1] + 0 > side[2] + 0) margin = ratio(side[1], side[2])
-            }
-            /^The difference between/ && match($0, / is [-+0-9.e]+, which exceeds/) {
-                split(substr($0, RSTART + 4), word, ","); difference = word[1]
-            }
-            / evaluates to [-+0-9.e]+\.$/ && difference != "" && margin == "" {
-                bound = $NF; sub(/\.$/, "", bound); last = bound
-            }
-            /^\[  FAILED  \] .* ms\)$/ {
-                if (margin == "" && difference != "") margin = ratio(difference, last)
-                sub(/,$/, "", $4)
-                split($4, name, ".")
-                print name[1] "\t" $4 "\t" margin
-                margin = difference = ""; any = 1
-            }
-            /^exit / { code = $2 }
-            END { if (code == 124) print run "\t" run " (no end)\t"; else if (code != "" && !any) print run "\t" run " (crash)\t" }' "$log"
+        [ ! -f "$log" ] || awk -v run="$(basename "$test")" -f "$here/tests_that_rang.awk" "$log"
     done >"$1/rang"
-    awk '
-        function tell() { if (scene != "") print "gate:" scene "\tgate: " scene "\t" margin }
-        /^[^ ].*\.yaml: / {
-            tell(); scene = ""; margin = ""
-            if ($0 !~ /: passed: /) { scene = $1; sub(/:$/, "", scene); sub(/.*\//, "", scene); sub(/\.yaml$/, "", scene) }
-            row = 0; next
-        }
-        /^  branch / { row = 1; next }
-        row == 1 { margin = sprintf("%.2g", $(NF - 1)); row = 2 }
-        END { tell() }' "$1/gate.log" >>"$1/rang"
-    if ! grep -q ' numbers out of tolerance, in ' "$1/gate.log"; then printf 'gate:all\tgate (crash)\t\n' >>"$1/rang"; fi
+    awk -f "$here/scenes_that_rang.awk" "$1/gate.log" >>"$1/rang"
 }
 
 # shellcheck disable=SC2046 # lists of words
@@ -139,10 +107,14 @@ for fault in "$@"; do
     [ -n "$(field "$fault" file)" ] || { echo "mutate: no fault '$fault' in faults.txt" >&2; exit 2; }
 done
 
-# What differs gets a new time, older sources included and what an interrupted run left: times are what a build goes by.
+# What differs gets a new time, older sources included and what an interrupted run left: a build goes by times.
 mkdir -p "$tree" "$output"
-(cd "$root" && find CMakeLists.txt models recursive reference compare reports tests -type f) | while read -r file; do
-    cmp -s "$root/$file" "$tree/$file" || { mkdir -p "$tree/$(dirname "$file")" && cp "$root/$file" "$tree/$file"; }
+rooms='models recursive reference compare reports tests'
+# shellcheck disable=SC2086 # a list of words
+(cd "$root" && find CMakeLists.txt $rooms -type f) | while read -r file; do
+    cmp -s "$root/$file" "$tree/$file" && continue
+    mkdir -p "$tree/$(dirname "$file")"
+    cp "$root/$file" "$tree/$file"
 done
 (cd "$tree" && find . -type f) | while read -r file; do [ -f "$root/$file" ] || rm "$tree/$file"; done
 if [ "$dry" ]; then
@@ -168,11 +140,13 @@ if [ -s "$work/sound/rang" ]; then
 fi
 
 alarms >"$work/alarms"
-rm -rf "$work/results" && mkdir -p "$work/results"
+[ $# -lt "$(grep -c '^fault ' "$faults")" ] || rm -rf "$work/results"
+mkdir -p "$work/results"
 for fault in "$@"; do
     stamp=$work/stamp
     touch "$stamp" && sleep 1
     apply "$fault" || exit 2
+    rm -rf "$work/results/$fault"
     if compile; then
         ring "$work/results/$fault" "$stamp"
     else
@@ -183,10 +157,15 @@ for fault in "$@"; do
     fi
     revert "$fault"
     if [ -s "$work/results/$fault/rang" ]; then
-        echo "$fault: $(head -1 "$work/results/$fault/rang" | cut -f2) ($(cut -f1 "$work/results/$fault/rang" | sort -u | wc -l) alarms)"
+        first=$(head -1 "$work/results/$fault/rang" | cut -f2)
+        echo "$fault: $first ($(cut -f1 "$work/results/$fault/rang" | sort -u | wc -l) alarms)"
     else
         echo "$fault: SURVIVED"
     fi
 done
 
-sh "$here/matrix.sh" "$faults" "$work" "$output" "$@"
+# With what earlier runs found of the other faults.
+# shellcheck disable=SC2046 # a list of words
+sh "$here/matrix.sh" "$faults" "$work" "$output" $(chosen='' && names | while read -r fault; do
+    [ ! -f "$work/results/$fault/rang" ] || echo "$fault"
+done)

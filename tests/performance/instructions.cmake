@@ -1,11 +1,12 @@
-# Counts the instructions of recursive::solve over the published sweep (valgrind --tool=callgrind), and compares with the
-# count in COUNTS for this compiler and these flags, or writes it there (RECORD).
+# Counts the instructions of recursive::solve over the published sweep (valgrind --tool=callgrind), and compares
+# with the count in COUNTS for this compiler and these flags, or writes it there (RECORD).
 if(NOT VALGRIND)
   message("not judged: valgrind is not installed")
   return()
 endif()
 execute_process(
-  COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=elastocheck::recursive::solve(*"
+  COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null
+          "--toggle-collect=elastocheck::recursive::solve(*"
           ${SWEEP} ${SCENE}
   OUTPUT_VARIABLE said ERROR_VARIABLE told RESULT_VARIABLE failed)
 if(failed OR NOT said MATCHES "600 steps" OR NOT told MATCHES "Collected : ([0-9]+)")
@@ -44,6 +45,6 @@ math(EXPR more "${count} - ${recorded}")
 math(EXPR permille "1000 * ${more} / ${recorded}")
 message("${count} instructions, ${recorded} recorded: ${permille} per mille more, 20 allowed either way")
 if(more GREATER allowed OR more LESS -${allowed})
-  message(FATAL_ERROR "Slower is a regression. Faster, or meant: cmake --build --preset release --target record_instructions, "
-                      "and commit ${COUNTS} with the reason.")
+  message(FATAL_ERROR "Slower is a regression. Faster, or meant: cmake --build --preset release --target "
+                      "record_instructions, and commit ${COUNTS} with the reason.")
 endif()
