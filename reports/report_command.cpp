@@ -19,6 +19,7 @@
 #include "reports/field.hpp"
 #include "reports/files.hpp"
 #include "reports/folder.hpp"
+#include "reports/gnuplot.hpp"
 #include "reports/measurement.hpp"
 #include "reports/report.hpp"
 #include "reports/study_tables.hpp"
@@ -136,7 +137,12 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
     const auto start = std::chrono::steady_clock::now();
-    reports::Staging::check(request.folder);  // before the work, not after it
+    // What can be wrong is said before the work, not after it.
+    reports::Staging::check(request.folder);
+    reports::run_gnuplot(".", {"--version"});
+    (void)compare::parse_tolerance(request.tolerance);
+    for (const auto& scene : request.scenes) (void)read_scene(scene);
+    if (!request.measured.empty()) (void)read_text(request.measured);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {

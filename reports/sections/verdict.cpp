@@ -242,6 +242,8 @@ std::optional<Section> verdict_section(const Field& scene) {
         if (!agreement.empty()) words["agreement"] = enumerated(agreement);
     }
     words["recommendation"] = recommendation_words(scene, tiles);
+    if (const auto measured = scene.find("measured"))
+        words["measured"] = {{"file", (*measured)["file"].text()}, {"points", (*measured)["points"].whole()}};
     words["tiles"] = tiles;
     return section;
 }

@@ -213,6 +213,9 @@ TEST(ReportCommand, SaysWhatItNeeds) {
           Case{scene, "--output is required"}, Case{"--from " + document + ".none -o out", "cannot be read"},
           Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
           Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
+          Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
+          Case{scene + " --tolerance 1inch -o out", "'inch' is not a unit of it"},
+          Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"},
           Case{scene + " --figures png -o out", "--figures"}}) {
         const auto said =
             support::run("cd " + folder.path.string() + " && " + command + " report " + arguments);
