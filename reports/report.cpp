@@ -129,6 +129,33 @@ struct Page {
     }
 };
 
+// Several scenes at a glance: what each one's verdict carries.
+Table summary(const std::list<ScenePart>& parts) {
+    Table table{
+        .caption = "At a glance: the published recursion against the references, and what to use instead",
+        .columns = {{"scene", true},
+                    {"verdict", true},
+                    {"worst at equal travel"},
+                    {"worst at equal load"},
+                    {"full load over travel, error"},
+                    {"cheapest within the tolerance", true}}};
+    for (const auto& part : parts) {
+        std::vector<std::string> row{part.scene["name"].text(), part.scene["verdict"]["conclusive"].truth()
+                                                                    ? "conclusive"
+                                                                    : "inconclusive"};
+        for (const char* key : {"travel", "load", "rate", "chosen"}) {
+            std::string cell = "–";
+            for (const auto& section : part.sections)
+                if (section.id == "verdict")
+                    for (const auto& tile : section.words["tiles"])
+                        if (tile["key"] == key) cell = tile["value"];
+            row.push_back(cell);
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
 json provenance(const Field& result) {
     const Field p = result["provenance"];
     Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
@@ -243,6 +270,7 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         {"title", scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
         {"several", scenes.size() > 1},
         {"scenes", scenes},
+        {"summary", table_json(summary(parts))},
         {"provenance", provenance(root)},
         {"reproduce", root["reproduce"].text()},
         {"tints", tints}};

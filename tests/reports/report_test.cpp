@@ -127,6 +127,24 @@ TEST(Report, TwoScenesOfOneNameShareAPage) {
     EXPECT_TRUE(contains(html, "<a href=\"#pinned-bar-2\">twin</a>"));
 }
 
+TEST(Report, SeveralScenesBeginWithASummaryOfTheirVerdicts) {
+    const Folder folder;
+    json result = sample_result();
+    result["scenes"].push_back(small_result("second")["scenes"][0]);
+    result["scenes"][1]["verdict"]["conclusive"] = false;
+    write_report(result, "result.json", folder.path / "r");
+    const std::string md = text_of(folder.path / "r" / "report.md");
+    const auto row = [&](const std::string& name) {
+        const auto at = md.find("| " + name + " |");
+        return at == md.npos ? "" : md.substr(at, md.find('\n', at) - at);
+    };
+    EXPECT_TRUE(contains(row("McPherson strut (Kang 2004, section 3)"), "| conclusive |"))
+        << md.substr(0, 1500);
+    EXPECT_FALSE(contains(row("McPherson strut (Kang 2004, section 3)"), "–"))
+        << row("McPherson strut (Kang 2004, section 3)");
+    EXPECT_TRUE(contains(row("second"), "| inconclusive |")) << row("second");
+}
+
 TEST(Report, ReplacesAnOlderOneCompletely) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");
