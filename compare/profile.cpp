@@ -28,11 +28,7 @@ Profile profile(const Model& model, const Branch& branch, const TradePoint& conf
     EquilibriumPath path;
     switch (configuration.leg) {
         case Leg::recursive:
-            path = recursive::solve(model, branch,
-                                    {.method = *recursive::find_method(configuration.method),
-                                     .steps = steps,
-                                     .length_tolerance = configuration.own_tolerance,
-                                     .angle_tolerance = angle_per_length * configuration.own_tolerance});
+            path = recursive::solve(model, branch, recursion_of(configuration, steps));
             break;
         case Leg::equilibrium: path = truth; break;
         case Leg::energy: path = reference::energy::solve(model, branch, loads); break;

@@ -36,14 +36,7 @@ std::vector<double> loads_of(const Branch& branch, int points) {
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint& with, int points) {
     switch (with.leg) {
-        case Leg::recursive:
-            return recursive::solve(model, branch,
-                                    {.method = *recursive::find_method(with.method),
-                                     .steps = with.steps > 0 ? with.steps : points,
-                                     .record = points,
-                                     .length_tolerance = with.own_tolerance,
-                                     .angle_tolerance = angle_per_length * with.own_tolerance,
-                                     .series = {.tolerance = with.own_tolerance}});
+        case Leg::recursive: return recursive::solve(model, branch, recursion_of(with, points));
         case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
         case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
     }
@@ -316,6 +309,15 @@ double share_of(const Tolerance& tolerance, const Accuracy& error) {
     const double mm = std::isinf(tolerance.mm) ? 0 * error.mm : error.mm / tolerance.mm;
     const double deg = std::isinf(tolerance.deg) ? 0 * error.deg : error.deg / tolerance.deg;
     return worse(mm, deg);
+}
+
+recursive::Options recursion_of(const TradePoint& point, int points) {
+    return {.method = *recursive::find_method(point.method),
+            .steps = point.steps > 0 ? point.steps : points,
+            .record = points,
+            .length_tolerance = point.own_tolerance,
+            .angle_tolerance = angle_per_length * point.own_tolerance,
+            .series = {.tolerance = point.own_tolerance}};
 }
 
 std::string describe(const TradePoint& point) {

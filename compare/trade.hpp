@@ -105,6 +105,9 @@ struct Trade {
 
 Trade trade(const Model& model, const TradeOptions& options = {});
 
+// How the recursion goes in a configuration of it that records `points` equal load increments.
+recursive::Options recursion_of(const TradePoint& point, int points);
+
 // "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
 std::string describe(const TradePoint& point);
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
+#include <list>
 #include <set>
 #include <sstream>
 
@@ -11,8 +11,8 @@
 #include "reports/field.hpp"
 #include "reports/files.hpp"
 #include "reports/folder.hpp"
-#include "reports/gnuplot.hpp"
 #include "reports/numbers.hpp"
+#include "reports/plot.hpp"
 #include "reports/sections/common.hpp"
 #include "reports/sections/sections.hpp"
 #include "reports/svg.hpp"
@@ -23,120 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
-
-// ---- figures
-
-constexpr int width = 440, height = 290;  // [px] of a figure, for the type to keep its size on a phone
-
-const char* style_of(Series::Style style) {
-    switch (style) {
-        case Series::Style::line: return "lines linewidth 1.8";
-        case Series::Style::wide: return "lines linewidth 4";
-        case Series::Style::dashed: return "lines linewidth 1.6 dashtype (6,4)";
-        case Series::Style::thin: return "lines linewidth 1.2";
-        case Series::Style::points: return "points linewidth 1.4 pointsize 0.75";
-        case Series::Style::line_points: return "linespoints linewidth 1.4 pointsize 0.7";
-        case Series::Style::rings: return "points linewidth 1.5 pointsize 1.3";
-        case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
-    }
-    return "lines";
-}
-
-json range_of(double low, double high) {
-    const auto end = [](double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "*"; };
-    return fmt::format("{}:{}", end(low), end(high));
-}
-
-json script_data(const Figure& figure, const std::string& name) {
-    json series = json::array(), bands = json::array(), ticks = json::array();
-    for (std::size_t k = 0; k < figure.series.size(); ++k) {
-        const Series& s = figure.series[k];
-        const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
-                            s.style == Series::Style::line_points;
-        constexpr int symbols[] = {7, 5, 9, 11, 13, 6, 7, 4, 6, 8};
-        series.push_back({{"index", k},
-                          {"title", s.title},
-                          {"style", style_of(s.style)},
-                          {"symbol", points ? json(symbols[s.mark % 10]) : json(nullptr)},
-                          {"colour", palette[s.colour].light},
-                          {"bars", s.style == Series::Style::bars},
-                          {"last", k + 1 == figure.series.size()}});
-    }
-    for (const auto& band : figure.bands)
-        bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
-                         {"high", fmt::format("{:.9g}", band.high)},
-                         {"label", band.label},
-                         {"colour", palette[band.colour].light}});
-    for (const auto& [at, text] : figure.y_ticks)
-        ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
-    return {{"name", name},
-            {"title", figure.title},
-            {"width", std::lround(width * figure.width)},
-            {"height", std::lround(height * figure.height)},
-            {"width_in", fmt::format("{:.2f}", width * figure.width / 96.0)},
-            {"height_in", fmt::format("{:.2f}", height * figure.height / 96.0)},
-            {"x", figure.x},
-            {"y", figure.y},
-            {"log_x", figure.log_x},
-            {"log_y", figure.log_y},
-            {"equal_axes", figure.equal_axes},
-            {"reversed_x", figure.reversed_x},
-            {"reversed_y", figure.reversed_y},
-            {"y_range", range_of(figure.y_low, figure.y_high)},
-            {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
-            {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
-            {"ticks", ticks},
-            {"series", series},
-            {"bands", bands},
-            {"ink", palette[ink].light},
-            {"slate", palette[slate].light},
-            {"faint", palette[faint].light}};
-}
-
-// One block per series, two blank lines between them, one where a line is broken.
-std::string figure_data(const Figure& figure) {
-    const bool bars = !figure.series.empty() && figure.series.front().style == Series::Style::bars;
-    std::string text = bars ? "series,x,y,x low,x high,y low,y high\n" : "series,x,y\n";
-    for (std::size_t k = 0; k < figure.series.size(); ++k) {
-        if (k > 0) text += "\n\n";
-        std::string name = figure.series[k].title;
-        std::ranges::replace(name, '"', '\'');
-        bool broken = true;  // no blank line first, none twice
-        for (const auto& row : figure.series[k].rows) {
-            if (row.empty() && broken) continue;
-            broken = row.empty();
-            if (!row.empty()) text += fmt::format("\"{}\"", name);
-            for (const double value : row) text += fmt::format(",{:.9g}", value);
-            text += "\n";
-        }
-        while (text.ends_with("\n\n")) text.pop_back();
-    }
-    return text;
-}
-
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
-// `id` begins every id in the figure, so it is short.
-Illustration draw(const Figure& figure, const std::string& name, const std::string& id,
-                  const fs::path& folder, const ReportOptions& options) {
-    const fs::path figures = folder / "figures";
-    write_whole(figures / (name + ".csv"), figure_data(figure));
-    write_whole(figures / (name + ".gp"), render("figure.gp", script_data(figure, name), Escape::gnuplot));
-    const std::string script = "figures/" + name + ".gp";
-    run_gnuplot(folder, {script});
-    if (options.pdf) run_gnuplot(folder, {"-e", "pdf=1", script});
-    const fs::path svg = figures / (name + ".svg");
-    const Illustration picture = illustrate(read_text(svg), id, figure.title, figure.description);
-    write_whole(svg, picture.alone);
-    if (options.archive)
-        for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));
-    return picture;
-}
 
 // ---- the page
 
@@ -166,11 +52,18 @@ json paragraphs(const Section& section) {
     return list;
 }
 
+// A scene, its sections, and what its files and ids are called.
+struct ScenePart {
+    Field scene;
+    std::string id;
+    std::vector<Section> sections;
+    std::vector<Plot> plots{};
+};
+
 struct Page {
-    fs::path folder;
-    ReportOptions options;
     std::set<std::string> names{};
-    int drawn = 0;
+    std::vector<Illustration> pictures{};
+    std::size_t next = 0;
 
     std::string unique(const std::string& wanted) {
         std::string name = wanted;
@@ -178,21 +71,29 @@ struct Page {
         return name;
     }
 
-    json figure(const Figure& figure, const std::string& scene) {
-        const std::string name = unique(fmt::format("{}-{}", scene, figure.id));
-        if (options.progress) options.progress("figure " + name);
-        const Illustration picture = draw(figure, name, fmt::format("f{}", ++drawn), folder, options);
-        return {{"name", name},
-                {"title", figure.title},
-                {"description", figure.description},
-                {"svg", picture.inlined}};
+    ScenePart part(const Field& scene) {
+        ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
+                       sections_of(scene)};
+        for (const auto& section : part.sections)
+            for (const auto& group : section.figures)
+                for (const auto& figure : group.figures)
+                    part.plots.push_back({&figure, unique(fmt::format("{}-{}", part.id, figure.id))});
+        return part;
     }
 
-    json section(const Section& section, const std::string& scene) {
+    json figure(const Plot& plot) {
+        return {{"name", plot.name},
+                {"title", plot.figure->title},
+                {"description", plot.figure->description},
+                {"svg", pictures.at(next++).inlined}};
+    }
+
+    json section(const Section& section, const ScenePart& part, std::size_t& plot) {
         json single = json::array(), several = json::array(), tables = json::array();
         for (const auto& group : section.figures) {
             json figures = json::array();
-            for (const auto& one : group.figures) figures.push_back(figure(one, scene));
+            for (std::size_t k = 0; k < group.figures.size(); ++k)
+                figures.push_back(figure(part.plots.at(plot++)));
             json entry = {
                 {"caption", group.caption}, {"figures", figures}, {"table", table_json(group.table)}};
             entry["wide"] = group.figures.size() > 1;
@@ -204,7 +105,7 @@ struct Page {
         json tiles = section.words.contains("tiles") ? section.words["tiles"] : json::array();
         json all = paragraphs(section);
         return {
-            {"id", unique(fmt::format("{}-{}", scene, section.id))},
+            {"id", unique(fmt::format("{}-{}", part.id, section.id))},
             {"title", section.title},
             {"verdict", section.id == "verdict"},
             {"paragraphs", all},
@@ -217,16 +118,43 @@ struct Page {
             {"tables", tables}};
     }
 
-    json scene(const Field& scene) {
-        const std::string id = unique(slug(fs::path(scene["source"].text()).stem().string()));
+    json scene(const ScenePart& part) {
         json sections = json::array();
-        for (const auto& one : sections_of(scene)) sections.push_back(section(one, id));
-        return {{"id", id},
-                {"name", scene["name"].text()},
-                {"conclusive", scene["verdict"]["conclusive"].truth()},
+        std::size_t plot = 0;
+        for (const auto& one : part.sections) sections.push_back(section(one, part, plot));
+        return {{"id", part.id},
+                {"name", part.scene["name"].text()},
+                {"conclusive", part.scene["verdict"]["conclusive"].truth()},
                 {"sections", sections}};
     }
 };
+
+// Several scenes at a glance: what each one's verdict carries.
+Table summary(const std::list<ScenePart>& parts) {
+    Table table{
+        .caption = "At a glance: the published recursion against the references, and what to use instead",
+        .columns = {{"scene", true},
+                    {"verdict", true},
+                    {"worst at equal travel"},
+                    {"worst at equal load"},
+                    {"full load over travel, error"},
+                    {"cheapest within the tolerance", true}}};
+    for (const auto& part : parts) {
+        std::vector<std::string> row{part.scene["name"].text(), part.scene["verdict"]["conclusive"].truth()
+                                                                    ? "conclusive"
+                                                                    : "inconclusive"};
+        for (const char* key : {"travel", "load", "rate", "chosen"}) {
+            std::string cell = "–";
+            for (const auto& section : part.sections)
+                if (section.id == "verdict")
+                    for (const auto& tile : section.words["tiles"])
+                        if (tile["key"] == key) cell = tile["value"];
+            row.push_back(cell);
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
 
 json provenance(const Field& result) {
     const Field p = result["provenance"];
@@ -324,9 +252,17 @@ void write_report(const json& result, const std::string& file, const fs::path& f
                   const ReportOptions& options) {
     Staging staging(folder);
     const Field root{&result, "", &file};
-    Page page{staging.path(), options};
+    Page page;
+    std::list<ScenePart> parts;  // plots point into them
+    std::vector<Plot> plots;
+    for (const auto& scene : root["scenes"].items()) {
+        parts.push_back(page.part(scene));
+        plots.insert(plots.end(), parts.back().plots.begin(), parts.back().plots.end());
+    }
+    if (options.progress) options.progress(fmt::format("{} figures", plots.size()));
+    page.pictures = draw(plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
     json scenes = json::array();
-    for (const auto& scene : root["scenes"].items()) scenes.push_back(page.scene(scene));
+    for (const auto& part : parts) scenes.push_back(page.scene(part));
     json tints = json::array();
     for (std::size_t k = 0; k < palette.size(); ++k)
         tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
@@ -334,6 +270,7 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         {"title", scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
         {"several", scenes.size() > 1},
         {"scenes", scenes},
+        {"summary", table_json(summary(parts))},
         {"provenance", provenance(root)},
         {"reproduce", root["reproduce"].text()},
         {"tints", tints}};

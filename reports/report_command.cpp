@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "compare/compare.hpp"
+#include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/profile.hpp"
 #include "compare/study.hpp"
@@ -20,7 +21,9 @@
 #include "reports/field.hpp"
 #include "reports/files.hpp"
 #include "reports/folder.hpp"
+#include "reports/gnuplot.hpp"
 #include "reports/measurement.hpp"
+#include "reports/order_tables.hpp"
 #include "reports/report.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/trade_tables.hpp"
@@ -90,6 +93,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     document["trade"] = reports::trade_json(trade);
     if (const json profile = recommended(model, trade); !profile.is_null()) document["recommended"] = profile;
 
+    document["orders"] = reports::orders_json(compare::order_study(model, {.progress = tell}));
+
     // A million steps, as `elastocheck trade` takes them, show more of round-off and take half a minute.
     document["precision"] = reports::precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
@@ -135,7 +140,12 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
     const auto start = std::chrono::steady_clock::now();
-    reports::Staging::check(request.folder);  // before the work, not after it
+    // What can be wrong is said before the work, not after it.
+    reports::Staging::check(request.folder);
+    reports::run_gnuplot(".", {"--version"});
+    (void)compare::parse_tolerance(request.tolerance);
+    for (const auto& scene : request.scenes) (void)read_scene(scene);
+    if (!request.measured.empty()) (void)read_text(request.measured);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {

@@ -41,6 +41,9 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     return outputs;
 }
 
+// Below 1e-9 of a mm or deg it is the arithmetic's.
+std::string value(double x, int digits = 5) { return std::abs(x) < 1e-9 ? "0" : number(x, digits); }
+
 std::vector<double> values_of(const LegCurve& curve, const Output& output) {
     if (output.load) return curve.load;
     auto values = curve.channel(output.channel);
@@ -56,6 +59,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     Table table;
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
+    const auto measured = measured_series(scene, output.load ? "load" : output.channel, output.change);
+    const bool fourth = measured && !output.load;  // a column of its own
     bool travel = false;
     double most = 0;
     for (const auto& branch : sweep.branches) {
@@ -83,7 +88,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                     row.push_back(k < c->travel.size() ? number(c->travel[k], 5) : "–");
             } else {
                 if (!a.travel.empty()) row.push_back(number(a.travel[k], 4));
-                for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? number((*v)[k], 5) : "–");
+                for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
+                if (fourth)
+                    row.push_back(a.travel.empty() ? "–" : value(value_between(*measured, a.travel[k])));
             }
             rows.emplace_back(a.load[k], row);
         }
@@ -96,6 +103,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     const std::string unit = output.load ? " travel [mm]" : "";
     for (const char* leg : {"equilibrium", "energy", "published recursion"})
         table.columns.push_back({leg + unit});
+    if (fourth) table.columns.push_back({"measured"});
     table.caption = output.load ? fmt::format("Travel at equal load, {}", sweep.name)
                                 : fmt::format("{}, at equal load, {}", output.axis, sweep.name);
 
@@ -105,9 +113,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                   .x = travel ? "travel [mm]" : fmt::format("load [{}]", sweep.load_unit),
                   .y = output.axis};
     figure.series = {reference, energy, published};
-    if (output.load || !output.channel.empty())
-        if (auto measured = measured_series(scene, output.load ? "load" : output.channel, output.change))
-            figure.series.push_back(*measured);
+    if (measured) figure.series.push_back(*measured);
     const auto [low, high] = std::ranges::minmax_element(
         reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
     figure.description = fmt::format(
@@ -131,7 +137,7 @@ Table outputs(const Field& scene, const Field& branch) {
         std::vector<std::string> row{channel.heading()};
         for (const char* leg : {"recursive", "equilibrium", "energy"}) {
             const auto values = curve_of(branch, leg).channel(channel.name);
-            row.push_back(values.empty() ? "–" : number(values.back(), 7));
+            row.push_back(values.empty() ? "–" : value(values.back(), 7));
         }
         table.rows.push_back(row);
     }

@@ -91,6 +91,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     table.columns.push_back({fmt::format("references apart [{}]", unit)});
 
     double high = 1e-9, load_peak = 0, travel_peak = 0, apart = 0;
+    bool complete = true;  // both references went all the way
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
@@ -100,6 +101,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         raise_peak(load_peak, by_load);
         raise_peak(travel_peak, by_travel);
         raise_peak(apart, doubt);
+        complete = complete && doubt.size() == by_load.size() && doubt.size() > 1;
         append(curves.load, a.load, by_load);
         append(curves.travel, a.load, by_travel);
         append(curves.references, a.load, doubt);
@@ -160,19 +162,19 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.5)));
     if (std::isfinite(tolerance))
         figure.bands.push_back({figure.y_low, tolerance, "within " + setting(tolerance, unit)});
+    const std::string agreement =
+        complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
+                 : "The references did not both go all the way.";
     figure.description = fmt::format(
         "Logarithmic plot over the load from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
-        "published at equal load up to {}, at equal travel up to {} {}{}; the references are at most {} {} "
-        "apart.",
+        "published at equal load up to {}{}{}. {}",
         number(sweep.branches.back()["to"].number(), 4), number(sweep.branches.front()["to"].number(), 4),
-        sweep.load_unit, enumerated(names), number(load_peak, 2), number(travel_peak, 2), unit,
-        std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", number(apart, 2), unit);
+        sweep.load_unit, enumerated(names), quantity(load_peak, unit),
+        curves.travel.rows.empty() ? "" : ", at equal travel up to " + quantity(travel_peak, unit),
+        std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
-    return FigureGroup{fmt::format("Worst of {}. The references are at most {} {} apart.", enumerated(names),
-                                   number(apart, 2), unit),
-                       {figure},
-                       table};
+    return FigureGroup{fmt::format("Worst of {}. {}", enumerated(names), agreement), {figure}, table};
 }
 
 // Below 1e-9 it is the arithmetic's.

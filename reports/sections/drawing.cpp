@@ -76,7 +76,9 @@ double tick(const Figure& figure) {
 std::optional<Section> drawing_section(const Field& scene) {
     const auto drawing = scene.find("drawing");
     if (!drawing) return std::nullopt;
-    Section section{.id = "drawing", .title = "The suspension"};
+    Section section{.id = "drawing", .title = "The mechanism"};
+    for (const auto& channel : main_channels_of(scene))
+        if (channel.name == "toe") section.title = "The suspension";
     const Field named = (*drawing)["points"];
     const std::size_t count = named.items().size();
     std::vector<Line> lines;
@@ -141,7 +143,7 @@ std::optional<Section> drawing_section(const Field& scene) {
         std::vector<std::string> names;
         for (const auto& end : ends) names.push_back(end.branch);
         figure.description = fmt::format(
-            "{} of the suspension at its design position, with the positions at full load in {} drawn over "
+            "{} at the design position, with the positions at full load in {} drawn over "
             "it. "
             "The coordinates are in the table.",
             view.title, enumerated(names));

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "reports/numbers.hpp"
 #include "reports/sections/common.hpp"
 #include "reports/sections/sections.hpp"
@@ -24,6 +27,17 @@ std::optional<Series> measured_series(const Field& scene, const std::string& cha
     Series series{"measured", Series::Style::rings, purple, 5};
     for (std::size_t k = 0; k < x.size(); ++k) series.rows.push_back({x[k], y[k] - first});
     return series;
+}
+
+double value_between(const Series& measured, double x) {
+    auto rows = measured.rows;
+    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]) || !std::isfinite(row[1]); });
+    std::ranges::sort(rows);
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+        const auto &a = rows[k - 1], &b = rows[k];
+        if (a[0] <= x && x <= b[0] && a[0] < b[0]) return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+    }
+    return NAN;
 }
 
 std::optional<Section> measured_section(const Field& scene) {

@@ -13,4 +13,7 @@ namespace elastocheck::reports {
 // travel 0 where asked for. Nothing where it was not measured.
 std::optional<Series> measured_series(const Field& scene, const std::string& channel, bool change);
 
+// Between its points, straight; NaN outside them.
+double value_between(const Series& measured, double x);
+
 }  // namespace elastocheck::reports

@@ -117,6 +117,7 @@ std::optional<Section> price_section(const Field& scene) {
     section.words["points"] = (*trade)["output_points"].whole();
     section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
     section.words["reasons"] = (*trade)["inconclusive"].texts();
+    section.words["judged_not"] = !section.words["reasons"].empty();
     bool times = false;
     for (const auto& point : (*trade)["points"].items()) times = times || point.find("time_ratio");
     FigureGroup group;

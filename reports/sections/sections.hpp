@@ -20,6 +20,7 @@ std::optional<Section> curves_section(const Field& scene);
 std::optional<Section> measured_section(const Field& scene);
 std::optional<Section> convergence_section(const Field& scene);
 std::optional<Section> attribution_section(const Field& scene);
+std::optional<Section> orders_section(const Field& scene);
 std::optional<Section> arithmetic_section(const Field& scene);
 std::optional<Section> references_section(const Field& scene);
 std::optional<Section> model_section(const Field& scene);

@@ -45,20 +45,34 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, std::stri
 // How far the recursion's full load over travel is off the reference's, where it is worst.
 struct Rate {
     std::string branch;
-    double off = 0;     // share of the reference's rate, signed
-    double travel = 0;  // difference of travel at full load [mm], signed
+    double off = 0;          // share of the reference's rate, signed
+    double travel = 0;       // difference of travel at full load [mm], signed
+    bool everywhere = true;  // it could be read on every branch
 };
 std::optional<Rate> rate_of(const Field& scene) {
     std::optional<Rate> worst;
+    bool everywhere = true;
     for (const auto& branch : scene["branches"].items()) {
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive");
-        if (a.travel.empty() || a.travel.size() != b.travel.size()) continue;
-        const double off = a.travel.back() / b.travel.back() - 1;
+        const bool whole = !a.travel.empty() && a.travel.size() == b.travel.size();
+        const double off = whole ? a.travel.back() / b.travel.back() - 1 : NAN;
+        everywhere = everywhere && std::isfinite(off);
         if (!std::isfinite(off)) continue;
         if (!worst || std::abs(off) > std::abs(worst->off))
             worst = Rate{branch["name"].text(), off, b.travel.back() - a.travel.back()};
     }
+    if (worst) worst->everywhere = everywhere;
     return worst;
+}
+
+// Branches that the recursion did not get through.
+json failures(const Field& scene) {
+    json list = json::array();
+    for (const auto& branch : scene["branches"].items())
+        for (const auto& leg : branch["legs"].items())
+            if (leg["leg"].text() == "recursive" && leg["outcome"].text() != "converged")
+                list.push_back({{"branch", branch["name"].text()}, {"outcome", leg["outcome"].text()}});
+    return list;
 }
 
 // What part of the deviation at full load is the formulation's, of the position that is worst there.
@@ -132,7 +146,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     json words = {{"asked", enumerated(asked)}};
     const auto chosen = trade->find("recommendation");
     if (!chosen) {
-        words["none"] = true;
+        words[(*trade)["inconclusive"].items().empty() ? "none" : "unjudged"] = true;
         return words;
     }
     words["found"] = {{"text", configuration(*chosen)},
@@ -152,7 +166,8 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     const double ratio = (*chosen)["time_ratio"].number();
     if (std::isfinite(ratio)) words["found"]["time"] = time_ratio(ratio);
     tiles.push_back(
-        {{"value", configuration(*chosen)},
+        {{"key", "chosen"},
+         {"value", configuration(*chosen)},
          {"label", fmt::format("cheapest within {}: holds {}", enumerated(asked), held(*chosen))}});
     return words;
 }
@@ -202,11 +217,11 @@ std::optional<Section> verdict_section(const Field& scene) {
         if (load_mm || load_deg) {
             std::vector<std::string> counts;
             for (const int count : steps) counts.push_back(whole_number(count));
-            published = {{"steps", enumerated(counts)}, {"wheel", wheel}};
+            published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
             const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
             published["exact"] = exact;
             const auto rate = rate_of(scene);
-            if (!exact) {
+            if (!exact && published["failed"].empty()) {
                 const auto& travel = travel_deg ? travel_deg : travel_mm;
                 const auto& load = load_mm ? load_mm : load_deg;
                 published["load"] = load->words();
@@ -216,22 +231,26 @@ std::optional<Section> verdict_section(const Field& scene) {
                     published["but"] = !(std::abs(rate->off) <= 10 * travel->share());
                     published["rate"] = {{"value", percent(std::abs(rate->off))},
                                          {"soft", rate->off < 0},
-                                         {"branch", rate->branch},
+                                         {"only", rate->everywhere ? json(nullptr) : json(rate->branch)},
                                          {"travel", quantity(std::abs(rate->travel), "mm")}};
                 }
                 published["gap"] = gap_words(scene);
             }
             if (travel_deg && travel_deg->max >= nothing)
-                tiles.push_back({{"value", travel_deg->text()},
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_deg->text()},
                                  {"label", fmt::format("{}, worst at equal travel", travel_deg->channel)}});
             else if (travel_mm && travel_mm->max >= nothing)
-                tiles.push_back({{"value", travel_mm->text()},
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_mm->text()},
                                  {"label", fmt::format("{}, worst at equal travel", travel_mm->channel)}});
             if (load_mm)
-                tiles.push_back({{"value", load_mm->text()},
+                tiles.push_back({{"key", "load"},
+                                 {"value", load_mm->text()},
                                  {"label", fmt::format("{}, worst at equal load", load_mm->channel)}});
             if (rate)
-                tiles.push_back({{"value", percent(rate->off)},
+                tiles.push_back({{"key", "rate"},
+                                 {"value", percent(rate->off)},
                                  {"label", wheel ? "wheel rate (full load over travel), error"
                                                  : "full load over travel, error"}});
         }
@@ -242,6 +261,8 @@ std::optional<Section> verdict_section(const Field& scene) {
         if (!agreement.empty()) words["agreement"] = enumerated(agreement);
     }
     words["recommendation"] = recommendation_words(scene, tiles);
+    if (const auto measured = scene.find("measured"))
+        words["measured"] = {{"file", (*measured)["file"].text()}, {"points", (*measured)["points"].whole()}};
     words["tiles"] = tiles;
     return section;
 }

@@ -72,17 +72,23 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     json result = sample_result();
     result["scenes"][0]["measured"] = measured("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n");
     const std::string file = "result.json";
-    bool section = false, drawn = false;
+    bool section = false, drawn = false, fourth = false;
     for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
         section = section || s.id == "measured";
         for (const auto& group : s.figures)
-            for (const auto& figure : group.figures)
+            for (const auto& figure : group.figures) {
+                const auto& table = group.table;
+                if (figure.title == "Toe angle")
+                    fourth = table.columns.back().name == "measured" && table.rows.front().back() == "–" &&
+                             table.rows[table.rows.size() / 2].back() == "−0.20000";
                 for (const auto& series : figure.series)
                     drawn = drawn || (series.title == "measured" && figure.title == "Toe angle" &&
                                       series.rows.size() == 2);
+            }
     }
     EXPECT_TRUE(section);
     EXPECT_TRUE(drawn);
+    EXPECT_TRUE(fourth);
 }
 
 TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {

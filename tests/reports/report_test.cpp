@@ -127,6 +127,24 @@ TEST(Report, TwoScenesOfOneNameShareAPage) {
     EXPECT_TRUE(contains(html, "<a href=\"#pinned-bar-2\">twin</a>"));
 }
 
+TEST(Report, SeveralScenesBeginWithASummaryOfTheirVerdicts) {
+    const Folder folder;
+    json result = sample_result();
+    result["scenes"].push_back(small_result("second")["scenes"][0]);
+    result["scenes"][1]["verdict"]["conclusive"] = false;
+    write_report(result, "result.json", folder.path / "r");
+    const std::string md = text_of(folder.path / "r" / "report.md");
+    const auto row = [&](const std::string& name) {
+        const auto at = md.find("| " + name + " |");
+        return at == md.npos ? "" : md.substr(at, md.find('\n', at) - at);
+    };
+    EXPECT_TRUE(contains(row("McPherson strut (Kang 2004, section 3)"), "| conclusive |"))
+        << md.substr(0, 1500);
+    EXPECT_FALSE(contains(row("McPherson strut (Kang 2004, section 3)"), "–"))
+        << row("McPherson strut (Kang 2004, section 3)");
+    EXPECT_TRUE(contains(row("second"), "| inconclusive |")) << row("second");
+}
+
 TEST(Report, ReplacesAnOlderOneCompletely) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");
@@ -213,6 +231,9 @@ TEST(ReportCommand, SaysWhatItNeeds) {
           Case{scene, "--output is required"}, Case{"--from " + document + ".none -o out", "cannot be read"},
           Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
           Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
+          Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
+          Case{scene + " --tolerance 1inch -o out", "'inch' is not a unit of it"},
+          Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"},
           Case{scene + " --figures png -o out", "--figures"}}) {
         const auto said =
             support::run("cd " + folder.path.string() + " && " + command + " report " + arguments);

@@ -2,11 +2,13 @@
 
 #include <map>
 
+#include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "reports/document.hpp"
+#include "reports/order_tables.hpp"
 #include "reports/study_tables.hpp"
 #include "reports/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
@@ -32,6 +34,8 @@ const json& sample_result(const std::string& name) {
     part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
+    part["orders"] = orders_json(
+        compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5}));
     add_verdict(part, comparison.compared, reasons_of(comparison));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);

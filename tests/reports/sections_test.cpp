@@ -156,6 +156,48 @@ TEST(Verdict, InconclusiveIsSaidFirst) {
         << said(result);
 }
 
+TEST(Verdict, WhatCouldNotBeJudgedIsNotSaidToHaveFailed) {
+    json result = sample_result();
+    auto& trade = result["scenes"][0]["trade"];
+    trade["recommendation"] = nullptr;
+    trade["inconclusive"] = {"jounce: energy leg: branch lost"};
+    EXPECT_TRUE(contains(said(result), "What accuracy costs could not be judged.")) << said(result);
+    EXPECT_FALSE(contains(said(result), "Nothing tried")) << said(result);
+    for (const auto& section : sections(result))
+        if (section.id == "price") {
+            const std::string text = render("text/price", section.words, Escape::nothing);
+            EXPECT_TRUE(contains(text, "Nothing is recommended. Inconclusive: jounce: energy leg")) << text;
+        }
+}
+
+TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
+    json result = sample_result();
+    for (auto& branch : result["scenes"][0]["branches"]) {
+        auto& curve = branch["legs"][2]["curve"];
+        curve["load"] = json::array();
+        curve["travel_mm"] = json::array();
+        for (auto& [name, values] : curve["values"].items()) values = json::array();
+        branch["reference_uncertainty"]["at_equal_load"]["channels"] = json::object();
+    }
+    EXPECT_FALSE(contains(said(result), "agree to")) << said(result);
+    for (const auto& section : sections(result))
+        if (section.id == "deviation")
+            for (const auto& group : section.figures) {
+                EXPECT_TRUE(contains(group.caption, "The references did not both go all the way"))
+                    << group.caption;
+                EXPECT_FALSE(contains(group.figures[0].description, "apart")) << group.figures[0].description;
+            }
+}
+
+TEST(Verdict, ARecursionThatStoppedIsSaidToHaveStopped) {
+    json result = sample_result();
+    result["scenes"][0]["branches"][1]["legs"][0]["outcome"] = "diverged";
+    EXPECT_TRUE(contains(
+        said(result), "The published recursion with 20 steps does not get through branch rebound: diverged."))
+        << said(result);
+    EXPECT_FALSE(contains(said(result), "within")) << said(result);
+}
+
 TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
     json result = sample_result();
     result["scenes"][0]["trade"]["recommendation"] = nullptr;
