@@ -17,6 +17,7 @@ constexpr Colour colours[] = {vermilion, blue, green, purple};
 FigureGroup group(const Field& branch) {
     const std::string name = branch["branch"].text();
     FigureGroup group;
+    group.caption = fmt::format("Expansions that branch {} takes over their order.", name);
     group.table = {.caption = fmt::format("Series over branch {}; error to the equilibrium leg", name),
                    .columns = {{"told [m]"},
                                {"order"},

@@ -41,7 +41,7 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
     EXPECT_EQ(ids,
               (std::vector<std::string>{"verdict", "deviation", "price", "drawing", "curves", "convergence",
-                                        "attribution", "arithmetic", "references", "model"}));
+                                        "attribution", "orders", "arithmetic", "references", "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
