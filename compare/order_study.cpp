@@ -18,6 +18,7 @@ Accuracy apart(const std::vector<Channel>& channels, const Curve& a, const Equil
                const Curve& b, const EquilibriumPath& path_b) {
     if (path_a.outcome != Outcome::converged || path_b.outcome != Outcome::converged) return {nan, nan};
     const Reading reading = at_equal_load(a, b);
+    if (!reading.not_compared.empty()) return {nan, nan};
     Accuracy worst;
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!channels[c].main) continue;

@@ -293,9 +293,10 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
         taus.clear();
         loads.clear();
         for (std::size_t next = reached; next < result.points.size(); ++next) {
-            const double share = static_cast<double>(next) / points, load = branch.to * share;
-            double tau =
-                path.arc_length ? whole * share - before : (load - expansion.load[0]) / expansion.load[1];
+            // As others write it, to the last bit: curves are compared at equal loads only.
+            const double load = branch.to * static_cast<double>(next) / points;
+            double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
+                                         : (load - expansion.load[0]) / expansion.load[1];
             const bool beyond = tau > expansion.reach * (1 + 1e-12);
             if (beyond && !(last && path.arc_length && next + 1 == result.points.size())) break;
             tau = std::clamp(tau, 0.0, expansion.reach);

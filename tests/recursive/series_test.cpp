@@ -311,6 +311,17 @@ TEST(Series, KeepsTheToleranceItIsTold) {
     }
 }
 
+TEST(Series, SampledLoadsAreThoseOfOtherLegsToTheLastBit) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const auto& branch : model.branches)
+        for (const int points : {7, 20, 301}) {
+            const auto sampled = sample(model, follow(model, branch), branch, points);
+            ASSERT_EQ(sampled.points.size(), static_cast<std::size_t>(points) + 1);
+            for (int k = 0; k <= points; ++k)
+                EXPECT_EQ(sampled.points[static_cast<std::size_t>(k)].load, branch.to * k / points);
+        }
+}
+
 TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
     const Model model = compile(support::scene("mcpherson"));
     const Path path = follow(model, model.branches[0], {.order = 2, .expansions = 5});
@@ -337,8 +348,8 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
         // Every coefficient is in place: one `known` pass with them is G_k and Φ_k themselves.
         for (int k = 1; k <= 7; ++k) {
             evaluate(e, model, branch, {k, Pass::known});
-            const double size =
-                (s.system.K() * c.x.col(k).head(s.n())).cwiseAbs().maxCoeff() + std::abs(c.load[k]) + 1e-3 * std::abs(branch.to);
+            const double size = (s.system.K() * c.x.col(k).head(s.n())).cwiseAbs().maxCoeff() +
+                                std::abs(c.load[k]) + 1e-3 * std::abs(branch.to);
             EXPECT_LE(e.G.cwiseAbs().maxCoeff(), 1e-10 * size) << name << " " << k;
             if (s.m() > 0) {
                 EXPECT_LE(e.Phi.cwiseAbs().maxCoeff(), 1e-12 * c.x.col(k).norm() + 1e-16) << name << " " << k;
