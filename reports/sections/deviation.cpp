@@ -151,6 +151,10 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
     // Six decades hold everything that matters; what is below touches the lower edge.
     figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
+    double best = 0;  // what is recommended may be far better still, and belongs in the picture
+    for (const auto& row : curves.recommended.rows)
+        if (row.size() == 2 && std::isfinite(row[1])) best = std::max(best, row[1]);
+    if (best > 0) figure.y_low = std::min(figure.y_low, std::pow(10, std::floor(std::log10(best)) - 1));
     for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
         for (auto& row : series->rows)
             if (row.size() == 2) row[1] = std::max(row[1], figure.y_low);
