@@ -1,11 +1,14 @@
-// The stepping loop allocates nothing: a run of a thousand steps asks for memory as often as one of ten.
+// The stepping loop allocates nothing: a run of a thousand steps asks for memory as often as one of ten. Nor
+// does an expansion of the series.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstdlib>
 
 #include "models/compile.hpp"
+#include "recursive/series/expand.hpp"
 #include "recursive/solve.hpp"
+#include "recursive/steps.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -40,6 +43,28 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
             const long few = count(50), many = count(1000);
             EXPECT_GT(few, 0) << "nothing is counted";
             EXPECT_EQ(few, many) << name << " " << method.name;
+        }
+    }
+}
+
+TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        const Branch& branch = model.branches[0];
+        const Method method = *find_method("tangent");
+        const Diagnosis diagnosis = diagnose(model);
+        March<double> s(model, branch, method, diagnosis);
+        ASSERT_EQ(settle(s), Outcome::converged);
+        s.applied.setZero();
+        ASSERT_EQ(factorise_at(s, s.q, s.lambda, s.a), Outcome::converged);
+        series::Equations e = series::equations(model, branch, 16);
+        series::Coefficients c = series::reserve_coefficients(s, 16);
+        const Vector<double> ahead = Vector<double>::Zero(s.n() + s.m());
+        for (const bool arc_length : {false, true}) {
+            const long before = allocations;
+            series::expand(s, e, c, branch.to, arc_length, ahead);
+            EXPECT_EQ(allocations - before, 0) << name;
+            EXPECT_GT(c.x.col(1).norm(), 0) << name;
         }
     }
 }
