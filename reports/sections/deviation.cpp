@@ -141,6 +141,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
                   .log_y = true,
                   .height = 1.12};
     std::vector<std::string> names;
+    names.reserve(channels.size());
     for (const auto& c : channels) names.push_back(c.label());
     for (const auto* series : {&curves.load, &curves.travel, &curves.recommended})
         for (const auto& row : series->rows)

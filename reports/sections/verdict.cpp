@@ -216,6 +216,7 @@ std::optional<Section> verdict_section(const Field& scene) {
         const auto travel_deg = worst_of(scene, "at_equal_travel", "deg");
         if (load_mm || load_deg) {
             std::vector<std::string> counts;
+            counts.reserve(steps.size());
             for (const int count : steps) counts.push_back(whole_number(count));
             published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
             const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);

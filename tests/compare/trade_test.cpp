@@ -443,9 +443,11 @@ TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
         EXPECT_GT(found.mm.back(), 1e-4);
         for (const double error : profile(model, branch, {.leg = Leg::equilibrium}).mm) EXPECT_EQ(error, 0);
     }
-    const auto adaptive = profile(model, model.branches[0], {.method = "adaptive", .own_tolerance = 1e-6});
-    EXPECT_EQ(adaptive.load.size(), static_cast<std::size_t>(model.branches[0].steps) + 1);
-    EXPECT_LE(*std::ranges::max_element(adaptive.mm), 1e-3);
+    for (const char* method : {"adaptive", "series"}) {
+        const auto found = profile(model, model.branches[0], {.method = method, .own_tolerance = 1e-6});
+        EXPECT_EQ(found.load.size(), static_cast<std::size_t>(model.branches[0].steps) + 1) << method;
+        EXPECT_LE(*std::ranges::max_element(found.mm), 1e-3) << method;
+    }
 }
 
 TEST(Precision, FloorOfFloatIsAboveThatOfDoubleIsAboveThatOfLongDouble) {
