@@ -170,6 +170,32 @@ json provenance(const Field& result) {
     return table_json(table);
 }
 
+// Faults that were put into a copy of the code, and the alarm that rang first.
+json alarms(const Field& result) {
+    const auto found = result.find("alarms");
+    if (!found) return nullptr;
+    Table table{.caption = "Seeded faults, and the first alarm to ring",
+                .columns = {{"fault", true},
+                            {"in", true},
+                            {"what it simulates", true},
+                            {"first to ring", true},
+                            {"margin"},
+                            {"alarms"}},
+                .rows = {},
+                .folded = true};
+    int survived = 0;
+    for (const auto& fault : found->items()) {
+        const std::string first = fault["first"].text(), margin = fault["margin"].text();
+        survived += first.empty();
+        table.rows.push_back({fault["fault"].text(), fault["in"].text(), fault["simulates"].text(),
+                              first.empty() ? "survived" : first, margin.empty() ? "–" : margin,
+                              whole_number(fault["alarms"].whole())});
+    }
+    return {{"count", table.rows.size()},
+            {"survived", survived == 0 ? json("none") : json(survived)},
+            {"table", table_json(table)}};
+}
+
 // ---- beside the page
 
 std::string quoted(const std::string& text) {
@@ -273,6 +299,7 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         {"summary", table_json(summary(parts))},
         {"provenance", provenance(root)},
         {"reproduce", root["reproduce"].text()},
+        {"alarms", alarms(root)},
         {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     if (options.archive) {

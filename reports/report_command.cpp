@@ -102,6 +102,13 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     return document;
 }
 
+json read_alarms(const std::string& file) {
+    json alarms = json::parse(reports::read_whole(file), nullptr, false);
+    if (!alarms.is_array())
+        throw std::invalid_argument(file + ": is not the results.json that ./dev mutate writes");
+    return alarms;
+}
+
 // What differs from run to run.
 void remove_times(json& value) {
     if (value.is_object()) {
@@ -124,6 +131,8 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
                      "folder for report.html, report.md, result.json, curves.csv, figures/")
         ->required();
     command->add_option("--tolerance", request.tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
+    command->add_option("--alarms", request.alarms,
+                        "results.json of seeded faults (./dev mutate), to show which alarms ring");
     command->add_option("--measured", request.measured,
                         "CSV of measured curves, to draw over and compare with");
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
@@ -146,6 +155,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     (void)compare::parse_tolerance(request.tolerance);
     for (const auto& scene : request.scenes) (void)read_scene(scene);
     if (!request.measured.empty()) (void)read_text(request.measured);
+    if (!request.alarms.empty() && !request.from.empty())
+        throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
+    const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {
@@ -155,6 +167,7 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         result = reports::document(reproduce, reports::provenance());
         for (const auto& scene : request.scenes)
             result["scenes"].push_back(solve_scene(scene, request, progress));
+        if (!alarms.is_null()) result["alarms"] = alarms;
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as a reader of the file will see it: NaN is null
     }

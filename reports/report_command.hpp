@@ -14,6 +14,7 @@ struct ReportRequest {
     std::string from;  // a result.json, in place of scenes
     std::string folder;
     std::string measured;  // CSV
+    std::string alarms;    // JSON, what `./dev mutate` found
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";
     bool archive = false;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# matrix.sh FAULTS WORK OUTPUT FAULT...: results.md (for people) and results.csv (fault × alarm) from what mutate.sh
-# left in WORK. Exit code 1 when a fault survived.
+# matrix.sh FAULTS WORK OUTPUT FAULT...: results.md (for people), results.csv (fault × alarm) and results.json (for the
+# report) from what mutate.sh left in WORK. Exit code 1 when a fault survived.
 set -eu
 faults=$1 work=$2 output=$3
 shift 3
@@ -43,5 +43,6 @@ alarm's: measured over allowed, where it tells both."
     cat "$work"/results/*/rang | cut -f1 | sort -u >"$work/rang"
     grep -vxF -f "$work/rang" "$work/alarms" | sed 's/^/- /' || echo "- none"
 } >"$work/results.md"
-mv "$work/results.csv" "$work/results.md" "$output"
+awk -f "$here/results_json.awk" "$work/results.md" >"$work/results.json"
+mv "$work/results.csv" "$work/results.md" "$work/results.json" "$output"
 [ "$survived" -eq 0 ] || { echo "mutate: $survived of $# faults survived: $output/results.md" >&2; exit 1; }
