@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "reports/document.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -71,14 +73,6 @@ auto named(const Field& field, const Kinds& kinds) {
     for (const auto kind : kinds)
         if (word == name(kind)) return kind;
     refuse(field, fmt::format("'{}' is not known", word));
-}
-
-json provenance_json(const Provenance& p) {
-    json libraries = json::object();
-    for (const auto& library : p.libraries) libraries[library.name] = library.version;
-    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
-            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
-            {"libraries", libraries}};
 }
 
 Provenance provenance_of(const Field& field) {

@@ -8,14 +8,6 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
-json provenance_json(const Provenance& p) {
-    json libraries = json::object();
-    for (const auto& library : p.libraries) libraries[library.name] = library.version;
-    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
-            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
-            {"libraries", libraries}};
-}
-
 json model_json(const Model& model, const recursive::Diagnosis& d) {
     const recursive::Conditioning condition = recursive::conditioning(model, d);
     json bodies = json::array(), joints = json::array(), elements = json::array(), idle = json::array(),
@@ -114,6 +106,14 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
 }
 
 }  // namespace
+
+json provenance_json(const Provenance& p) {
+    json libraries = json::object();
+    for (const auto& library : p.libraries) libraries[library.name] = library.version;
+    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
+            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
+            {"libraries", libraries}};
+}
 
 json document(const std::string& reproduce, const Provenance& provenance) {
     return {{"schema", result_schema},

@@ -14,6 +14,9 @@ namespace elastocheck::reports {
 // Raised when a field changes its meaning or vanishes; new fields may appear without.
 inline constexpr const char* result_schema = "elastocheck/result/2";
 
+// Who made it, with what: commit, compiler, flags, processor, libraries.
+nlohmann::ordered_json provenance_json(const Provenance& provenance);
+
 // {schema, reproduce, provenance, scenes: [...]}. Lengths in mm, angles in deg, forces in N, moments in N·m,
 // as every key or neighbouring "unit" says. A number that is not finite is null. `reproduce` is the command
 // that made it.

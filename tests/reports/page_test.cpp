@@ -6,8 +6,8 @@
 
 #include "reports/report.hpp"
 #include "tests/reports/result.hpp"
+#include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/process.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -145,7 +145,7 @@ document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance
   contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';
 </script>)");
     const auto file = folder.write("page.html", html);
-    const auto said = support::run(
+    const auto said = support::says(
         "chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
         "--user-data-dir=" +
         (folder.path / "profile").string() + " --window-size=" + width +
@@ -161,7 +161,7 @@ document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance
 }
 
 TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
-    if (support::run("command -v chromium").code != 0) GTEST_SKIP() << "chromium is not installed";
+    if (support::says("command -v chromium").code != 0) GTEST_SKIP() << "chromium is not installed";
     for (const auto& [width, scheme] : {std::pair{"1280", "1"}, std::pair{"390", "0"}}) {
         const json seen = measured_in_a_browser(width, scheme);
         ASSERT_TRUE(seen.is_object());

@@ -16,14 +16,15 @@
 #include "reports/folder.hpp"
 #include "reports/templates.hpp"
 #include "tests/reports/result.hpp"
+#include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/process.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
+using support::contains;
 using support::Folder;
 using support::text_of;
 
@@ -56,8 +57,6 @@ std::string refusal(const fs::path& folder) {
     return "written";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
-
 TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "a");
@@ -84,11 +83,12 @@ TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
         fs::remove(svg.replace_extension(".svg"));
         const std::string script = "figures/" + entry.path().filename().string();
         const std::string there = "cd " + (folder.path / "r").string() + " && ";
-        const auto said = support::run(there + "gnuplot " + script);
+        // In the C locale gnuplot warns that it has no degree sign, and draws all the same.
+        const auto said = support::says(there + "LC_ALL=C.UTF-8 gnuplot " + script);
         EXPECT_EQ(said.code, 0) << said.err;
         EXPECT_TRUE(said.err.empty()) << said.err;
         EXPECT_TRUE(contains(text_of(svg), "<svg"));
-        EXPECT_EQ(support::run(there + "gnuplot -e pdf=1 " + script).code, 0);
+        EXPECT_EQ(support::says(there + "gnuplot -e pdf=1 " + script).code, 0);
         EXPECT_TRUE(text_of(pdf.replace_extension(".pdf")).starts_with("%PDF"));
     }
     EXPECT_GE(scripts, 2);
@@ -97,7 +97,7 @@ TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
 TEST(Report, EveryFigureIsWellFormed) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");
-    const auto said = support::run("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
+    const auto said = support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
     EXPECT_EQ(said.code, 0) << said.err;
 }
 
@@ -217,7 +217,7 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     const Folder folder;
     const auto good = folder.write("result.json", small_result("good").dump());
     const std::string out = (folder.path / "out").string();
-    EXPECT_EQ(support::run(command + " report --from " + good + " -o " + out + " --figures pdf").code, 0);
+    EXPECT_EQ(support::says(command + " report --from " + good + " -o " + out + " --figures pdf").code, 0);
     EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
     bool pdf = false;
     for (const auto& [name, text] : contents_of(out))
@@ -226,14 +226,14 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     json bad = small_result("bad");
     bad["scenes"][0]["branches"][0].erase("legs");
     const auto missing =
-        support::run(command + " report --from " + folder.write("bad.json", bad.dump()) + " -o " + out);
+        support::says(command + " report --from " + folder.write("bad.json", bad.dump()) + " -o " + out);
     EXPECT_EQ(missing.code, 2);
     EXPECT_TRUE(contains(missing.err, "bad.json: scenes[0].branches[0].legs: missing")) << missing.err;
     json doubtful = small_result("doubtful");
     doubtful["scenes"][0]["verdict"] = {
         {"conclusive", false}, {"numbers_compared", 0}, {"reasons", {"nothing was compared"}}};
     const auto inconclusive =
-        support::run(command + " report --from " + folder.write("d.json", doubtful.dump()) + " -o " + out);
+        support::says(command + " report --from " + folder.write("d.json", doubtful.dump()) + " -o " + out);
     EXPECT_EQ(inconclusive.code, 3);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
 }
@@ -256,7 +256,7 @@ TEST(ReportCommand, SaysWhatItNeeds) {
           Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"},
           Case{scene + " --figures png -o out", "--figures"}}) {
         const auto said =
-            support::run("cd " + folder.path.string() + " && " + command + " report " + arguments);
+            support::says("cd " + folder.path.string() + " && " + command + " report " + arguments);
         EXPECT_EQ(said.code, 2) << arguments;
         EXPECT_TRUE(contains(said.err, why)) << arguments << ": " << said.err;
         EXPECT_FALSE(fs::exists(folder.path / "out"));
@@ -266,8 +266,8 @@ TEST(ReportCommand, SaysWhatItNeeds) {
 TEST(ReportCommand, WithoutGnuplotItSaysSoAndWritesNothing) {
     const Folder folder;
     const auto document = folder.write("result.json", small_result("x").dump());
-    const auto said = support::run("PATH=" + folder.path.string() + " " + command + " report --from " +
-                                   document + " -o " + (folder.path / "out").string());
+    const auto said = support::says("PATH=" + folder.path.string() + " " + command + " report --from " +
+                                    document + " -o " + (folder.path / "out").string());
     EXPECT_EQ(said.code, 2);
     EXPECT_TRUE(contains(said.err, "gnuplot cannot be run (No such file or directory)")) << said.err;
     EXPECT_FALSE(fs::exists(folder.path / "out"));
@@ -276,7 +276,7 @@ TEST(ReportCommand, WithoutGnuplotItSaysSoAndWritesNothing) {
 TEST(ReportCommand, SolvesAndDrawsAScene) {
     const Folder folder;
     const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
-    const auto said = support::run(command + " report " + scene + " -o " + (folder.path / "out").string());
+    const auto said = support::says(command + " report " + scene + " -o " + (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
     for (const char* part :

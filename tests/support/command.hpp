@@ -11,7 +11,7 @@
 namespace elastocheck::support {
 
 struct Said {
-    int code;
+    int code = -1;  // -1: killed
     std::string out, err;
 };
 
@@ -20,7 +20,7 @@ inline Said says(const std::string& line) {
     const Folder folder;
     const std::string error = (folder.path / "err").string();
     FILE* pipe = ::popen((line + " 2>" + error).c_str(), "r");
-    Said said{};
+    Said said;
     char buffer[4096];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.out.append(buffer, n);
     const int status = ::pclose(pipe);
