@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <numbers>
 
@@ -32,7 +33,8 @@ std::string order_table(const std::vector<compare::BranchOrders>& orders) {
             fmt::format_to(out, "{:>10.1e} {:>10.1e} {:>10.1e} {:>10.1f} %\n", level.error.mm,
                            level.error.deg, level.force, 100 * level.first_reach);
         }
-        if (!branch.levels.empty()) {
+        // A straight branch has none.
+        if (!branch.levels.empty() && std::isfinite(branch.levels.back().nearest.radius)) {
             const auto& nearest = branch.levels.back().nearest;
             fmt::format_to(out,
                            "  nearest singularity of the branch as seen from its start: at {:.3g} times its "

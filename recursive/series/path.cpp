@@ -135,7 +135,6 @@ Outcome walk(Walk& w) {
         if (std::isnan(tau)) return Outcome::not_finite;
 
         bool last = false;
-        double turns = std::numeric_limits<double>::quiet_NaN();
         if (!arc) {
             const double rest = (w.to - a_0) / w.to;
             if (tau >= rest) {
@@ -151,12 +150,10 @@ Outcome walk(Walk& w) {
         } else {
             tau = std::min(tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
             const auto beyond = [&](double t) { return polynomial(w.c.load, t) - w.to; };
-            const auto direction = [&](double t) { return slope(w.c.load, t); };
             if (const auto end = first_zero(beyond, tau)) {
                 tau = *end;
                 last = true;
             }
-            if (const auto turn = first_zero(direction, tau)) turns = polynomial(w.c.load, *turn);
         }
 
         Certificate judged;
@@ -189,7 +186,10 @@ Outcome walk(Walk& w) {
                     : 0.5;
             last = false;
         }
-        if (std::isfinite(turns)) w.path.limits.push_back(turns);
+        // Only now: an end that was drawn nearer may leave the turn to the next expansion.
+        if (arc)
+            if (const auto turn = first_zero([&](double t) { return slope(w.c.load, t); }, tau))
+                w.path.limits.push_back(polynomial(w.c.load, *turn));
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, tau, singularity, judged});
         if (last) return Outcome::converged;
         if (arc && !(std::abs(s.a) <= 2 * std::abs(w.to))) return Outcome::branch_lost;

@@ -6,6 +6,8 @@ faults=$1 work=$2 output=$3
 shift 3
 here=$(dirname "$0")
 field() { awk -v fault="$1" -v key="$2" -f "$here/field.awk" "$faults"; }
+made=$work/matrix  # moved to OUTPUT whole; OUTPUT may be WORK itself
+mkdir -p "$made"
 survived=0
 {
     printf 'fault'
@@ -18,7 +20,7 @@ survived=0
         done <"$work/alarms"
         printf '\n'
     done
-} >"$work/results.csv"
+} >"$made/results.csv"
 {
     echo "# Faults and the alarms that ring"
     echo
@@ -42,7 +44,7 @@ alarm's: measured over allowed, where it tells both."
     echo
     cat "$work"/results/*/rang | cut -f1 | sort -u >"$work/rang"
     grep -vxF -f "$work/rang" "$work/alarms" | sed 's/^/- /' || echo "- none"
-} >"$work/results.md"
-awk -f "$here/results_json.awk" "$work/results.md" >"$work/results.json"
-mv "$work/results.csv" "$work/results.md" "$work/results.json" "$output"
+} >"$made/results.md"
+awk -f "$here/results_json.awk" "$made/results.md" >"$made/results.json"
+mv "$made/results.csv" "$made/results.md" "$made/results.json" "$output"
 [ "$survived" -eq 0 ] || { echo "mutate: $survived of $# faults survived: $output/results.md" >&2; exit 1; }
