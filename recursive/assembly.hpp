@@ -21,8 +21,8 @@ void assemble_constraints(const Model& model, const State<Real>& q, Matrix<Real>
             M.row(n + k).template segment<6>(6 * b) += block.transpose();
             M.col(n + k).template segment<6>(6 * b) += block;
         };
-        put(row.i, row.on_i);
-        put(row.j, row.on_j);
+        put(row.i, row.on_i());
+        put(row.j, row.on_j());
         Phi[k] = row.Phi;
     });
 }
@@ -70,8 +70,8 @@ void constraint_force(const Model& model, const State<Real>& q, const Vector<Rea
                       Vector<Real>& Phi) {
     f.setZero(coordinates(model));
     for_each_row<Real>(model, q, [&](int k, const Row<Real>& row) {
-        if (row.i != ground) f.template segment<6>(6 * row.i) += lambda[k] * row.on_i;
-        if (row.j != ground) f.template segment<6>(6 * row.j) += lambda[k] * row.on_j;
+        if (row.i != ground) f.template segment<6>(6 * row.i) += lambda[k] * row.on_i();
+        if (row.j != ground) f.template segment<6>(6 * row.j) += lambda[k] * row.on_j();
         Phi[k] = row.Phi;
     });
 }

@@ -5,42 +5,48 @@
 //   Δp = Δr - s̃ Δπ,   Δu = -ũ Δπ for a direction u,   so   n·Δp = n·Δr + (s × n)·Δπ .
 //
 //   coincident points          Φ = p_i - p_j
-//   point in plane             Φ = n_j·d,  d = p_i - p_j        n_j turns with body j: its lever reaches to
-//   p_i perpendicular directions   Φ = u_i·u_j distance between           Φ = (d·d - ℓ²) / (2ℓ) scaled so
-//   that Φ is a length and |Φ_q,r| is 1 on the surface
+//
+//   point in plane             Φ = n_j·d,  d = p_i - p_j; n_j turns with body j: its lever reaches to p_i
+//
+//   perpendicular directions   Φ = u_i·u_j
+//
+//   distance between           Φ = (d·d - ℓ²) / (2ℓ), so that Φ is a length and |Φ_q,r| is 1 on the surface
 #pragma once
 
 #include "recursive/state.hpp"
 
 namespace elastocheck::recursive {
 
-// One scalar constraint: its value and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ). A multiplier
-// λ on it puts the generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
+// One scalar constraint: its value, and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ), as the lines
+// along which it acts: direction n at the levers s_i and s_j, and a couple u. A multiplier λ on it puts the
+// generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
 template <class Real>
 struct Row {
     BodyId i = ground, j = ground;
     Real Phi = 0;        // [m] or [-]
     bool length = true;  // whether Phi is a length (else a cosine)
-    Vector6<Real> on_i, on_j;
+    Vector3<Real> n, s_i, s_j, u;
+
+    Vector6<Real> on_i() const { return block(n, s_i.cross(n) + u); }    // [n  s_i × n + u]
+    Vector6<Real> on_j() const { return block(-n, -s_j.cross(n) - u); }  // [-n  -(s_j × n + u)]
+
+  private:
+    static Vector6<Real> block(const Vector3<Real>& r, const Vector3<Real>& pi) {
+        Vector6<Real> both;
+        both << r, pi;
+        return both;
+    }
 };
 
 namespace detail {
-
-template <class Real>
-Vector6<Real> along(const Vector3<Real>& n, const Vector3<Real>& s) {
-    Vector6<Real> row;
-    row << n, s.cross(n);
-    return row;
-}
 
 template <class Real, class Sink>
 void rows(const CoincidentPoints& c, const State<Real>& q, Sink&& sink) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> d = q[c.i.body].r + s_i - q[c.j.body].r - s_j;
-    for (int k = 0; k < 3; ++k) {
-        const Vector3<Real> n = Vector3<Real>::Unit(k);
-        sink(Row<Real>{c.i.body, c.j.body, d[k], true, along<Real>(n, s_i), along<Real>(-n, s_j)});
-    }
+    for (int k = 0; k < 3; ++k)
+        sink(Row<Real>{c.i.body, c.j.body, d[k], true, Vector3<Real>::Unit(k), s_i, s_j,
+                       Vector3<Real>::Zero()});
 }
 
 template <class Real, class Sink>
@@ -48,16 +54,14 @@ void rows(const PointInPlane& c, const State<Real>& q, Sink&& sink) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> n = q[c.normal_j.body].lever(c.normal_j.u_local);
     const Vector3<Real> d = q[c.i.body].r + s_i - q[c.j.body].r - s_j;
-    sink(Row<Real>{c.i.body, c.j.body, n.dot(d), true, along<Real>(n, s_i), along<Real>(-n, s_j + d)});
+    sink(Row<Real>{c.i.body, c.j.body, n.dot(d), true, n, s_i, s_j + d, Vector3<Real>::Zero()});
 }
 
 template <class Real, class Sink>
 void rows(const PerpendicularDirections& c, const State<Real>& q, Sink&& sink) {
     const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), u_j = q[c.j.body].lever(c.j.u_local);
-    Row<Real> row{c.i.body, c.j.body, u_i.dot(u_j), false, {}, {}};
-    row.on_i << Vector3<Real>::Zero(), u_i.cross(u_j);
-    row.on_j << Vector3<Real>::Zero(), u_j.cross(u_i);
-    sink(row);
+    const Vector3<Real> zero = Vector3<Real>::Zero();
+    sink(Row<Real>{c.i.body, c.j.body, u_i.dot(u_j), false, zero, zero, zero, u_i.cross(u_j)});
 }
 
 template <class Real, class Sink>
@@ -65,9 +69,8 @@ void rows(const DistanceBetween& c, const State<Real>& q, Sink&& sink) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> d = q[c.i.body].r + s_i - q[c.j.body].r - s_j;
     const Real length = static_cast<Real>(c.length);
-    const Vector3<Real> n = d / length;
-    sink(Row<Real>{c.i.body, c.j.body, (d.dot(d) - length * length) / (2 * length), true, along<Real>(n, s_i),
-                   along<Real>(-n, s_j)});
+    sink(Row<Real>{c.i.body, c.j.body, (d.dot(d) - length * length) / (2 * length), true, d / length, s_i,
+                   s_j, Vector3<Real>::Zero()});
 }
 
 }  // namespace detail
@@ -91,8 +94,8 @@ template <class Real>
 Matrix<Real> constraint_jacobian(const Model& model, const State<Real>& q) {
     Matrix<Real> Phi_q = Matrix<Real>::Zero(constraint_rows(model), coordinates(model));
     for_each_row<Real>(model, q, [&](int k, const Row<Real>& row) {
-        if (row.i != ground) Phi_q.row(k).template segment<6>(6 * row.i) += row.on_i.transpose();
-        if (row.j != ground) Phi_q.row(k).template segment<6>(6 * row.j) += row.on_j.transpose();
+        if (row.i != ground) Phi_q.row(k).template segment<6>(6 * row.i) += row.on_i().transpose();
+        if (row.j != ground) Phi_q.row(k).template segment<6>(6 * row.j) += row.on_j().transpose();
     });
     return Phi_q;
 }

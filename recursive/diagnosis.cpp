@@ -183,8 +183,9 @@ Diagnosis diagnose(const Model& model) {
     normalise_rows(Phi_q);
     result.rank = rank_of(Phi_q);
 
+    // Rows that are all independent leave nothing to ask of the joints one by one.
     int first = 0, rank_before = 0, k = 0;
-    for (int joint = 0; joint < static_cast<int>(model.joints.size()); ++joint) {
+    for (int joint = 0; result.rank < m && joint < static_cast<int>(model.joints.size()); ++joint) {
         first = k;
         for (const auto& c : model.constraints)
             if (c.joint == joint) k += rows(c.kind);
@@ -213,7 +214,7 @@ Diagnosis diagnose(const Model& model) {
         result.idle.push_back(mode);
     }
 
-    const MatrixXd redundant = m > 0 ? null_space_of(Phi_q.transpose(), m) : MatrixXd(0, 0);
+    const MatrixXd redundant = result.rank < m ? null_space_of(Phi_q.transpose(), m) : MatrixXd(m, 0);
     result.null_space.setZero(n + m, idle.cols() + redundant.cols());
     result.null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
     if (redundant.cols() > 0)  // λ of the unscaled rows
@@ -225,9 +226,11 @@ Diagnosis diagnose(const Model& model) {
     f.setZero();
     add_loads<double>(model.static_loads, 1.0, q, f);
     f -= elastic_force<double>(model, q);
-    const MatrixXd free = null_space_of(Phi_q, n);
-    const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
-    result.imbalance = n > 0 ? left.cwiseAbs().maxCoeff() : 0;
+    if (!f.isZero(0)) {
+        const MatrixXd free = null_space_of(Phi_q, n);
+        const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
+        result.imbalance = left.cwiseAbs().maxCoeff();
+    }
     return result;
 }
 

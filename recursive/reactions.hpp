@@ -21,11 +21,14 @@ Real joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>
         Wrench& wrench = wrenches[static_cast<std::size_t>(constraint.joint)];
         rows<Real>(constraint.kind, q, [&](const Row<Real>& row) {
             // A constraint may list the joint's bodies in either order.
-            const Vector6<Real> on = -lambda[k++] * (row.i == joint.i ? row.on_i : row.on_j);
+            const bool on_i = row.i == joint.i;
+            const Real pull = on_i ? -lambda[k] : lambda[k];
+            ++k;
             sum += row.Phi * row.Phi;
-            const Vector3<Real> F = on.template head<3>();
+            const Vector3<Real> F = pull * row.n;
             wrench.force += F.template cast<double>();
-            wrench.moment += (on.template tail<3>() - s.cross(F)).template cast<double>();
+            wrench.moment +=
+                (((on_i ? row.s_i : row.s_j) - s).cross(F) + pull * row.u).template cast<double>();
         });
     }
     return sum;

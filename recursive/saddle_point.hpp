@@ -43,13 +43,13 @@ struct SaddlePoint {
 // D of the matrix M, by a few Ruiz sweeps: every row of D M D has its largest entry in (½, 2].
 template <class Real>
 Vector<Real> equilibration(const Matrix<Real>& M) {
-    Vector<Real> d = Vector<Real>::Ones(M.rows());
+    const Matrix<Real> size = M.cwiseAbs();
+    Vector<Real> d = Vector<Real>::Ones(M.rows()), largest(M.rows());
     for (int sweep = 0; sweep < 10; ++sweep) {
-        const Matrix<Real> scaled = d.asDiagonal() * M * d.asDiagonal();
-        for (Eigen::Index k = 0; k < d.size(); ++k) {
-            const Real largest = scaled.row(k).cwiseAbs().maxCoeff();
-            if (largest > 0) d[k] /= std::sqrt(largest);
-        }
+        largest.setZero();
+        for (Eigen::Index j = 0; j < d.size(); ++j) largest = largest.cwiseMax(size.col(j) * d[j]);
+        for (Eigen::Index k = 0; k < d.size(); ++k)
+            if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
     }
     return d.unaryExpr([](Real value) { return std::exp2(std::round(std::log2(value))); });
 }

@@ -7,6 +7,7 @@
 // a hundred; when one does, the order is chosen anew from the values of the moment.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -62,63 +63,73 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
     ++lu.orders;
     lu.row.resize(n);
     lu.col.resize(n);
-    std::vector<Real>& W = lu.W;
     lu.filled = lu.pattern;
     for (std::size_t i = 0; i < n; ++i) {
         lu.row[i] = lu.col[i] = static_cast<int>(i);
         for (std::size_t j = 0; j < n; ++j)
-            W[i * n + j] = lu.pattern[i * n + j]
-                               ? A(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))
-                               : Real(0);
+            lu.W[i * n + j] = lu.pattern[i * n + j]
+                                  ? A(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))
+                                  : Real(0);
     }
-    // Rows and columns stay where they are; row[k ...] and col[k ...] list those that are still to go.
-    const auto at = [n](int i, int j) {
-        return static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j);
+    // What is still to go is the block right and below of (k, k).
+    const auto measure_column = [&](std::size_t c, std::size_t k) {
+        lu.in_column[c] = 0;
+        lu.largest[c] = 0;
+        for (std::size_t r = k; r < n; ++r) {
+            if (!lu.filled[r * n + c]) continue;
+            ++lu.in_column[c];
+            lu.largest[c] = std::max(lu.largest[c], std::abs(lu.W[r * n + c]));
+        }
     };
     for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t o = k; o < n; ++o) {
-            lu.in_row[o] = lu.in_column[o] = 0;
-            lu.largest[o] = 0;
-        }
-        const auto for_each_entry = [&](auto visit) {  // of what is still to go
-            for (std::size_t r = k; r < n; ++r) {
-                const std::size_t row = static_cast<std::size_t>(lu.row[r]) * n;
-                for (std::size_t c = k; c < n; ++c) {
-                    const std::size_t entry = row + static_cast<std::size_t>(lu.col[c]);
-                    if (lu.filled[entry]) visit(r, c, std::abs(W[entry]));
-                }
-            }
-        };
-        for_each_entry([&](std::size_t r, std::size_t c, Real value) {
-            ++lu.in_row[r];
-            ++lu.in_column[c];
-            lu.largest[c] = std::max(lu.largest[c], value);
-        });
-        std::size_t best_i = k, best_j = k;
+        measure_column(k, 0);
+        lu.in_row[k] = std::count(&lu.filled[k * n], &lu.filled[k * n] + n, 1);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t best_r = k, best_c = k;
         long best_fill = std::numeric_limits<long>::max();
         Real best_value = 0;
-        for_each_entry([&](std::size_t r, std::size_t c, Real value) {
-            const long fill = (lu.in_row[r] - 1) * (lu.in_column[c] - 1);
-            if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * lu.largest[c]) ||
-                fill > best_fill || (fill == best_fill && !(value > best_value)))
-                return;
-            best_fill = fill;
-            best_value = value;
-            best_i = r;
-            best_j = c;
-        });
-        std::swap(lu.row[k], lu.row[best_i]);
-        std::swap(lu.col[k], lu.col[best_j]);
-        if (!(best_value > 0)) continue;  // singular, which the pivots will tell
+        for (std::size_t r = k; r < n; ++r)
+            for (std::size_t c = k; c < n; ++c) {
+                if (!lu.filled[r * n + c]) continue;
+                const long fill = (lu.in_row[r] - 1) * (lu.in_column[c] - 1);
+                if (fill > best_fill) continue;
+                const Real value = std::abs(lu.W[r * n + c]);
+                if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * lu.largest[c]) ||
+                    (fill == best_fill && !(value > best_value)))
+                    continue;
+                best_fill = fill;
+                best_value = value;
+                best_r = r;
+                best_c = c;
+            }
+        const auto swap_entries = [&](auto& values) {
+            if (best_r != k) std::swap_ranges(&values[k * n], &values[k * n] + n, &values[best_r * n]);
+            for (std::size_t r = 0; r < n; ++r) std::swap(values[r * n + k], values[r * n + best_c]);
+        };
+        swap_entries(lu.W);
+        swap_entries(lu.filled);
+        std::swap(lu.row[k], lu.row[best_r]);
+        std::swap(lu.in_row[k], lu.in_row[best_r]);
+        std::swap(lu.col[k], lu.col[best_c]);
+        std::swap(lu.in_column[k], lu.in_column[best_c]);
+        std::swap(lu.largest[k], lu.largest[best_c]);
         for (std::size_t r = k + 1; r < n; ++r) {
-            if (!lu.filled[at(lu.row[r], lu.col[k])]) continue;
-            const Real l = W[at(lu.row[r], lu.col[k])] / W[at(lu.row[k], lu.col[k])];
+            if (!lu.filled[r * n + k]) continue;
+            --lu.in_row[r];
+            if (!(best_value > 0)) continue;  // singular, which the pivots will tell
+            const Real l = lu.W[r * n + k] / lu.W[k * n + k];
             for (std::size_t c = k + 1; c < n; ++c) {
-                if (!lu.filled[at(lu.row[k], lu.col[c])]) continue;
-                lu.filled[at(lu.row[r], lu.col[c])] = 1;
-                W[at(lu.row[r], lu.col[c])] -= l * W[at(lu.row[k], lu.col[c])];
+                if (!lu.filled[k * n + c]) continue;
+                if (!lu.filled[r * n + c]) {
+                    lu.filled[r * n + c] = 1;
+                    ++lu.in_row[r];
+                }
+                lu.W[r * n + c] -= l * lu.W[k * n + c];
             }
         }
+        for (std::size_t c = k + 1; c < n; ++c)
+            if (lu.filled[k * n + c]) measure_column(c, k + 1);
     }
     for (auto* list : {&lu.source, &lu.to, &lu.below, &lu.right, &lu.first_below, &lu.first_right})
         list->clear();
@@ -126,12 +137,13 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
         lu.first_below.push_back(static_cast<int>(lu.below.size()));
         lu.first_right.push_back(static_cast<int>(lu.right.size()));
         for (std::size_t o = k + 1; o < n; ++o) {
-            if (lu.filled[at(lu.row[o], lu.col[k])]) lu.below.push_back(static_cast<int>(o));
-            if (lu.filled[at(lu.row[k], lu.col[o])]) lu.right.push_back(static_cast<int>(o));
+            if (lu.filled[o * n + k]) lu.below.push_back(static_cast<int>(o));
+            if (lu.filled[k * n + o]) lu.right.push_back(static_cast<int>(o));
         }
         for (std::size_t c = 0; c < n; ++c) {
-            if (!lu.pattern[at(lu.row[k], lu.col[c])]) continue;
-            lu.source.push_back(static_cast<int>(at(lu.col[c], lu.row[k])));
+            const auto i = static_cast<std::size_t>(lu.row[k]), j = static_cast<std::size_t>(lu.col[c]);
+            if (!lu.pattern[i * n + j]) continue;
+            lu.source.push_back(static_cast<int>(j * n + i));
             lu.to.push_back(static_cast<int>(k * n + c));
         }
     }

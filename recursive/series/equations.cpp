@@ -5,14 +5,9 @@ namespace {
 
 // ---- Room.
 
-void reserve_turned(Turned& t, int order, bool constant = false) {
-    reserve(t.half, order, constant);
-    reserve(t.v, order, constant);
-}
 void reserve_arm(Arm& arm, BodyId body, int order) {
     arm.body = body;
-    reserve(arm.fixed, order, true);
-    reserve_turned(arm.turned, order, body == ground);
+    reserve(arm.s, order, body == ground);
 }
 template <class... All>
 void reserve_all(int order, All&... all) {
@@ -30,12 +25,9 @@ ElasticSeries room(const Bushing& e, int p) {
     BushingSeries t;
     reserve_arm(t.i, e.i.body, p);
     reserve_arm(t.j, e.j.body, p);
-    reserve_all(p, t.rho, t.D, t.cross_g, t.V, t.u, t.theta, t.relative, t.stress, t.moment_local, t.u_M,
-                t.u_u_M, t.spread_1, t.spread_2, t.moment_spread, t.force_i, t.moment_i, t.dot_g, t.W,
+    reserve_all(p, t.rho, t.D, t.strain, t.cross_g, t.V, t.u, t.theta, t.relative, t.stress, t.moment_local,
+                t.u_M, t.u_u_M, t.spread_1, t.spread_2, t.force_i, t.moment_i, t.F, t.M, t.dot_g, t.W,
                 t.inverse, t.s, t.phi, t.psi);
-    reserve_turned(t.strain, p);
-    reserve_turned(t.F, p);
-    reserve_turned(t.M, p);
     return t;
 }
 ConstraintSeries room(const CoincidentPoints& c, int p) {
@@ -78,7 +70,7 @@ std::vector<LoadSeries> room(const std::vector<Load>& loads, int p) {
 // ---- Where things are at τ = 0.
 
 void place(Arm& arm, const State<double>& q, const Eigen::Vector3d& local) {
-    arm.fixed.c[0] = q[arm.body].lever(local);
+    arm.fixed = q[arm.body].lever(local);
 }
 void place(SpringSeries& t, const AxialSpring& e, const State<double>& q) {
     place(t.i, q, e.i.s_local);
@@ -127,29 +119,20 @@ void place(std::vector<LoadSeries>& all, const std::vector<Load>& loads, const S
 
 // ---- Coefficient k.
 
-// c = x ± a × b
-void add_cross(Order o, const Vector3Series& x, double sign, const Vector3Series& a, const Vector3Series& b,
-               Vector3Series& c) {
-    if (o.pass == Pass::known) {
-        at(c, o.k) = at(x, o.k) + sign * convolution(o.k, a, b, cross);
-    } else {
-        c.change = x.change + sign * (a.change.cross(b.c[0]) + a.c[0].cross(b.change));
-        at(c, o.k) += c.change;
-    }
-}
-void turn(Order o, const BodySeries& body, double sign, const Vector3Series& x, Turned& t) {
-    add_cross(o, x, sign, body.g, x, t.half);
-    add_cross(o, x, sign, body.h, t.half, t.v);
-}
-void turn(Order o, const Equations& e, Arm& arm) {
-    if (o.k == 0 || arm.body != ground) turn(o, e[arm.body], +1, arm.fixed, arm.turned);
-}
-
 void move(Order o, BodySeries& b) {
     product(o, b.g, b.g, b.stretch, dot);
     if (o.k == 0) b.stretch.c[0] += 1;
     reciprocal(o, b.stretch, b.shrink);
     product(o, b.shrink, b.g, b.h, [](double x, const V3& g) -> V3 { return 2 * x * g; });
+    product(o, b.h, b.g, b.hg, outer);
+    linear(o, b.C, [&](auto of) -> Matrix3<double> {
+        return of(b.hg) + tilde<double>(of(b.h)) - of(b.hg).trace() * Matrix3<double>::Identity();
+    });
+    if (o.k == 0) b.C.c[0] += Matrix3<double>::Identity();
+}
+void turn(Order o, const Equations& e, Arm& arm) {
+    if (o.k > 0 && arm.body == ground) return;
+    linear(o, arm.s, [&](auto of) -> V3 { return of(e[arm.body].C) * arm.fixed; });
 }
 
 // A force with its moment from the lever `at` enters coefficient k of G, times sign.
@@ -164,7 +147,7 @@ void twist(Equations& e, int k, BodyId b, double sign, const Vector3Series& M) {
 
 void distance(Order o, const Equations& e, const Arm& i, const Arm& j, Vector3Series& D) {  // p_j - p_i
     const Vector3Series &r_i = e[i.body].r, &r_j = e[j.body].r;
-    linear(o, D, [&](auto of) -> V3 { return of(r_j) + of(j.s()) - of(r_i) - of(i.s()); });
+    linear(o, D, [&](auto of) -> V3 { return of(r_j) + of(j.s) - of(r_i) - of(i.s); });
 }
 
 // F = k (1 - ℓ₀/ℓ) D
@@ -179,8 +162,8 @@ void evaluate(Equations& e, const AxialSpring& spring, SpringSeries& t, Order o)
     if (o.k == 0) t.tension.c[0] += spring.k;
     product(o, t.tension, t.D, t.F, scale);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.j.body, +1, t.j.s(), t.F);
-    push(e, o.k, t.i.body, -1, t.i.s(), t.F);
+    push(e, o.k, t.j.body, +1, t.j.s, t.F);
+    push(e, o.k, t.i.body, -1, t.i.s, t.F);
 }
 
 // u = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u,  J(θ)⁻ᵀ = I + F_1 ũ + F_3 ũ²
@@ -188,9 +171,9 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
     const BodySeries &b_i = e[t.i.body], &b_j = e[t.j.body];
     turn(o, e, t.i);
     turn(o, e, t.j);
-    linear(o, t.rho, [&](auto of) -> V3 { return of(b_j.r) + of(t.j.s()) - of(b_i.r); });
-    linear(o, t.D, [&](auto of) -> V3 { return of(t.rho) - of(t.i.s()); });
-    turn(o, b_i, -1, t.D, t.strain);
+    linear(o, t.rho, [&](auto of) -> V3 { return of(b_j.r) + of(t.j.s) - of(b_i.r); });
+    linear(o, t.D, [&](auto of) -> V3 { return of(t.rho) - of(t.i.s); });
+    product(o, b_i.C, t.D, t.strain, apply_transposed);
 
     product(o, b_i.g, b_j.g, t.dot_g, dot);
     if (o.k == 0) t.dot_g.c[0] += 1;
@@ -215,7 +198,7 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
 
     linear(o, t.stress, [&](auto of) -> Vector6<double> {
         Vector6<double> strain;
-        strain << t.E_i.transpose() * of(t.strain.v), of(t.theta);
+        strain << t.E_i.transpose() * of(t.strain), of(t.theta);
         return bushing.K * strain;
     });
     if (o.k == 0) t.stress.c[0] += bushing.preload;
@@ -227,13 +210,13 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
     linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(t.stress).template head<3>(); });
     linear(o, t.moment_i,
            [&](auto of) -> V3 { return t.E_i * (of(t.moment_local) + of(t.spread_1) + of(t.spread_2)); });
-    turn(o, b_i, +1, t.force_i, t.F);
-    turn(o, b_i, +1, t.moment_i, t.M);
+    product(o, b_i.C, t.force_i, t.F, apply);
+    product(o, b_i.C, t.moment_i, t.M, apply);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.j.body, +1, t.j.s(), t.F.v);
-    push(e, o.k, t.i.body, -1, t.rho, t.F.v);
-    twist(e, o.k, t.j.body, +1, t.M.v);
-    twist(e, o.k, t.i.body, -1, t.M.v);
+    push(e, o.k, t.j.body, +1, t.j.s, t.F);
+    push(e, o.k, t.i.body, -1, t.rho, t.F);
+    twist(e, o.k, t.j.body, +1, t.M);
+    twist(e, o.k, t.i.body, -1, t.M);
 }
 
 void evaluate(Equations& e, const CoincidentPoints&, CoincidentSeries& t, const Scalar* lambda, double* Phi,
@@ -242,10 +225,10 @@ void evaluate(Equations& e, const CoincidentPoints&, CoincidentSeries& t, const 
     turn(o, e, t.j);
     linear(o, t.F, [&](auto of) -> V3 { return {of(lambda[0]), of(lambda[1]), of(lambda[2])}; });
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s(), t.F);
-    push(e, o.k, t.j.body, -1, t.j.s(), t.F);
+    push(e, o.k, t.i.body, +1, t.i.s, t.F);
+    push(e, o.k, t.j.body, -1, t.j.s, t.F);
     Eigen::Map<V3> value(Phi);
-    value = at(e[t.i.body].r, o.k) + at(t.i.s(), o.k) - at(e[t.j.body].r, o.k) - at(t.j.s(), o.k);
+    value = at(e[t.i.body].r, o.k) + at(t.i.s, o.k) - at(e[t.j.body].r, o.k) - at(t.j.s, o.k);
 }
 
 void evaluate(Equations& e, const PointInPlane&, PlaneSeries& t, const Scalar* lambda, double* Phi, Order o) {
@@ -254,24 +237,24 @@ void evaluate(Equations& e, const PointInPlane&, PlaneSeries& t, const Scalar* l
     turn(o, e, t.normal);
     distance(o, e, t.j, t.i, t.d);
     const Vector3Series &r_i = e[t.i.body].r, &r_j = e[t.j.body].r;
-    linear(o, t.rho, [&](auto of) -> V3 { return of(r_i) + of(t.i.s()) - of(r_j); });
-    product(o, *lambda, t.normal.s(), t.F, scale);
+    linear(o, t.rho, [&](auto of) -> V3 { return of(r_i) + of(t.i.s) - of(r_j); });
+    product(o, *lambda, t.normal.s, t.F, scale);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s(), t.F);
+    push(e, o.k, t.i.body, +1, t.i.s, t.F);
     push(e, o.k, t.j.body, -1, t.rho, t.F);
-    *Phi = convolution(o.k, t.normal.s(), t.d, dot);
+    *Phi = convolution(o.k, t.normal.s, t.d, dot);
 }
 
 void evaluate(Equations& e, const PerpendicularDirections&, PerpendicularSeries& t, const Scalar* lambda,
               double* Phi, Order o) {
     turn(o, e, t.i);
     turn(o, e, t.j);
-    product(o, t.i.s(), t.j.s(), t.M, cross);
+    product(o, t.i.s, t.j.s, t.M, cross);
     if (o.pass == Pass::change) return;
     const V3 M = convolution(o.k, *lambda, t.M, scale);
     if (t.i.body != ground) e.G.segment<3>(6 * t.i.body + 3) += M;
     if (t.j.body != ground) e.G.segment<3>(6 * t.j.body + 3) -= M;
-    *Phi = convolution(o.k, t.i.s(), t.j.s(), dot);
+    *Phi = convolution(o.k, t.i.s, t.j.s, dot);
 }
 
 void evaluate(Equations& e, const DistanceBetween& c, DistanceSeries& t, const Scalar* lambda, double* Phi,
@@ -281,8 +264,8 @@ void evaluate(Equations& e, const DistanceBetween& c, DistanceSeries& t, const S
     distance(o, e, t.j, t.i, t.d);
     product(o, *lambda, t.d, t.F, [&](double x, const V3& d) -> V3 { return x / c.length * d; });
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s(), t.F);
-    push(e, o.k, t.j.body, -1, t.j.s(), t.F);
+    push(e, o.k, t.i.body, +1, t.i.s, t.F);
+    push(e, o.k, t.j.body, -1, t.j.s, t.F);
     *Phi = convolution(o.k, t.d, t.d, dot) / (2 * c.length) - (o.k == 0 ? c.length / 2 : 0);
 }
 
@@ -294,7 +277,7 @@ void evaluate(Equations& e, const std::vector<Load>& loads, std::vector<LoadSeri
             turn(o, e, arm);
             if (o.pass == Pass::change) continue;
             e.G.segment<3>(6 * arm.body) -= at(factor, o.k) * force->f;
-            e.G.segment<3>(6 * arm.body + 3) -= convolution(o.k, factor, arm.s(), scale).cross(force->f);
+            e.G.segment<3>(6 * arm.body + 3) -= convolution(o.k, factor, arm.s, scale).cross(force->f);
         } else if (o.pass == Pass::known) {
             const auto& moment = std::get<DeadMoment>(loads[k].kind);
             e.G.segment<3>(6 * moment.body + 3) -= at(factor, o.k) * moment.m;
@@ -310,8 +293,8 @@ Equations equations(const Model& model, const Branch& branch, int order) {
     e.slots.resize(model.bodies.size() + 1);
     for (std::size_t b = 0; b < e.slots.size(); ++b) {
         BodySeries& body = e.slots[b];
-        for (auto* s : {&body.r, &body.g, &body.h}) reserve(*s, order, b == 0);
-        for (auto* s : {&body.stretch, &body.shrink}) reserve(*s, order, b == 0);
+        const auto reserve_each = [&](auto&... all) { (reserve(all, order, b == 0), ...); };
+        reserve_each(body.r, body.g, body.h, body.stretch, body.shrink, body.hg, body.C);
     }
     e.lambda.resize(static_cast<std::size_t>(constraint_rows(model)));
     for (auto& lambda : e.lambda) reserve(lambda, order);

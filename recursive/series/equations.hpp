@@ -4,10 +4,11 @@
 //
 // A body turns from where it is at τ = 0 by the Gibbs vector g = tan(θ/2) n, in which rotation is rational:
 //
-//   C(g) v = v + h × (v + g × v),   h = 2 g / (1 + g·g)
+//   C(g) = (1 - h·g) I + h̃ + h gᵀ,   h = 2 g / (1 + g·g)
 //
-// and 2 g is Δπ to first order, so that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of
-// tangent.hpp. derivation.md has it all.
+// once a body: what is fixed in it turns by a linear map of these coefficients. 2 g is Δπ to first order, so
+// that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
+// all.
 #pragma once
 
 #include <variant>
@@ -22,20 +23,14 @@ using V3 = Vector3<double>;
 struct BodySeries {
     Vector3Series r, g, h;
     Scalar stretch, shrink;  // 1 + g·g, 1 / (1 + g·g)
-};
-
-// C(g) x or, with sign -1, C(g)ᵀ x.
-struct Turned {
-    Vector3Series half;  // x ± g × x
-    Vector3Series v;     // x ± h × half
+    Matrix3Series hg, C;     // h gᵀ, C(g)
 };
 
 // A vector fixed in a body.
 struct Arm {
     BodyId body = ground;
-    Vector3Series fixed;  // as it is at τ = 0
-    Turned turned;
-    const Vector3Series& s() const { return turned.v; }
+    V3 fixed = V3::Zero();  // as it is at τ = 0
+    Vector3Series s;        // C fixed
 };
 
 struct SpringSeries {
@@ -48,9 +43,8 @@ struct BushingSeries {
     Arm i, j;
     Matrix3<double> E_i;          // axes of marker i at τ = 0
     Eigen::Matrix4d to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion of A_iᵀ A_j, any length
-    Vector3Series rho, D, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, moment_spread,
-        force_i, moment_i;
-    Turned strain, F, M;
+    Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, force_i,
+        moment_i, F, M;
     Series<Eigen::Vector4d> relative;
     Series<Vector6<double>> stress;
     Scalar dot_g, W, inverse, s;

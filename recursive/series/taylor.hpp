@@ -39,6 +39,7 @@ struct Series {
 };
 using Scalar = Series<double>;
 using Vector3Series = Series<Vector3<double>>;
+using Matrix3Series = Series<Matrix3<double>>;
 
 template <class T>
 void reserve(Series<T>& s, int order, bool constant = false) {
@@ -80,6 +81,14 @@ inline constexpr auto dot = [](const Vector3<double>& a, const Vector3<double>& 
 inline constexpr auto cross = [](const Vector3<double>& a, const Vector3<double>& b) -> Vector3<double> {
     return a.cross(b);
 };
+inline constexpr auto outer = [](const Vector3<double>& a, const Vector3<double>& b) -> Matrix3<double> {
+    return a * b.transpose();
+};
+inline constexpr auto apply = [](const Matrix3<double>& A, const Vector3<double>& b) -> Vector3<double> {
+    return A * b;
+};
+inline constexpr auto apply_transposed =
+    [](const Matrix3<double>& A, const Vector3<double>& b) -> Vector3<double> { return A.transpose() * b; };
 
 // Coefficient k of any linear map of series: map(get) is given a way to read coefficient k of each.
 template <class C, class Map>
