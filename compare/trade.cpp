@@ -253,14 +253,16 @@ void recommend(const Model& model, const std::vector<Channel>& channels, Trade& 
         found.point = *k;
         found.confirmed =
             confirm(model, channels, trade.points[*k], trade.points_per_branch, found.confirmed_numbers);
-        if (found.confirmed_numbers > 0 && good_enough(trade, found.confirmed)) {
-            band(trade, found);
+        band(trade, found);
+        const bool holds = found.confirmed_numbers > 0 && good_enough(trade, found.confirmed);
+        if (holds && good_enough(trade, found.high)) {
             trade.recommendation = found;
             return;
         }
-        trade.rejected.push_back(fmt::format("{}: {:.3g} mm and {:.3g} deg when run again",
-                                             describe(trade.points[*k]), found.confirmed.mm,
-                                             found.confirmed.deg));
+        const Accuracy& worst = holds ? found.high : found.confirmed;
+        trade.rejected.push_back(fmt::format(
+            "{}: {}{:.3g} mm and {:.3g} deg{}", describe(trade.points[*k]), holds ? "up to " : "", worst.mm,
+            worst.deg, holds ? ", as far as its rungs obey their law" : " when run again"));
         std::erase(candidates, *k);
     }
 }

@@ -70,6 +70,7 @@ struct TradePoint {
     std::array<bool, 3> on_front{};
 };
 
+// The whole band lies within the tolerance.
 struct Recommendation {
     std::size_t point = 0;  // position in Trade::points
     // Band: how far the law error = C·steps^-p of the ladder misses this rung, what the confirming run found,
@@ -99,7 +100,7 @@ struct Trade {
     double noise = 0;      // of time ratios, from the A/A row
     std::vector<TradePoint> points;
     std::optional<Recommendation> recommendation;
-    std::vector<std::string> rejected;      // would have been recommended, but the confirming run said no
+    std::vector<std::string> rejected;      // cheaper, but the confirming run or its band said no
     std::vector<std::string> inconclusive;  // why nothing can be judged
 };
 

@@ -89,10 +89,14 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
         std::size_t best_r = k, best_c = k;
         long best_fill = std::numeric_limits<long>::max();
         Real best_value = 0;
-        for (std::size_t r = k; r < n; ++r)
+        const long fewest = *std::min_element(&lu.in_column[k], &lu.in_column[k] + (n - k)) - 1;
+        for (std::size_t r = k; r < n; ++r) {
+            const long others = lu.in_row[r] - 1;
+            if (others * fewest > best_fill) continue;
+            const char* const filled = &lu.filled[r * n];
             for (std::size_t c = k; c < n; ++c) {
-                if (!lu.filled[r * n + c]) continue;
-                const long fill = (lu.in_row[r] - 1) * (lu.in_column[c] - 1);
+                if (!filled[c]) continue;
+                const long fill = others * (lu.in_column[c] - 1);
                 if (fill > best_fill) continue;
                 const Real value = std::abs(lu.W[r * n + c]);
                 if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * lu.largest[c]) ||
@@ -103,6 +107,7 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
                 best_r = r;
                 best_c = c;
             }
+        }
         const auto swap_entries = [&](auto& values) {
             if (best_r != k) std::swap_ranges(&values[k * n], &values[k * n] + n, &values[best_r * n]);
             for (std::size_t r = 0; r < n; ++r) std::swap(values[r * n + k], values[r * n + best_c]);

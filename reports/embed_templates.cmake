@@ -1,11 +1,11 @@
-# Writes OUTPUT: every *.mustache under FOLDER by its name, as text in the program.
+# Writes OUTPUT: the templates FILES under FOLDER by their names, as text in the program. The list is part of the
+# command, so that a file that comes or goes is noticed however old it is.
 cmake_minimum_required(VERSION 3.25)
-file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*.mustache)
-list(SORT files)
 set(entries "")
-foreach(file IN LISTS files)
-  file(READ ${FOLDER}/${file} text)
-  string(REGEX REPLACE "\\.mustache$" "" name ${file})
+foreach(file IN LISTS FILES)
+  file(READ ${file} text)
+  file(RELATIVE_PATH name ${FOLDER} ${file})
+  string(REGEX REPLACE "\\.mustache$" "" name ${name})
   string(APPEND entries "    {\"${name}\", R\"~~~~(${text})~~~~\"},\n")
 endforeach()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT "#pragma once

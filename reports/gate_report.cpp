@@ -3,19 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <kainjow/mustache.hpp>
 #include <map>
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "gate_templates.hpp"  // generated from templates/
+#include "reports/templates.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 using compare::Judgement;
 using compare::Offence;
-namespace mustache = kainjow::mustache;
+using json = nlohmann::ordered_json;
 
 constexpr std::size_t rows_in_table = 10, annotations_in_all = 10;
 // A step summary is refused from 1 MiB on; this many rows of cells this long stay below it.
@@ -112,8 +111,8 @@ std::string joined(const std::vector<std::string>& parts) {
     return all;
 }
 
-mustache::data count_beyond(std::size_t all, std::size_t shown) {
-    return all > shown ? mustache::data(std::to_string(all - shown)) : mustache::data(false);
+json count_beyond(std::size_t all, std::size_t shown) {
+    return all > shown ? json(std::to_string(all - shown)) : json(false);
 }
 
 // XML 1.0 has no way to write most control characters.
@@ -274,56 +273,46 @@ std::string junit(const std::vector<GatedScene>& scenes) {
 }
 
 std::string step_summary(const std::vector<GatedScene>& scenes) {
-    mustache::data offences(mustache::data::type::list), reasons(mustache::data::type::list),
-        rows(mustache::data::type::list);
+    json offences = json::array(), reasons = json::array(), rows = json::array();
     const auto all = worst_of_each_channel(pointers(scenes));
     for (std::size_t k = 0; k < std::min(all.size(), rows_in_summary); ++k) {
         const Offence& o = *all[k].offence;
-        mustache::data row;
-        row["scene"] = cell(all[k].scene->file);
-        row["branch"] = cell(o.branch);
-        row["what"] = cell(what(o));
-        row["channel"] = cell(fmt::format("{} [{}]", o.channel, o.unit));
-        row["at"] = where(o);
-        row["was"] = fmt::format("{:.10g}", o.was);
-        row["is"] = fmt::format("{:.10g}", o.is);
-        row["difference"] = fmt::format("{:+.3g}", o.difference());
-        row["share"] = fmt::format("{:.3g}", o.share());
-        row["numbers"] = std::to_string(all[k].numbers);
-        offences << row;
+        offences.push_back({{"scene", cell(all[k].scene->file)},
+                            {"branch", cell(o.branch)},
+                            {"what", cell(what(o))},
+                            {"channel", cell(fmt::format("{} [{}]", o.channel, o.unit))},
+                            {"at", where(o)},
+                            {"was", fmt::format("{:.10g}", o.was)},
+                            {"is", fmt::format("{:.10g}", o.is)},
+                            {"difference", fmt::format("{:+.3g}", o.difference())},
+                            {"share", fmt::format("{:.3g}", o.share())},
+                            {"numbers", all[k].numbers}});
     }
     std::size_t reasons_in_all = 0;
     for (const auto& scene : scenes)
         for (const auto& why : scene.verdict.reasons) {
             if (++reasons_in_all > rows_in_summary) continue;
-            mustache::data row;
-            row["scene"] = cell(scene.file);
-            row["why"] = cell(why);
-            reasons << row;
+            reasons.push_back({{"scene", cell(scene.file)}, {"why", cell(why)}});
         }
-    for (std::size_t k = 0; k < std::min(scenes.size(), scenes_in_summary); ++k) {
-        mustache::data row;
-        row["scene"] = cell(scenes[k].file);
-        row["verdict"] = verdict_of(scenes[k]);
-        row["compared"] = std::to_string(scenes[k].verdict.compared);
-        row["class"] = cell(class_of(scenes[k]));
-        row["reason"] = cell(scenes[k].reason);
-        row["notes"] = cell(joined(scenes[k].notes));
-        rows << row;
-    }
-    mustache::data page;
-    page.set("verdict", verdict_of(scenes));
-    page.set("conclusion", gate_conclusion(scenes));
-    page.set("has_offences", mustache::data(!all.empty()));
-    page.set("offences", offences);
-    page.set("more_offences", count_beyond(all.size(), rows_in_summary));
-    page.set("has_reasons", mustache::data(reasons_in_all > 0));
-    page.set("reasons", reasons);
-    page.set("more_reasons", count_beyond(reasons_in_all, rows_in_summary));
-    page.set("scenes", rows);
-    page.set("more_scenes", count_beyond(scenes.size(), scenes_in_summary));
-    mustache::mustache markup(std::string{gate_templates::summary});
-    return markup.render(page);
+    for (std::size_t k = 0; k < std::min(scenes.size(), scenes_in_summary); ++k)
+        rows.push_back({{"scene", cell(scenes[k].file)},
+                        {"verdict", verdict_of(scenes[k])},
+                        {"compared", scenes[k].verdict.compared},
+                        {"class", cell(class_of(scenes[k]))},
+                        {"reason", cell(scenes[k].reason)},
+                        {"notes", cell(joined(scenes[k].notes))}});
+    return render("markdown/gate_summary",
+                  {{"verdict", verdict_of(scenes)},
+                   {"conclusion", gate_conclusion(scenes)},
+                   {"has_offences", !all.empty()},
+                   {"offences", offences},
+                   {"more_offences", count_beyond(all.size(), rows_in_summary)},
+                   {"has_reasons", reasons_in_all > 0},
+                   {"reasons", reasons},
+                   {"more_reasons", count_beyond(reasons_in_all, rows_in_summary)},
+                   {"scenes", rows},
+                   {"more_scenes", count_beyond(scenes.size(), scenes_in_summary)}},
+                  Escape::nothing);
 }
 
 std::string annotations(const std::vector<GatedScene>& scenes) {

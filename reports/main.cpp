@@ -7,8 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <fstream>
-#include <sstream>
 
 #include "compare/compare.hpp"
 #include "compare/order_study.hpp"
@@ -41,13 +39,6 @@ namespace {
 using namespace elastocheck;
 using namespace elastocheck::reports;
 using json = nlohmann::ordered_json;
-
-std::string read_text(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 // One line that is written over, on a terminal; nothing in a pipe.
 void progress(std::string_view what) {
@@ -144,7 +135,7 @@ int compare_legs(const std::string& file, const recursive::Options& how, const s
     progress("");
     fmt::print("{}", reports::tables(model, comparison));
     if (!folder.empty()) {
-        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        json part = reports::scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         reports::add_comparison(part, scene, model, comparison);
         reports::add_verdict(part, comparison.compared, reports::reasons_of(comparison));
         const std::filesystem::path base(folder);
@@ -187,7 +178,7 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     const bool conclusive =
         (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
     if (!folder.empty()) {
-        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        json part = reports::scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         const std::filesystem::path base(folder);
         std::string written = "result.json";
         const auto keep = [&](const char* what, const std::string& csv) {
@@ -223,7 +214,7 @@ int trade(const std::string& file, const std::string& tolerance, const std::stri
     progress("");
     fmt::print("{}\n{}", reports::trade_table(model, trade), reports::precision_table(precision));
     if (!folder.empty()) {
-        json part = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+        json part = reports::scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         part["trade"] = reports::trade_json(trade);
         part["precision"] = reports::precision_json(precision);
         reports::add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "reports/files.hpp"
 #include "reports/gnuplot.hpp"
@@ -105,13 +103,6 @@ std::string figure_data(const Figure& figure) {
     return text;
 }
 
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 }  // namespace
 
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
@@ -133,7 +124,7 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
     std::vector<Illustration> pictures;
     for (const auto& [figure, name] : plots) {
         const fs::path svg = figures / (name + ".svg");
-        pictures.push_back(illustrate(read_text(svg), fmt::format("f{}", pictures.size() + 1), figure->title,
+        pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1), figure->title,
                                       figure->description));
         write_whole(svg, pictures.back().alone);
         if (!options.keep_source)

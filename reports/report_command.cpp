@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "compare/compare.hpp"
 #include "compare/order_study.hpp"
@@ -34,14 +32,6 @@ namespace {
 using json = nlohmann::ordered_json;
 using Progress = std::function<void(std::string_view)>;
 
-std::string read_text(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) throw reports::FileError(fmt::format("{}: cannot be read", file));
-    return text.str();
-}
-
 // The recommended configuration over the whole branch, for the figure that shows it inside the tolerance.
 json recommended(const Model& model, const compare::Trade& trade) {
     if (!trade.recommendation) return nullptr;
@@ -65,7 +55,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     const Scene scene = read_scene(file);
     const Model model = compile(scene);
     const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
-    json document = reports::scene_document(scene, read_text(file), model, recursive::diagnose(model));
+    json document =
+        reports::scene_document(scene, reports::read_whole(file), model, recursive::diagnose(model));
 
     compare::Options options;
     options.progress = tell;
@@ -73,7 +64,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     reports::add_comparison(document, scene, model, comparison);
     auto reasons = reports::reasons_of(comparison);
     if (!request.measured.empty())
-        reports::add_measurement(document, read_text(request.measured), request.measured, model, comparison);
+        reports::add_measurement(document, reports::read_whole(request.measured), request.measured, model,
+                                 comparison);
 
     compare::StudyOptions study_options;
     study_options.methods.clear();
@@ -154,14 +146,14 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     reports::run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance);
     for (const auto& scene : request.scenes) (void)read_scene(scene);
-    if (!request.measured.empty()) (void)read_text(request.measured);
+    if (!request.measured.empty()) (void)reports::read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {
-        result = reports::parse_result(read_text(file), file);
+        result = reports::parse_result(reports::read_whole(file), file);
     } else {
         file = "result.json";
         result = reports::document(reproduce, reports::provenance());

@@ -9,55 +9,39 @@ void reserve_arm(Arm& arm, BodyId body, int order) {
     arm.body = body;
     reserve(arm.s, order, body == ground);
 }
-template <class... All>
-void reserve_all(int order, All&... all) {
-    (reserve(all, order), ...);
-}
-
-ElasticSeries room(const AxialSpring& e, int p) {
-    SpringSeries t;
-    reserve_arm(t.i, e.i.body, p);
-    reserve_arm(t.j, e.j.body, p);
-    reserve_all(p, t.D, t.F, t.length_squared, t.length, t.inverse, t.tension);
+// A term between two bodies with the series it needs beside its arms.
+template <class Term, class Kind, class... Members>
+Term between(const Kind& kind, int p, Members... members) {
+    Term t;
+    reserve_arm(t.i, kind.i.body, p);
+    reserve_arm(t.j, kind.j.body, p);
+    (reserve(t.*members, p), ...);
     return t;
+}
+ElasticSeries room(const AxialSpring& e, int p) {
+    using T = SpringSeries;
+    return between<T>(e, p, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse, &T::tension);
 }
 ElasticSeries room(const Bushing& e, int p) {
-    BushingSeries t;
-    reserve_arm(t.i, e.i.body, p);
-    reserve_arm(t.j, e.j.body, p);
-    reserve_all(p, t.rho, t.D, t.strain, t.cross_g, t.V, t.u, t.theta, t.relative, t.stress, t.moment_local,
-                t.u_M, t.u_u_M, t.spread_1, t.spread_2, t.force_i, t.moment_i, t.F, t.M, t.dot_g, t.W,
-                t.inverse, t.s, t.phi, t.psi);
-    return t;
+    using T = BushingSeries;
+    return between<T>(e, p, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta, &T::relative,
+                      &T::stress, &T::moment_local, &T::u_M, &T::u_u_M, &T::spread_1, &T::spread_2,
+                      &T::force_i, &T::moment_i, &T::F, &T::M, &T::dot_g, &T::W, &T::inverse, &T::s, &T::phi,
+                      &T::psi);
 }
 ConstraintSeries room(const CoincidentPoints& c, int p) {
-    CoincidentSeries t;
-    reserve_arm(t.i, c.i.body, p);
-    reserve_arm(t.j, c.j.body, p);
-    reserve(t.F, p);
-    return t;
+    return between<CoincidentSeries>(c, p, &CoincidentSeries::F);
 }
 ConstraintSeries room(const PointInPlane& c, int p) {
-    PlaneSeries t;
-    reserve_arm(t.i, c.i.body, p);
-    reserve_arm(t.j, c.j.body, p);
+    auto t = between<PlaneSeries>(c, p, &PlaneSeries::d, &PlaneSeries::rho, &PlaneSeries::F);
     reserve_arm(t.normal, c.normal_j.body, p);
-    reserve_all(p, t.d, t.rho, t.F);
     return t;
 }
 ConstraintSeries room(const PerpendicularDirections& c, int p) {
-    PerpendicularSeries t;
-    reserve_arm(t.i, c.i.body, p);
-    reserve_arm(t.j, c.j.body, p);
-    reserve(t.M, p);
-    return t;
+    return between<PerpendicularSeries>(c, p, &PerpendicularSeries::M);
 }
 ConstraintSeries room(const DistanceBetween& c, int p) {
-    DistanceSeries t;
-    reserve_arm(t.i, c.i.body, p);
-    reserve_arm(t.j, c.j.body, p);
-    reserve_all(p, t.d, t.F);
-    return t;
+    return between<DistanceSeries>(c, p, &DistanceSeries::d, &DistanceSeries::F);
 }
 std::vector<LoadSeries> room(const std::vector<Load>& loads, int p) {
     std::vector<LoadSeries> all(loads.size());
@@ -72,9 +56,18 @@ std::vector<LoadSeries> room(const std::vector<Load>& loads, int p) {
 void place(Arm& arm, const State<double>& q, const Eigen::Vector3d& local) {
     arm.fixed = q[arm.body].lever(local);
 }
-void place(SpringSeries& t, const AxialSpring& e, const State<double>& q) {
-    place(t.i, q, e.i.s_local);
-    place(t.j, q, e.j.s_local);
+const Eigen::Vector3d& local(const Point& at) { return at.s_local; }
+const Eigen::Vector3d& local(const Direction& along) { return along.u_local; }
+const Eigen::Vector3d& local(const Marker& marker) { return marker.s_local; }
+template <class Term, class Kind>
+void place(Term& t, const Kind& kind, const State<double>& q) {
+    place(t.i, q, local(kind.i));
+    place(t.j, q, local(kind.j));
+    if constexpr (requires {
+                      t.normal;
+                      kind.normal_j;
+                  })
+        place(t.normal, q, local(kind.normal_j));
 }
 // p ↦ l p r of quaternions (w, x, y, z)
 Eigen::Matrix4d sandwich(const Eigen::Quaterniond& l, const Eigen::Quaterniond& r) {
@@ -87,29 +80,11 @@ Eigen::Matrix4d sandwich(const Eigen::Quaterniond& l, const Eigen::Quaterniond& 
     return L;
 }
 void place(BushingSeries& t, const Bushing& e, const State<double>& q) {
-    place(t.i, q, e.i.s_local);
-    place(t.j, q, e.j.s_local);
+    place<BushingSeries, Bushing>(t, e, q);
     const Eigen::Quaterniond p_i = q[e.i.body].p * e.i.A_local, p_j = q[e.j.body].p * e.j.A_local;
     t.E_i = p_i.toRotationMatrix();
     t.to_relative = sandwich(p_i.conjugate(), p_j);
     if (t.to_relative(0, 0) < 0) t.to_relative = -t.to_relative;  // the shorter way round
-}
-void place(CoincidentSeries& t, const CoincidentPoints& c, const State<double>& q) {
-    place(t.i, q, c.i.s_local);
-    place(t.j, q, c.j.s_local);
-}
-void place(PlaneSeries& t, const PointInPlane& c, const State<double>& q) {
-    place(t.i, q, c.i.s_local);
-    place(t.j, q, c.j.s_local);
-    place(t.normal, q, c.normal_j.u_local);
-}
-void place(PerpendicularSeries& t, const PerpendicularDirections& c, const State<double>& q) {
-    place(t.i, q, c.i.u_local);
-    place(t.j, q, c.j.u_local);
-}
-void place(DistanceSeries& t, const DistanceBetween& c, const State<double>& q) {
-    place(t.i, q, c.i.s_local);
-    place(t.j, q, c.j.s_local);
 }
 void place(std::vector<LoadSeries>& all, const std::vector<Load>& loads, const State<double>& q) {
     for (std::size_t k = 0; k < loads.size(); ++k)

@@ -203,6 +203,7 @@ TEST(Trade, RecommendationMeetsItsToleranceWhenSolvedAnewAtTenTimesThePoints) {
             const auto& r = *result.recommendation;
             EXPECT_TRUE(r.confirmed.mm <= mm && r.confirmed.mm <= r.high.mm)
                 << r.confirmed.mm << " " << r.high.mm;
+            EXPECT_LE(r.high.mm, mm) << name;
             EXPECT_TRUE(r.low.mm <= r.expected.mm && r.expected.mm <= r.high.mm)
                 << r.low.mm << " " << r.expected.mm;
             EXPECT_GT(result.recommendation->confirmed_numbers, 100);
@@ -329,6 +330,23 @@ TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
     ASSERT_TRUE(result.recommendation);
     EXPECT_LE(result.recommendation->confirmed.mm, options.tolerance.mm);
     EXPECT_NE(result.points[result.recommendation->point].own_tolerance, 1e-5);
+}
+
+TEST(Trade, WhatMayLieBeyondTheToleranceAsFarAsItsRungsTellIsNotRecommended) {
+    const Model model = shipped("mcpherson_preload");
+    TradeOptions options = quick({0.01}, 10);
+    options.methods = {"adaptive"};
+    const Trade first = trade(model, options);
+    ASSERT_TRUE(first.recommendation);
+    const Recommendation& r = *first.recommendation;
+    const double found = std::max(r.expected.mm, r.confirmed.mm);
+    ASSERT_GT(r.high.mm, 1.1 * found);
+    options.tolerance.mm = std::sqrt(found * r.high.mm);
+    const Trade result = trade(model, options);
+    const auto up_to = [](const std::string& line) { return line.find(": up to ") != std::string::npos; };
+    EXPECT_TRUE(std::ranges::any_of(result.rejected, up_to));
+    ASSERT_TRUE(result.recommendation);
+    EXPECT_LE(result.recommendation->high.mm, options.tolerance.mm);
 }
 
 TEST(Trade, ReferencesThatFailLeaveNothingToJudge) {
