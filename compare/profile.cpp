@@ -11,8 +11,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double angle_per_length = 1.745;  // as in trade.cpp
-
 void raise(double& worst, double value) {
     worst = std::isnan(worst) || std::isnan(value) ? std::numeric_limits<double>::quiet_NaN()
                                                    : std::max(worst, std::abs(value));

@@ -262,6 +262,7 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
     command->add_option("--junit", options->junit, "write JUnit XML to this file");
     command->add_option("--summary", options->summary, "write a Markdown summary to this file");
     std::vector<std::string> kinds;
+    kinds.reserve(std::size(compare::tolerance_classes));
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
     command
         ->add_option("--class", options->kind,

@@ -46,6 +46,7 @@ std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& s
 
 std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
     std::vector<const GatedScene*> all;
+    all.reserve(scenes.size());
     for (const auto& scene : scenes) all.push_back(&scene);
     return all;
 }

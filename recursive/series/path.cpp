@@ -111,6 +111,7 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
 
 std::vector<Pose> poses_of(const State<double>& q) {
     std::vector<Pose> poses;
+    poses.reserve(q.slots.size());
     for (BodyId b = 0; b < q.bodies(); ++b) poses.push_back({q[b].r, q[b].p});
     return poses;
 }
@@ -197,7 +198,7 @@ Outcome walk(Walk& w) {
 }
 
 std::string words(const Walk& w, Outcome outcome) {
-    const std::string at = fmt::format("branch '{}': at load factor {:.6g}", w.s.branch.name, w.s.a);
+    std::string at = fmt::format("branch '{}': at load factor {:.6g}", w.s.branch.name, w.s.a);
     switch (outcome) {
         case Outcome::limit_point:
             return fmt::format(

@@ -141,6 +141,7 @@ std::optional<Section> drawing_section(const Field& scene) {
             if (!series->rows.empty()) figure.series.push_back(std::move(*series));
         figure.x_tick = figure.y_tick = tick(figure);
         std::vector<std::string> names;
+        names.reserve(ends.size());
         for (const auto& end : ends) names.push_back(end.branch);
         figure.description = fmt::format(
             "{} at the design position, with the positions at full load in {} drawn over "

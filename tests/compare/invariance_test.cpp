@@ -15,6 +15,7 @@ struct Way {
     Leg leg;
     const char* method;
 };
+void PrintTo(const Way& way, std::ostream* out) { *out << (*way.method != 0 ? way.method : name(way.leg)); }
 constexpr Way ways[] = {{Leg::recursive, "published"},
                         {Leg::recursive, "midpoint"},
                         {Leg::recursive, "series"},
@@ -124,9 +125,8 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(ways), [](const auto& way) {
-    return std::string(*way.param.method != 0 ? way.param.method : name(way.param.leg));
-});
+INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(ways),
+                         [](const auto& way) { return testing::PrintToString(way.param); });
 
 }  // namespace
 }  // namespace elastocheck::compare

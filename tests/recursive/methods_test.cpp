@@ -33,7 +33,7 @@ double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath
 
 // The branch to round-off: a rung of order 3 with many steps, whose residuals confirm that it is equilibrium.
 EquilibriumPath truth(const Model& model, const Branch& branch) {
-    const auto path = solve(model, branch, {.method = rung("chord"), .steps = 12000, .record = 10});
+    auto path = solve(model, branch, {.method = rung("chord"), .steps = 12000, .record = 10});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     const auto left = residuals(model, branch, path.points.back());
     EXPECT_LE(std::max(left.force, left.moment), 1e-4);

@@ -25,6 +25,7 @@ struct Random {
     Pose pose(double angle = 3) { return {vector(), rotation(angle)}; }
     State<double> state(int bodies, double angle = 3) {
         std::vector<Pose> poses;
+        poses.reserve(static_cast<std::size_t>(bodies));
         for (int b = 0; b < bodies; ++b) poses.push_back(pose(angle));
         return state_of<double>(poses);
     }
