@@ -53,7 +53,9 @@ struct Walk {
     const Options& options;
     double to;             // load factor of the end
     double per_load;       // metres that an error of one unit of the load factor counts as
-    Vector<double> ahead;  // x_1 of the motion before: which way is on
+    Vector<double> ahead;  // x'(τ) of the motion before: which way is on
+    double heading;        // a'(τ) at the end of the last piece: whether the load rises or falls
+    Vector<double> x;      // where on the polynomial
     Path path;
 };
 
@@ -116,85 +118,108 @@ std::vector<Pose> poses_of(const State<double>& q) {
     return poses;
 }
 
+// Up to which τ the present expansion is to be used, and whether the branch ends there.
+struct End {
+    double tau = 0;
+    bool last = false;
+};
+
+// How far the expansion at load factor a_0 carries; an outcome where there is no way on.
+Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
+    end = {reach(w.s, w.c, w.options.tolerance, w.per_load, singularity.radius), false};
+    if (std::isnan(end.tau)) return Outcome::not_finite;
+    if (w.options.arc_length) {
+        end.tau = std::min(end.tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
+        if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
+            end = {*met, true};
+        return Outcome::converged;
+    }
+    const double rest = (w.to - a_0) / w.to;
+    if (end.tau >= rest) {
+        end = {rest, true};
+    } else if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
+        // A branch point straight ahead that comes nearer however far one has come is a limit point.
+        w.path.limits.push_back(a_0 + singularity.radius * w.to);
+        return Outcome::limit_point;
+    } else if (end.tau < 1e-9) {
+        return Outcome::branch_lost;
+    }
+    return Outcome::converged;
+}
+
+// x'(τ) of the polynomial with the columns c.
+Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
+    Vector<double> d = Vector<double>::Zero(c.rows());
+    for (Eigen::Index k = c.cols() - 1; k >= 1; --k) d = d * tau + static_cast<double>(k) * c.col(k);
+    return d;
+}
+
+// The polynomial about `from` at τ becomes the present state.
+void go_to(Walk& w, const State<double>& from, double tau) {
+    horner(w.c.x, tau, w.x);
+    displace(from, w.x, w.s.q);
+    w.s.lambda = w.x.tail(w.s.m());
+    w.s.a = polynomial(w.c.load, tau);
+}
+
+// Goes from `from` to the end and corrects it there, judging the expansion on the way; an end that is found
+// wanting is drawn nearer.
+Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged) {
+    for (int shorter = 0; shorter <= 20; ++shorter) {
+        go_to(w, from, end.tau / 2);
+        residual_at(w.s, w.s.q, w.s.lambda, w.s.a);
+        judged.force_middle = largest_force(w.s);
+        judged.constraint_middle = largest_violation(w.s);
+
+        go_to(w, from, end.tau);
+        if (end.last && !w.options.arc_length) w.s.a = w.to;
+        w.ahead = w.options.arc_length ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
+        const Outcome outcome = arrive(w, &judged, judged.error_end);
+        const double error = judged.error_end;
+        if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) return outcome;
+        if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
+        ++w.path.rejected;
+        const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order + 1));
+        end = {end.tau * (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5), false};
+    }
+    return Outcome::branch_lost;
+}
+
+// Where a(τ) turns back on the stretch just travelled. A turn at the seam of two expansions may show at the
+// end of the one and again at the start of the next, or in neither: what counts is whether the load then goes
+// the other way than before.
+void look_for_turns(Walk& w, double reach) {
+    constexpr int pieces = 64;
+    const auto rises = [&](double t) { return slope(w.c.load, t); };
+    if (w.path.expansions.empty()) w.heading = rises(0);
+    for (int k = 1; k <= pieces; ++k) {
+        const double from = reach * (k - 1) / pieces, to = reach * k / pieces;
+        if (rises(to) * w.heading >= 0) continue;
+        const double turn = rises(from) * w.heading > 0 ? bisect(rises, from, to) : from;
+        w.path.limits.push_back(polynomial(w.c.load, turn));
+        w.heading = rises(to);
+    }
+}
+
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
-    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return outcome;
     double error = 0;
+    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return outcome;
     if (const Outcome outcome = arrive(w, nullptr, error); outcome != Outcome::converged) return outcome;
-    State<double> from = s.q;
-    Vector<double> x = Vector<double>::Zero(s.n() + s.m());
-    const bool arc = w.options.arc_length;
-
-    for (;;) {
-        if (static_cast<int>(w.path.expansions.size()) >= w.options.expansions)
-            return Outcome::iteration_limit;
-        from = s.q;
-        const double a_0 = s.a;
-        expand(s, w.e, w.c, w.to, arc, w.ahead);
+    while (static_cast<int>(w.path.expansions.size()) < w.options.expansions) {
+        const State<double> from = s.q;
+        expand(s, w.e, w.c, w.to, w.options.arc_length, w.ahead);
         const Singularity singularity = nearest_singularity(s, w.c);
-        double tau = reach(s, w.c, w.options.tolerance, w.per_load, singularity.radius);
-        if (std::isnan(tau)) return Outcome::not_finite;
-
-        bool last = false;
-        if (!arc) {
-            const double rest = (w.to - a_0) / w.to;
-            if (tau >= rest) {
-                tau = rest;
-                last = true;
-            } else if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
-                // A branch point straight ahead that comes nearer however far one has come is a limit point.
-                w.path.limits.push_back(a_0 + singularity.radius * w.to);
-                return Outcome::limit_point;
-            } else if (tau < 1e-9) {
-                return Outcome::branch_lost;
-            }
-        } else {
-            tau = std::min(tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
-            const auto beyond = [&](double t) { return polynomial(w.c.load, t) - w.to; };
-            if (const auto end = first_zero(beyond, tau)) {
-                tau = *end;
-                last = true;
-            }
-        }
-
+        End end;
         Certificate judged;
-        for (int shorter = 0;; ++shorter) {
-            if (shorter > 20) return Outcome::branch_lost;
-            horner(w.c.x, tau / 2, x);
-            displace(from, x, s.q);
-            s.lambda = x.tail(s.m());
-            residual_at(s, s.q, s.lambda, polynomial(w.c.load, tau / 2));
-            judged.force_middle = largest_force(s);
-            judged.constraint_middle = largest_violation(s);
-
-            horner(w.c.x, tau, x);
-            displace(from, x, s.q);
-            s.lambda = x.tail(s.m());
-            s.a = last && !arc ? w.to : polynomial(w.c.load, tau);
-            w.ahead = w.c.x.col(1);
-            if (arc) {  // x'(τ)
-                w.ahead.setZero();
-                for (int k = w.e.order; k >= 1; --k) w.ahead = w.ahead * tau + k * w.c.x.col(k);
-            }
-            const Outcome outcome = arrive(w, &judged, error);
-            judged.error_end = error;
-            if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) break;
-            if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
-            ++w.path.rejected;
-            tau *=
-                outcome == Outcome::converged
-                    ? std::clamp(0.9 * std::pow(w.options.tolerance / error, 1.0 / (w.e.order + 1)), 0.3, 0.9)
-                    : 0.5;
-            last = false;
-        }
-        // Only now: an end that was drawn nearer may leave the turn to the next expansion.
-        if (arc)
-            if (const auto turn = first_zero([&](double t) { return slope(w.c.load, t); }, tau))
-                w.path.limits.push_back(polynomial(w.c.load, *turn));
-        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, tau, singularity, judged});
-        if (last) return Outcome::converged;
-        if (arc && !(std::abs(s.a) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
+        if (const Outcome o = look_ahead(w, s.a, singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
+        if (w.options.arc_length) look_for_turns(w, end.tau);
+        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
+        if (end.last) return Outcome::converged;
+        if (w.options.arc_length && !(std::abs(s.a) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
     }
+    return Outcome::iteration_limit;
 }
 
 std::string words(const Walk& w, Outcome outcome) {
@@ -230,6 +255,8 @@ Path follow(const Model& model, const Branch& branch, const Options& options) {
            options,
            branch.to,
            diagnosis.length / std::abs(branch.to),
+           {},
+           0,
            {},
            {}};
     w.c = reserve_coefficients(w.s, options.order);
@@ -327,10 +354,9 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
 
 Rates rates(const Path& path, Place place) {
     const Expansion& expansion = path.expansions[place.expansion];
-    Vector<double> x, dx = Vector<double>::Zero(expansion.x.rows());
+    Vector<double> x;
     horner(expansion.x, place.tau, x);
-    for (int k = expansion.order(); k >= 1; --k) dx = dx * place.tau + k * expansion.x.col(k);
-    dx /= slope(expansion.load, place.tau);
+    const Vector<double> dx = derivative(expansion.x, place.tau) / slope(expansion.load, place.tau);
     Rates result;
     for (std::size_t b = 0; b < expansion.start.size(); ++b) {
         const auto row = static_cast<Eigen::Index>(6 * b);

@@ -269,6 +269,23 @@ TEST(Series, GoesThroughLimitPointsByArcLength) {
     }
 }
 
+TEST(Series, ATurnIsRecordedOnceHoweverOftenAnEndIsDrawnNearer) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch branch = model.branches[0];
+    branch.to = -400;
+    int rejected = 0;
+    for (int order = 4; order <= 24; ++order)
+        for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+            const Path path =
+                follow(model, branch, {.order = order, .tolerance = tolerance, .arc_length = true});
+            if (path.outcome == Outcome::iteration_limit) continue;  // a low order told 1e-12 m
+            ASSERT_EQ(path.outcome, Outcome::converged) << order << " " << tolerance << " " << path.detail;
+            ASSERT_EQ(path.limits.size(), 2u) << order << " " << tolerance;
+            rejected += path.rejected;
+        }
+    EXPECT_GT(rejected, 0);
+}
+
 TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
     for (const char* name : {"mcpherson", "pinned_bar", "pendulum", "mcpherson_preload"}) {
         const Model model = compile(support::scene(name));
