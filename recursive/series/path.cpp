@@ -141,8 +141,8 @@ Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end
         // A branch point straight ahead that comes nearer however far one has come is a limit point.
         w.path.limits.push_back(a_0 + singularity.radius * w.to);
         return Outcome::limit_point;
-    } else if (end.tau < 1e-9) {
-        return Outcome::branch_lost;
+    } else if (end.tau < 1e-9 && singularity.radius < 1e-6) {
+        return Outcome::branch_lost;  // but not for an order that is too low for its tolerance
     }
     return Outcome::converged;
 }

@@ -346,6 +346,9 @@ TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
     EXPECT_EQ(path.outcome, Outcome::iteration_limit);
     EXPECT_EQ(path.expansions.size(), 5u);
     EXPECT_NE(path.detail.find("5 expansions were not enough"), std::string::npos) << path.detail;
+    const Path first_order = follow(model, model.branches[0], {.order = 1});
+    EXPECT_EQ(first_order.outcome, Outcome::iteration_limit);
+    EXPECT_NE(first_order.detail.find("200 expansions were not enough"), std::string::npos);
 }
 
 TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
