@@ -6,7 +6,7 @@
 //   Δe = ⎧ Δr_j' - Δr_i' ⎫ = B ⎧ Δq_i ⎫ ,   B = ⎡ -I   s̃_i   I   -s̃_j ⎤      Δr' = Δr - s̃ Δπ
 //        ⎩ Δπ_j  - Δπ_i  ⎭     ⎩ Δq_j ⎭         ⎣  0   -I    0    I   ⎦
 //
-// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections (design.md 3.1):
+// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections:
 // its sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block
 // row, third and fourth block. Written out,
 //

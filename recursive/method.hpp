@@ -1,4 +1,4 @@
-// The ladder of methods: one loop (solve.cpp) with a few orthogonal choices.
+// The ladder of methods: one loop (sweep.hpp) with a few orthogonal choices.
 //
 // All solve one saddle-point system per step. They differ in what they leave out of it:
 //

@@ -4,8 +4,7 @@
 
 #include <stdexcept>
 
-#include "recursive/adaptive.hpp"
-#include "recursive/steps.hpp"
+#include "recursive/sweep.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -27,47 +26,14 @@ std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outc
     return detail;
 }
 
-template <class Real>
-EquilibriumPath march(const Model& model, const Branch& branch, const Options& options,
-                      const Diagnosis& diagnosis) {
-    const int N = options.steps > 0 ? options.steps : branch.steps;
-    const int points = options.record > 0 ? options.record : N;
-    March<Real> s(model, branch, options.method, diagnosis);
-    EquilibriumPath path;
-    make_room(model, points + 1, path);
-    std::size_t reached = 0;
-    const auto finish = [&](Outcome outcome, double load) {
-        path.outcome = outcome;
-        if (outcome != Outcome::converged)
-            path.detail =
-                fmt::format("branch '{}': {}", branch.name, words(diagnosis, options.method, outcome, load));
-        path.points.resize(reached);
-        path.counts = s.counts;
-        return path;
-    };
-    const bool follows = options.method.follow.lever || options.method.follow.axis;
-    const auto keep = [&](double load) {
-        record<Real>(s.model, s.q, follows ? s.q : s.before, s.lambda, load, path.points[reached]);
-        ++reached;
-    };
-
-    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return finish(outcome, 0);
-    if (options.method.adaptive) {
-        const Outcome outcome =
-            adapt(s, options.length_tolerance, options.angle_tolerance, branch.to, path, reached);
-        return finish(outcome, static_cast<double>(s.a));
+EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch, const Options& options,
+                      const Diagnosis& diagnosis, double& stopped) {
+    switch (precision) {
+        case Precision::single: return sweep<float>(model, branch, options, diagnosis, stopped);
+        case Precision::twofold: return sweep<double>(model, branch, options, diagnosis, stopped);
+        case Precision::extended: return sweep<long double>(model, branch, options, diagnosis, stopped);
     }
-    keep(0);
-    for (int k = 1; k <= N; ++k) {
-        const double load = branch.to * k / N;
-        if (const Outcome outcome = step(s, static_cast<Real>(load)); outcome != Outcome::converged)
-            return finish(outcome, load);
-        if (k == N && options.method.consistent && options.method.corrections == 0)
-            if (const Outcome outcome = check_last_step(s); outcome != Outcome::converged)
-                return finish(outcome, load);
-        if (static_cast<long>(k) * points % N == 0) keep(load);
-    }
-    return finish(Outcome::converged, branch.to);
+    return {};
 }
 
 }  // namespace
@@ -90,12 +56,12 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
                         branch.name, diagnosis.constraint_error);
         return path;
     }
-    switch (options.precision) {
-        case Precision::single: return march<float>(model, branch, options, diagnosis);
-        case Precision::twofold: return march<double>(model, branch, options, diagnosis);
-        case Precision::extended: return march<long double>(model, branch, options, diagnosis);
-    }
-    return {};
+    double stopped = 0;
+    EquilibriumPath path = sweep(options.precision, model, branch, options, diagnosis, stopped);
+    if (path.outcome != Outcome::converged)
+        path.detail = fmt::format("branch '{}': {}", branch.name,
+                                  words(diagnosis, options.method, path.outcome, stopped));
+    return path;
 }
 
 }  // namespace elastocheck::recursive

@@ -1,4 +1,4 @@
-// Outputs: wheel angles by their definitions (design.md 3.4), travel, units.
+// Outputs: wheel angles by their definitions, travel, units.
 #include "compare/channels.hpp"
 
 #include <gtest/gtest.h>

@@ -85,7 +85,7 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
 }
 
 TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
-    // What design.md 2.1 says of the published method: percents at equal load, a small part of it at equal
+    // What is known of the published method: percents at equal load, a small part of it at equal
     // travel.
     for (const auto& branch : mcpherson().branches) {
         const auto& load = branch.deviation.equal_load.channels;

@@ -1,4 +1,4 @@
-// Includes run downwards only, and never from one leg to another (design.md sections 4 and 5).
+// Includes run downwards only, and never from one leg to another.
 #include <gtest/gtest.h>
 
 #include <algorithm>

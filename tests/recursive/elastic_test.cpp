@@ -1,4 +1,4 @@
-// Stiffness, eqs. (8)-(20), and the law behind it (design.md 3.5).
+// Stiffness, eqs. (8)-(20), and the law behind it.
 #include "recursive/elastic.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ State<double> assembled(const Bushing& b, Random& random) {
     return state_of<double>({i, j});
 }
 
-// The energies of design.md 3.5, written anew.
+// The energies of models/mechanism.hpp, written anew.
 double energy(const ElasticKind& kind, const State<double>& q) {
     const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
     if (const auto* e = std::get_if<AxialSpring>(&kind)) {
@@ -113,7 +113,7 @@ TEST(Stiffness, PrintedEquation19IsNeitherSymmetricNorFreeOfForceUnderRigidMotio
     for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r), turn;
     EXPECT_GT((printed - printed.transpose()).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
     EXPECT_GT((printed * dq).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
-    // They differ where design.md 3.1 (b) says and nowhere else: block row 2, columns 3 and 4.
+    // They differ in the second correction and nowhere else: block row 2, columns 3 and 4.
     Matrix<double> difference = K - printed;
     difference.block<3, 6>(3, 6).setZero();
     EXPECT_LE(difference.cwiseAbs().maxCoeff(), 1e-15 * K.cwiseAbs().maxCoeff());

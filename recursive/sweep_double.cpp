@@ -1,0 +1,8 @@
+#include "recursive/sweep.hpp"
+
+namespace elastocheck::recursive {
+
+template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Diagnosis&,
+                                       double&);
+
+}  // namespace elastocheck::recursive

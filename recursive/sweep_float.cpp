@@ -1,0 +1,7 @@
+#include "recursive/sweep.hpp"
+
+namespace elastocheck::recursive {
+
+template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Diagnosis&, double&);
+
+}  // namespace elastocheck::recursive
