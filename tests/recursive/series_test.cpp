@@ -88,7 +88,10 @@ TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
                 const std::vector<double> at{0, other.to};
                 const auto solved = reference::equilibrium::solve(model, other, at);
                 EXPECT_EQ(solved.outcome, Outcome::converged) << solved.detail;
-                r.push_back(solved.points[share == 0 ? 0 : 1].poses.front().r);
+                const std::size_t k = share == 0 ? 0 : 1;
+                r.push_back(k < solved.points.size()
+                                ? solved.points[k].poses.front().r
+                                : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
             }
             return r;
         };
@@ -269,16 +272,17 @@ TEST(Series, GoesThroughLimitPointsByArcLength) {
     }
 }
 
-TEST(Series, ATurnIsRecordedOnceHoweverOftenAnEndIsDrawnNearer) {
+TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
+    // So many tolerances that some expansions end beside a turn, and some are drawn nearer.
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
     branch.to = -400;
     int rejected = 0;
-    for (int order = 4; order <= 24; ++order)
-        for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    for (int order = 4; order <= 16; ++order)
+        for (int k = 0; k < 400; ++k) {
+            const double tolerance = std::pow(10, -3 - k / 100.0);
             const Path path =
                 follow(model, branch, {.order = order, .tolerance = tolerance, .arc_length = true});
-            if (path.outcome == Outcome::iteration_limit) continue;  // a low order told 1e-12 m
             ASSERT_EQ(path.outcome, Outcome::converged) << order << " " << tolerance << " " << path.detail;
             ASSERT_EQ(path.limits.size(), 2u) << order << " " << tolerance;
             rejected += path.rejected;
