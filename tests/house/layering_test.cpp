@@ -22,6 +22,7 @@ struct Room {
 // A folder may include itself and what is listed.
 const std::vector<Room> rooms{
     {"models", {}},
+    {"models/reader", {"models"}},
     {"recursive", {"models"}},
     {"reference/equilibrium", {"models"}},
     {"reference/energy", {"models"}},
