@@ -47,13 +47,16 @@ void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k,
     const double length = 0.5;
     const Point p_i{i, Vector3d::Zero()},
         p_j{j, origin(scene, i) - origin(scene, j) + Vector3d(0, 0, length)};
-    scene.elastics.push_back({name, AxialSpring{p_i, p_j, k, k > 0 ? length + preload / k : length}});
+    scene.elastics.push_back({name, AxialSpring{p_i, p_j, LinearRate{k}, k > 0 ? length + preload / k : length}});
 }
+
+Matrix6& K_of(Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
 
 Bushing& bushing(Scene& scene, const std::string& name, BodyId i, BodyId j, double k) {
     const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
-    Bushing b{.i = {i, p_i.s_local}, .j = {j, p_j.s_local}};
-    b.K.diagonal().setConstant(k);
+    Bushing b;
+    b.i = {i, p_i.s_local}, b.j = {j, p_j.s_local};
+    K_of(b).diagonal().setConstant(k);
     scene.elastics.push_back({name, b});
     return std::get<Bushing>(scene.elastics.back().kind);
 }
@@ -63,6 +66,20 @@ Load push(const std::string& name, BodyId on, double f = 1) {
 }
 Load twist(const std::string& name, BodyId on, double m = 1) {
     return {name, DeadMoment{on, Vector3d(m, 0, 0)}};
+}
+
+Branch branch(const std::string& name, const std::vector<Load>& loads, double to = 1, int steps = 1) {
+    Branch result;
+    result.name = name, result.to = to, result.steps = steps;
+    for (const Load& load : loads) result.drivers.push_back({.what = load, .start = 0, .rate = 1});
+    return result;
+}
+
+std::vector<Load> loads_of(const Branch& branch) {
+    std::vector<Load> loads;
+    for (const Driver& driver : branch.drivers)
+        if (const auto* load = std::get_if<Load>(&driver.what)) loads.push_back(*load);
+    return loads;
 }
 
 // a, b, c, ... one hung on the next, the first on ground.
@@ -119,7 +136,7 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
     ball(scene, "cd", 3, 2);
     spring(scene, "d_ground", 3, ground, 1e3, 50);  // preloaded, but far from any output
     scene.static_loads = {push("weight", 3)};
-    scene.branches = {{"up", {push("load", 1), push("elsewhere", 2)}, 1, 1}};
+    scene.branches = {branch("up", {push("load", 1), push("elsewhere", 2)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "ab");
     EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{
@@ -129,7 +146,7 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
                                    {"element 'd_ground'", with_its_body},
                                    {"load 'weight'", "its body is left out"},
                                    {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
-    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
 TEST(Compile, DoesNotConnectThroughGround) {
@@ -182,15 +199,15 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
     const Reason reasons[] = {
         {"a load",
          [](Scene& s) {
-             s.branches = {{"up", {push("p", 2)}, 1, 1}};
+             s.branches = {branch("up", {push("p", 2)})};
          }},
         {"a moment",
          [](Scene& s) {
-             s.branches = {{"up", {twist("t", 2)}, 1, 1}};
+             s.branches = {branch("up", {twist("t", 2)})};
          }},
         {"a load in the second branch",
          [](Scene& s) {
-             s.branches = {{"one", {push("q", 0)}, 1, 1}, {"two", {push("p", 2)}, 1, 1}};
+             s.branches = {branch("one", {push("q", 0)}), branch("two", {push("p", 2)})};
          }},
         {"a static load", [](Scene& s) { s.static_loads = {push("p", 2)}; }},
         {"a static moment", [](Scene& s) { s.static_loads = {twist("t", 2)}; }},
@@ -198,7 +215,7 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
          [](Scene& s) {
              s.probes.push_back({"p", {.body = 2}});
          }},
-        {"the wheel", [](Scene& s) { s.wheel = Wheel{.body = 2}; }},
+        {"the wheel", [](Scene& s) { s.wheels.emplace_back().body = 2; }},
         {"a joint to ground", [](Scene& s) { ball(s, "held", 2, ground); }},
         {"a spring to ground", [](Scene& s) { spring(s, "held", 2, ground, 1e3); }},
         {"a joint to another body", [](Scene& s) { ball(s, "loop", 2, 0); }},
@@ -228,14 +245,14 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
 TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
     Scene scene = chain(2);
     scene.static_loads = {push("nothing", 1, 0)};
-    scene.branches = {{"up", {push("load", 0), twist("none", 1, 0)}, 1, 1}};
+    scene.branches = {branch("up", {push("load", 0), twist("none", 1, 0)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "a");
     const auto reasons = left_out(model);
     EXPECT_EQ(reasons.at("load 'nothing'"), "it is zero");
     EXPECT_EQ(reasons.at("load 'none'"), "it is zero (branch 'up')");
     EXPECT_EQ(model.static_loads.size(), 0U);
-    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
 TEST(Compile, KeepsAPreloadWithoutRate) {
@@ -314,11 +331,12 @@ struct RandomScene {
             } else if (one_in(2)) {
                 const double k = one_in(4) ? 0 : 1e3;
                 scene.elastics.push_back(
-                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), k, 0.3}});
+                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), LinearRate{k}, 0.3}});
             } else {
                 // Both markers at the origin of ground: unloaded unless preloaded.
-                Bushing b{.i = {i, -origin(scene, i)}, .j = {j, -origin(scene, j)}};
-                if (!one_in(4)) b.K.diagonal().setConstant(1e3);
+                Bushing b;
+                b.i = {i, -origin(scene, i)}, b.j = {j, -origin(scene, j)};
+                if (!one_in(4)) K_of(b).diagonal().setConstant(1e3);
                 if (one_in(4)) b.preload[0] = 1;
                 scene.elastics.push_back({fmt::format("bushing_{}", n), b});
             }
@@ -329,9 +347,9 @@ struct RandomScene {
         if (one_in(2)) scene.static_loads.push_back(load("static"));
         for (int n = 0; n <= below(3); ++n)
             scene.branches.push_back(
-                {fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1});
-        if (one_in(2)) scene.wheel = Wheel{.body = below(count), .centre_local = vector()};
-        if (!scene.wheel || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
+                branch(fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1));
+        if (one_in(2)) scene.wheels.emplace_back().body = below(count);
+        if (scene.wheels.empty() || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
         return scene;
     }
 };
@@ -402,13 +420,12 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
             EXPECT_EQ(model.branches[b].to, scene.branches[b].to);
             EXPECT_EQ(model.branches[b].steps, scene.branches[b].steps);
-            for (const Load& load : model.branches[b].loads)
-                EXPECT_EQ(target(scene, *find(scene.branches[b].loads, load.name)), target(model, load));
+            for (const Load& load : loads_of(model.branches[b]))
+                EXPECT_EQ(target(scene, *find(loads_of(scene.branches[b]), load.name)), target(model, load));
         }
-        ASSERT_EQ(model.wheel.has_value(), scene.wheel.has_value());
-        if (model.wheel) {
-            EXPECT_EQ(body_name(model, model.wheel->body), body_name(scene, scene.wheel->body));
-        }
+        ASSERT_EQ(model.wheels.size(), scene.wheels.size());
+        for (std::size_t k = 0; k < model.wheels.size(); ++k)
+            EXPECT_EQ(body_name(model, model.wheels[k].body), body_name(scene, scene.wheels[k].body));
         ASSERT_EQ(model.probes.size(), scene.probes.size());
         for (std::size_t k = 0; k < model.probes.size(); ++k)
             EXPECT_EQ(body_name(model, model.probes[k].at.body), body_name(scene, scene.probes[k].at.body));
@@ -421,12 +438,16 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
         const Scene scene = random.scene();
         const Model model = compile(scene);
         std::size_t loads = scene.static_loads.size(), kept_loads = model.static_loads.size(), joint_rows = 0;
-        for (const auto& branch : scene.branches) loads += branch.loads.size();
-        for (const auto& branch : model.branches) kept_loads += branch.loads.size();
+        for (const auto& branch : scene.branches) loads += branch.drivers.size();
+        for (const auto& branch : model.branches) kept_loads += branch.drivers.size();
         const auto parts = scene.bodies.size() + scene.joints.size() + scene.elastics.size() + loads;
         const auto kept_parts =
             model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
-        EXPECT_EQ(parts, kept_parts + model.left_out.size());
+        const auto is_branch = [](const Omission& omission) { return omission.what.starts_with("branch"); };
+        const auto branches = std::ranges::count_if(model.left_out, is_branch);  // kept, though with no driver
+        EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.left_out.size());
+        for (const Branch& left : model.branches)
+            EXPECT_EQ(left_out(model).contains("branch '" + left.name + "'"), left.drivers.empty());
         for (const ModelJoint& joint : model.joints)
             for (const auto& constraint : lower(find(scene.joints, joint.name)->kind, scene.bodies))
                 joint_rows += static_cast<std::size_t>(rows(constraint));
@@ -450,14 +471,14 @@ std::string kept_by_the_rule(const Scene& scene) {
     for (const auto& joint : scene.joints) connect(joint.kind, false);
     for (const auto& elastic : scene.elastics) {
         if (const auto* s = std::get_if<AxialSpring>(&elastic.kind)) {
-            if (s->k > 0) connect(elastic.kind, true);  // no random spring has its free length
+            if (std::get<LinearRate>(s->law).k > 0) connect(elastic.kind, true);  // no random spring has its free length
         } else {
             const auto& b = std::get<Bushing>(elastic.kind);
-            if (!b.preload.isZero() || !b.K.isZero()) connect(elastic.kind, !b.preload.isZero());
+            if (!b.preload.isZero() || !std::get<LinearStiffness>(b.law).K.isZero()) connect(elastic.kind, !b.preload.isZero());
         }
     }
     std::vector<bool> is_output(scene.bodies.size()), is_loaded(scene.bodies.size());
-    if (scene.wheel) is_output[static_cast<std::size_t>(scene.wheel->body)] = true;
+    for (const auto& wheel : scene.wheels) is_output[static_cast<std::size_t>(wheel.body)] = true;
     for (const auto& probe : scene.probes) is_output[static_cast<std::size_t>(probe.at.body)] = true;
     const auto mark = [&](const Load& load) {
         if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
@@ -468,7 +489,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     };
     for (const auto& load : scene.static_loads) mark(load);
     for (const auto& branch : scene.branches)
-        for (const auto& load : branch.loads) mark(load);
+        for (const auto& load : loads_of(branch)) mark(load);
 
     std::vector<bool> in = is_output;
     for (std::size_t pass = 0; pass < in.size(); ++pass)
