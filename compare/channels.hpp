@@ -24,9 +24,10 @@ struct Channel {
 // The channels of a model, in order:
 //   wheel_centre_x, _y, _z   position of the wheel centre, ground axes
 //   toe      = atan2(e_x, side·e_y), positive toe-in            e = unit spin axis pointing outboard
-//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; per wheel, never
-//   the axle total PROBE_x, _y, _z          position of a probe JOINT.force_x ... moment_z   wrench of a
-//   joint on its first body, about the joint's point, ground axes
+//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; per wheel, never the
+//                                                               axle total
+//   PROBE_x, _y, _z                position of a probe
+//   JOINT.force_x ... moment_z     wrench of a joint on its first body, about the joint's point, ground axes
 std::vector<Channel> channels(const Model& model);
 
 // Their values at one equilibrium, same order.

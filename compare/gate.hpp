@@ -61,8 +61,8 @@ struct Measurement {
     std::vector<std::string> inconclusive;  // why the run itself proves nothing; empty when it does
 };
 
-// Up to eleven load points a branch, evenly spread, both ends included. Values are rounded to what a baseline
-// file holds.
+// Up to eleven load points a branch, evenly spread, both ends included.
+// Values are rounded to what a baseline file holds.
 Measurement measure(const Model& model, const Comparison& comparison);
 
 // |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; of the equilibrium leg's curve

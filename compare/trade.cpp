@@ -43,8 +43,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint
     return {};
 }
 
-// The distance of b from a, both along `branch`; `stride` points of a are one of b. NaN unless both are
-// complete.
+// The distance of b from a, both along `branch`;
+// `stride` points of a are one of b. NaN unless both are complete.
 Accuracy distance(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& a,
                   const EquilibriumPath& b, std::size_t stride = 1, int* compared = nullptr) {
     if (a.outcome != Outcome::converged || b.outcome != Outcome::converged || b.points.empty() ||

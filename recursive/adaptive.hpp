@@ -5,12 +5,11 @@
 //
 //   forecast    z⁺ = z + h z' + ½ h² z'', z'' from the last two derivatives
 //   corrections Newton steps, each with its own factors: their sizes fall quadratically, so the last one
-//   squared over the
-//               one before is what is left. (With the factors of the old node they hardly fall at all: where
-//               stiff bushings turn beside soft springs, the error of old factors is their angle times the
-//               ratio of the rates.)
+//               squared over the one before is what is left. (With the factors of the old node they hardly
+//               fall at all: where stiff bushings turn beside soft springs, the error of old factors is their
+//               angle times the ratio of the rates.)
 //   between     the cubic through (z, z') and (z⁺, z⁺'). Its error is largest in the middle: one correction
-//   there is it.
+//               there is it.
 //
 // A step is accepted when what is left and the middle are within the tolerance; the next size follows from
 // the middle, which is of order 4.

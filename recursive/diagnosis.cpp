@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // on rows of unit length
 
-// The root mean square lever of everything that is attached to a body: invariant under motions of the ground
-// frame.
+// The root mean square lever of everything that is attached to a body:
+// invariant under motions of the ground frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
@@ -59,8 +59,8 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
     return Q.rightCols(columns - qr.rank());
 }
 
-// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size
-// count alike.
+// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with
+// a unit diagonal C, so that rates of any size count alike.
 MatrixXd elastic_rows(const Model& model, const State<double>& q) {
     std::vector<VectorXd> rows;
     for (const auto& elastic : model.elastics) {

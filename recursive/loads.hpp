@@ -5,8 +5,8 @@
 
 namespace elastocheck::recursive {
 
-// Adds factor · (sum of loads) to f_ext [6nb]. A force at a body point has a lever s = A s' that moves with
-// the body.
+// Adds factor · (sum of loads) to f_ext [6nb]. A force at
+// a body point has a lever s = A s' that moves with the body.
 template <class Real>
 void add_loads(const std::vector<Load>& loads, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
     for (const auto& load : loads) {

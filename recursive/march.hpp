@@ -67,8 +67,8 @@ Real load_on_idle_modes(const March<Real>& s) {
     return worst;
 }
 
-// How far the held motions are from idle, and the held combinations from redundant, at q: 0 for exactly so,
-// up to 1.
+// How far the held motions are from idle, and the held
+// combinations from redundant, at q: 0 for exactly so, up to 1.
 //   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
 //   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
 template <class Real>

@@ -1,6 +1,6 @@
-// The one loop of all methods that take steps: settle at load factor 0, then N increments, eqs. (25)-(29), or
-// steps of the method's own. Instantiated once per arithmetic (sweep_*.cpp), since each takes its time to
-// compile.
+// The one loop of all methods that take steps: settle at load factor 0,
+// then N increments, eqs. (25)-(29), or steps of the method's own.
+// Instantiated once per arithmetic (sweep_*.cpp), since each takes its time to compile.
 #pragma once
 
 #include "recursive/adaptive.hpp"

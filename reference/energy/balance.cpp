@@ -77,9 +77,9 @@ MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scale
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
 }
 
-// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ...,
-// whereas the balance is g - m. They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they
-// balance.
+// With g the gradient of everything but the moment, in ground axes:
+// ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ..., whereas the balance is g - m.
+// They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they balance.
 MatrixXd moment_stiffness(const Loading& loading, const Scales& scales, int n) {
     MatrixXd A = MatrixXd::Zero(n, n);
     for (const auto& moment : loading.moments) {

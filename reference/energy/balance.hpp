@@ -1,5 +1,5 @@
-// How far a pose is from being a constrained minimum: multipliers, what they leave over, and the modes of
-// motion.
+// How far a pose is from being a constrained minimum:
+// multipliers, what they leave over, and the modes of motion.
 //
 // All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
 #pragma once
@@ -24,9 +24,9 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Loading& loading, const Scales& scales, const Chart& chart);
 
-// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly, the rest by differences of hand-derived
-// gradients at constant stress and λ. It steers (metric, prediction, stability); no result depends on its
-// last digits.
+// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly,
+// the rest by differences of hand-derived gradients at constant stress and λ.
+// It steers (metric, prediction, stability); no result depends on its last digits.
 Eigen::MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scales,
                         const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 

@@ -18,9 +18,9 @@ struct Options {
 // from the other). They are minima on the curve that starts at the design pose under the static loads; where
 // that curve ends the outcome is branch_lost, whatever minima there may be elsewhere.
 //
-// Reactions of joints that repeat each other are not unique; these share the load with the smallest norm.
-// Counts: `evaluations` of energy or constraints with derivatives, `iterations` are charts, `factorisations`
-// are QR.
+// Reactions of joints that repeat each other are not unique;
+// these share the load with the smallest norm. Counts: `evaluations` of energy
+// or constraints with derivatives, `iterations` are charts, `factorisations` are QR.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> loads,
                       const Options& options = {});
 

@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A part of the system depends on two bodies and at most three reactions: 7 + 7 + 3 derivatives, scattered
-// afterwards.
+// A part of the system depends on two bodies and at most three
+// reactions: 7 + 7 + 3 derivatives, scattered afterwards.
 constexpr int first_reaction = 14;
 using Jet = ceres::Jet<double, 17>;
 

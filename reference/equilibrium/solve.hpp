@@ -20,8 +20,8 @@ struct Options {
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> loads,
                       const Options& options = {});
 
-// How well a state, from any leg, satisfies this leg's equations; balances are formed from
-// Equilibrium::reactions.
+// How well a state, from any leg, satisfies this leg's equations;
+// balances are formed from Equilibrium::reactions.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -13,8 +13,8 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), loading (t =
-// a).
+// The way has two legs with a parameter t each:
+// letting go of the design pose (t from 0 to 1), loading (t = a).
 enum class Stage { settling, loading };
 
 inline Loading loading_at(Stage stage, double t) {
