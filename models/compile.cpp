@@ -11,6 +11,14 @@
 namespace elastocheck {
 namespace {
 
+// One function a kind: a kind that is forgotten does not compile.
+template <class... F>
+struct overloaded : F... {
+    using F::operator()...;
+};
+template <class... F>
+overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce it
+
 struct Ends {
     BodyId i, j;
 };
@@ -24,19 +32,27 @@ Ends ends(const ElasticKind& elastic) {
 }
 
 BodyId body_of(const LoadKind& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load)) return force->at.body;
-    return std::get<DeadMoment>(load).body;
+    return std::visit(
+        overloaded{[](const DeadForce& l) { return l.at.body; }, [](const DeadMoment& l) { return l.body; }},
+        load);
 }
 
 bool is_zero(const LoadKind& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load)) return force->f.isZero(0);
-    return std::get<DeadMoment>(load).m.isZero(0);
+    return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },
+                                 [](const DeadMoment& l) { return l.m.isZero(0); }},
+                      load);
 }
 
+bool is_zero(const ScalarLaw& law) {
+    return std::visit(overloaded{[](const LinearRate& u) { return u.k == 0; }}, law);
+}
+bool is_zero(const SpatialLaw& law) {
+    return std::visit(overloaded{[](const LinearStiffness& u) { return u.K.isZero(0); }}, law);
+}
 bool is_zero(const ElasticKind& elastic) {
-    if (const auto* spring = std::get_if<AxialSpring>(&elastic)) return spring->k == 0;
-    const auto& bushing = std::get<Bushing>(elastic);
-    return bushing.K.isZero(0) && bushing.preload.isZero(0);
+    return std::visit(overloaded{[](const AxialSpring& e) { return is_zero(e.law); },
+                                 [](const Bushing& e) { return is_zero(e.law) && e.preload.isZero(0); }},
+                      elastic);
 }
 
 Eigen::Vector3d position(const std::vector<Body>& bodies, const Point& p) {
@@ -45,19 +61,24 @@ Eigen::Vector3d position(const std::vector<Body>& bodies, const Point& p) {
     return pose.r + pose.p * p.s_local;
 }
 
-// Whether the element holds a force at the design pose.
+// Whether the element is deformed, or preloaded, at the design pose.
 bool is_loaded_at_design(const ElasticKind& elastic, const std::vector<Body>& bodies) {
-    if (const auto* spring = std::get_if<AxialSpring>(&elastic)) {
-        const double length = (position(bodies, spring->j) - position(bodies, spring->i)).norm();
-        return !(std::abs(length - spring->free_length) <= 1e-12 * length);
-    }
-    const auto& b = std::get<Bushing>(elastic);
     const auto axes = [&](const Marker& m) {
         return m.body == ground ? m.A_local : bodies[static_cast<std::size_t>(m.body)].design.p * m.A_local;
     };
-    const double gap =
-        (position(bodies, {b.j.body, b.j.s_local}) - position(bodies, {b.i.body, b.i.s_local})).norm();
-    return !(b.preload.isZero(0) && gap <= 1e-12 && axes(b.i).angularDistance(axes(b.j)) <= 1e-12);
+    return std::visit(overloaded{[&](const AxialSpring& e) {
+                                     const double length =
+                                         (position(bodies, e.j) - position(bodies, e.i)).norm();
+                                     return !(std::abs(length - e.free_length) <= 1e-12 * length);
+                                 },
+                                 [&](const Bushing& e) {
+                                     const double gap = (position(bodies, {e.j.body, e.j.s_local}) -
+                                                         position(bodies, {e.i.body, e.i.s_local}))
+                                                            .norm();
+                                     return !(e.preload.isZero(0) && gap <= 1e-12 &&
+                                              axes(e.i).angularDistance(axes(e.j)) <= 1e-12);
+                                 }},
+                      elastic);
 }
 
 // Which bodies hang together: every joint, and every element that is not zero.
@@ -81,13 +102,23 @@ Graph graph_of(const Scene& scene) {
     for (const auto& elastic : scene.elastics)
         if (!is_zero(elastic.kind))
             connect(ends(elastic.kind), is_loaded_at_design(elastic.kind, scene.bodies));
-    if (scene.wheel) graph.outputs.insert(scene.wheel->body);
+    for (const auto& wheel : scene.wheels) graph.outputs.insert(wheel.body);
     for (const auto& probe : scene.probes) graph.outputs.insert(probe.at.body);
     const auto load = [&](const Load& l) {
         if (!is_zero(l.kind)) graph.loaded.insert(body_of(l.kind));
     };
     for (const auto& l : scene.static_loads) load(l);
-    for (const auto& branch : scene.branches) std::for_each(branch.loads.begin(), branch.loads.end(), load);
+    const auto both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
+    const auto element = [&](int k) { both(ends(scene.elastics[static_cast<std::size_t>(k)].kind)); };
+    for (const auto& branch : scene.branches)
+        for (const auto& driver : branch.drivers)
+            std::visit(overloaded{[&](const Load& l) { load(l); },
+                                  [&](const Motion& m) {
+                                      both(ends(scene.joints[static_cast<std::size_t>(m.joint)].kind));
+                                  },
+                                  [&](const FreeLength& f) { element(f.elastic); },
+                                  [&](const Preload& p) { element(p.elastic); }},
+                       driver.what);
     return graph;
 }
 
@@ -135,17 +166,23 @@ std::vector<BodyId> drop_free_followers(const Graph& graph, std::vector<bool>& k
     return dropped;
 }
 
+// Where on its body an end of a joint is.
+Point place(const Point& end) { return end; }
+Point place(const Direction& end) { return {end.body, Eigen::Vector3d::Zero()}; }
+
 ModelJoint summary(const Joint& joint) {
     const auto [i, j] = ends(joint.kind);
-    const Point at = std::visit(
-        [i = i](const auto& s) {
-            if constexpr (requires { s.i.s_local; })
-                return s.i;
-            else
-                return Point{i, Eigen::Vector3d::Zero()};
-        },
-        joint.kind);
-    return {joint.name, i, j, at};
+    const Point at = std::visit([](const auto& s) { return place(s.i); }, joint.kind);
+    return {joint.name, i, j, at, -1, joint.only_where_driven};
+}
+
+// Whether a driver can move the constraint's offset, length or angle.
+bool can_be_driven(const ConstraintKind& kind) {
+    return std::visit(
+        overloaded{[](const CoincidentPoints&) { return false; }, [](const PointInPlane&) { return true; },
+                   [](const PerpendicularDirections&) { return false; },
+                   [](const DistanceBetween&) { return true; }, [](const DirectionAtAngle&) { return true; }},
+        kind);
 }
 
 }  // namespace
@@ -178,29 +215,36 @@ Model compile(const Scene& scene) {
         model.left_out.push_back({std::string(kind) + " '" + name + "'", why});
     };
 
-    for (const auto& joint : scene.joints) {
+    std::vector<int> joint_ids(scene.joints.size(), -1), elastic_ids(scene.elastics.size(), -1);
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const Joint& joint = scene.joints[k];
         const auto [i, j] = ends(joint.kind);
         if (!is_kept(i) || !is_kept(j)) {
             leave_out("joint", joint.name, "a body it connects is left out");
             continue;
         }
-        const int id = static_cast<int>(model.joints.size());
-        model.joints.push_back(summary(joint));
-        renumber(model.joints.back().i);
-        renumber(model.joints.back().j);
-        renumber(model.joints.back().at.body);
-        for (auto& kind : lower(joint.kind, scene.bodies)) {
-            std::visit(
-                [&](auto& c) {
-                    renumber(c.i.body);
-                    renumber(c.j.body);
-                    if constexpr (requires { c.normal_j; }) renumber(c.normal_j.body);
-                },
-                kind);
+        const int id = joint_ids[k] = static_cast<int>(model.joints.size());
+        ModelJoint& kept_joint = model.joints.emplace_back(summary(joint));
+        for (BodyId* body : {&kept_joint.i, &kept_joint.j, &kept_joint.at.body}) renumber(*body);
+        const auto kinds = lower(joint.kind, scene.bodies);
+        for (auto kind : kinds) {
+            if (kinds.size() == 1 && can_be_driven(kind))
+                kept_joint.driven = static_cast<int>(model.constraints.size());
+            std::visit(overloaded{[&](CoincidentPoints& c) { renumber(c.i.body), renumber(c.j.body); },
+                                  [&](PointInPlane& c) {
+                                      renumber(c.i.body), renumber(c.j.body), renumber(c.normal_j.body);
+                                  },
+                                  [&](PerpendicularDirections& c) { renumber(c.i.body), renumber(c.j.body); },
+                                  [&](DistanceBetween& c) { renumber(c.i.body), renumber(c.j.body); },
+                                  [&](DirectionAtAngle& c) {
+                                      renumber(c.i.body), renumber(c.j.body), renumber(c.y_j.body);
+                                  }},
+                       kind);
             model.constraints.push_back({id, kind});
         }
     }
-    for (auto elastic : scene.elastics) {
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
+        Elastic elastic = scene.elastics[k];
         const auto [i, j] = ends(elastic.kind);
         if (is_zero(elastic.kind)) {
             leave_out("element", elastic.name, "its rates and preload are zero");
@@ -208,37 +252,57 @@ Model compile(const Scene& scene) {
             leave_out("element", elastic.name, "a body it connects is left out");
         } else {
             std::visit([&](auto& e) { renumber(e.i.body), renumber(e.j.body); }, elastic.kind);
+            elastic_ids[k] = static_cast<int>(model.elastics.size());
             model.elastics.push_back(elastic);
         }
     }
-    const auto keep_loads = [&](const std::vector<Load>& loads, const std::string& where) {
-        std::vector<Load> result;
-        for (auto load : loads) {
-            if (is_zero(load.kind)) {
-                leave_out("load", load.name, ("it is zero" + where).c_str());
-            } else if (!is_kept(body_of(load.kind))) {
-                leave_out("load", load.name, ("its body is left out" + where).c_str());
-            } else {
-                std::visit(
-                    [&](auto& l) {
-                        if constexpr (requires { l.at; })
-                            renumber(l.at.body);
-                        else
-                            renumber(l.body);
-                    },
-                    load.kind);
-                result.push_back(load);
-            }
+    // The load as the model has it, or none.
+    const auto kept_load = [&](Load load, const std::string& where) -> std::optional<Load> {
+        if (is_zero(load.kind)) {
+            leave_out("load", load.name, ("it is zero" + where).c_str());
+            return std::nullopt;
         }
-        return result;
+        if (!is_kept(body_of(load.kind))) {
+            leave_out("load", load.name, ("its body is left out" + where).c_str());
+            return std::nullopt;
+        }
+        std::visit(
+            overloaded{[&](DeadForce& l) { renumber(l.at.body); }, [&](DeadMoment& l) { renumber(l.body); }},
+            load.kind);
+        return load;
     };
-    model.static_loads = keep_loads(scene.static_loads, "");
-    for (const auto& branch : scene.branches)
-        model.branches.push_back({branch.name, keep_loads(branch.loads, " (branch '" + branch.name + "')"),
-                                  branch.to, branch.steps});
+    for (const auto& load : scene.static_loads)
+        if (const auto kept_one = kept_load(load, "")) model.static_loads.push_back(*kept_one);
+    for (const auto& branch : scene.branches) {
+        Branch& result = model.branches.emplace_back(branch);
+        result.drivers.clear();
+        const auto keep = [&](Driver driver, auto what, int id) {
+            if (id < 0) return;  // left out above, with its reason
+            driver.what = what;
+            result.drivers.push_back(driver);
+        };
+        for (const auto& driver : branch.drivers)
+            std::visit(overloaded{[&](const Load& load) {
+                                      if (auto kept_one = kept_load(load, " (branch '" + branch.name + "')"))
+                                          keep(driver, *kept_one, 0);
+                                  },
+                                  [&](const Motion& motion) {
+                                      const int id = joint_ids[static_cast<std::size_t>(motion.joint)];
+                                      keep(driver, Motion{id}, id);
+                                  },
+                                  [&](const FreeLength& length) {
+                                      const int id = elastic_ids[static_cast<std::size_t>(length.elastic)];
+                                      keep(driver, FreeLength{id}, id);
+                                  },
+                                  [&](const Preload& preload) {
+                                      const int id = elastic_ids[static_cast<std::size_t>(preload.elastic)];
+                                      keep(driver, Preload{id, preload.direction}, id);
+                                  }},
+                       driver.what);
+    }
 
-    model.wheel = scene.wheel;
-    if (model.wheel) renumber(model.wheel->body);
+    model.wheels = scene.wheels;
+    for (auto& wheel : model.wheels) renumber(wheel.body);
     model.probes = scene.probes;
     for (auto& probe : model.probes) renumber(probe.at.body);
     return model;

@@ -72,7 +72,7 @@ std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body
                 return List{DistanceBetween{s.i, s.j, s.length}};
             },
             [](const InPlane& s) {
-                return List{PointInPlane{s.i, s.j, s.normal_j}};
+                return List{PointInPlane{s.i, s.j, s.normal_j, s.offset}};
             },
             [](const InLine& s) {
                 const auto [a, b] = across(s.axis_j);
@@ -84,6 +84,9 @@ std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body
             [](const Parallel& s) {
                 const auto [a, b] = across(s.j);
                 return List{Perp{s.i, a}, Perp{s.i, b}};
+            },
+            [](const Angle& s) {
+                return List{DirectionAtAngle{s.i, s.j, s.y_j, s.angle}};
             },
         },
         joint);

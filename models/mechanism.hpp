@@ -80,7 +80,8 @@ struct Distance {
 struct InPlane {
     Point i, j;
     Direction normal_j;
-};  // i stays in the plane through j
+    double offset = 0;  // of the plane from j along its normal [m]
+};                      // i stays in the plane
 struct InLine {
     Point i, j;
     Direction axis_j;
@@ -92,29 +93,50 @@ struct Parallel {
     Direction i, j;
 };
 
+// i stays in the plane of x_j = j and y_j at this angle from x_j towards y_j, when it is in that plane
+// already: the drive of a revolute or cylindrical joint, never a joint by itself.
+struct Angle {
+    Direction i;
+    Direction j, y_j;  // perpendicular
+    double angle = 0;  // [rad]
+};
+
 using JointKind = std::variant<Spherical, Revolute, Universal, Cylindrical, Translational, Planar, Fixed,
-                               Distance, InPlane, InLine, Perpendicular, Parallel>;
+                               Distance, InPlane, InLine, Perpendicular, Parallel, Angle>;
 struct Joint {
     std::string name;
     JointKind kind;
+    bool only_where_driven = false;  // a jack: stands only on the branches that drive it
 };
 
-// ---- Elastic elements. The potential energy is the law; every force follows from it.
+// ---- Elastic elements: geometry times law. The geometry says what deforms, the law what energy that costs;
+// every force follows from the energy.
 
-// U = ½ k (ℓ - ℓ₀)²,  ℓ = |p_j - p_i|
+// Laws of one deformation x, and of six, e.
+struct LinearRate {
+    double k = 0;  // [N/m] ≥ 0
+};                 // u(x) = ½ k x²
+struct LinearStiffness {
+    Matrix6 K = Matrix6::Zero();  // symmetric, positive semidefinite, [N/m  N; N  N·m/rad]
+};                                // u(e) = ½ eᵀ K e;  K = diag(K_T', K_R') is eqs. (8)-(9)
+
+using ScalarLaw = std::variant<LinearRate>;
+using SpatialLaw = std::variant<LinearStiffness>;
+
+// Two points:  U = u(ℓ - ℓ₀),  ℓ = |p_j - p_i|
 struct AxialSpring {
     Point i, j;
-    double k = 0;            // [N/m] ≥ 0
+    ScalarLaw law;
     double free_length = 0;  // ℓ₀ [m]
 };
 
-// U = ½ eᵀ K e + preloadᵀ e,  e = (d, θ),  d = A_iᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
+// Two markers:  U = u(e) + preloadᵀ e,  e = (d, θ),  d = A_iᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
 // with p, A the positions and axes of the two markers. The frame rides on marker i, as in eqs. (10)-(11).
-// K is symmetric, [N/m  N; N  N·m/rad]; K = diag(K_T', K_R') is eqs. (8)-(9). `preload` is (force [N], moment
-// [N·m]) in marker axes at e = 0, positive where it pulls j back against +e, as K e does.
+// `preload` is (force [N], moment [N·m]) in marker axes at e = 0, positive where it pulls j back against +e,
+// as ∂u/∂e does.
 struct Bushing {
     Marker i, j;
-    Matrix6 K = Matrix6::Zero();
+    SpatialLaw law;
     Vector6 preload = Vector6::Zero();
 };
 
@@ -128,11 +150,11 @@ struct Elastic {
 
 struct DeadForce {
     Point at;
-    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N], or [-] when it is the direction of a branch
+    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N], or [-] where a driver multiplies it by newtons
 };
 struct DeadMoment {
     BodyId body = ground;
-    Eigen::Vector3d m = Eigen::Vector3d::Zero();  // [N·m], or [m] when it is the direction of a branch
+    Eigen::Vector3d m = Eigen::Vector3d::Zero();  // [N·m]; [m] or [-] where a driver multiplies it
 };
 using LoadKind = std::variant<DeadForce, DeadMoment>;
 struct Load {

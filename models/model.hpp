@@ -4,7 +4,6 @@
 // (lowering.hpp), and what cannot influence an asked-for output is left out (compile.cpp).
 #pragma once
 
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,14 +13,16 @@
 
 namespace elastocheck {
 
-// The basic constraints (Nikravesh 1988), as statements. Each leg writes its own equations for them.
+// The four basic constraints (Nikravesh 1988), and the one that a driven angle needs, as statements. Each leg
+// writes its own equations for them.
 struct CoincidentPoints {
     Point i, j;
 };  // p_i = p_j                     3 rows
 struct PointInPlane {
     Point i, j;
     Direction normal_j;
-};  // n_j · (p_i - p_j) = 0         1 row
+    double offset = 0;  // [m]
+};                      // n_j · (p_i - p_j) = offset    1 row
 struct PerpendicularDirections {
     Direction i, j;
 };  // u_i · u_j = 0                 1 row
@@ -30,7 +31,13 @@ struct DistanceBetween {
     double length = 0;
 };  // |p_i - p_j| = length          1 row
 
-using ConstraintKind = std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections, DistanceBetween>;
+struct DirectionAtAngle {
+    Direction i, j, y_j;  // x_j = j, perpendicular to y_j on the same body; u_i lies in their plane
+    double angle = 0;     // [rad]
+};                        // u_i · (cos α y_j - sin α x_j) = 0,  α = angle   1 row
+
+using ConstraintKind =
+    std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections, DistanceBetween, DirectionAtAngle>;
 struct Constraint {
     int joint = 0;  // position in Model::joints
     ConstraintKind kind;
@@ -45,6 +52,9 @@ struct ModelJoint {
     std::string name;
     BodyId i = ground, j = ground;
     Point at;  // on body i (its origin for joints without a point)
+    int driven =
+        -1;  // position in Model::constraints of the one whose offset, length or angle may move, or -1
+    bool only_where_driven = false;
 };
 
 struct Omission {
@@ -59,8 +69,8 @@ struct Model {
     std::vector<Constraint> constraints;  // in the order of `joints`
     std::vector<Elastic> elastics;
     std::vector<Load> static_loads;
-    std::vector<Branch> branches;
-    std::optional<Wheel> wheel;
+    std::vector<Branch> branches;  // their drivers speak of Model::joints and Model::elastics
+    std::vector<Wheel> wheels;
     std::vector<Probe> probes;
     std::vector<Omission> left_out;
 };

@@ -1,7 +1,6 @@
 // A scene: what the user asked. One YAML file (scene_file.hpp), or built in code.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,16 +8,46 @@
 
 namespace elastocheck {
 
-// A named way out from the design position: f_ext(a) = static loads + a · (sum of `loads`), a from 0 to `to`
-// in `steps` equal increments. The paper's example is two branches, to +3000 and to -3000, 300 steps each.
+// ---- What a branch moves: all of it as start + rate · a, a the parameter of the branch.
+
+// A joint's offset: the length of a Distance, the offset of an InPlane [m], the angle of an Angle [rad],
+// counted from what the joint itself says.
+struct Motion {
+    int joint = 0;  // position in Scene::joints or Model::joints
+};
+// The free length of an AxialSpring, counted from its ℓ₀ [m].
+struct FreeLength {
+    int elastic = 0;  // position in Scene::elastics or Model::elastics
+};
+// A preload of a Bushing, counted from its own.
+struct Preload {
+    int elastic = 0;
+    Vector6 direction = Vector6::Zero();  // what the driver multiplies, as (force, moment) [N, N·m]
+};
+using Driven = std::variant<Load, Motion, FreeLength, Preload>;
+
+struct Driver {
+    Driven what;
+    double start = 0;  // at a = 0: what is held while a moves
+    double rate = 0;   // per unit of a
+};
+
+enum class ParameterUnit { newton, newton_metre, metre, radian, none };
+
+// A path of equilibria. At a = 0 it begins with the scene as drawn, settled under what is held; from there a
+// goes to `to`, and to `from` where that is on the other side of 0: one curve, walked both ways. The paper's
+// example is two branches driven by a load, to +3000 and to -3000 N, 300 steps each.
 struct Branch {
     std::string name;
-    std::vector<Load> loads;  // per unit of the load factor a
-    double to = 0;            // final load factor [N] (or [N·m] for a pure moment)
-    int steps = 0;            // the step count of the published sweep; each step is to / steps
+    double from = 0;  // of the parameter a
+    double to = 0;
+    int steps = 0;  // equal increments of a in the published sweep, over the whole branch
+    ParameterUnit unit = ParameterUnit::newton;  // of a
+    std::vector<Driver> drivers;
 };
 
 struct Wheel {
+    std::string name;  // "left"; empty where the scene has only the one
     BodyId body = ground;
     Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();  // [m]
     Eigen::Vector3d contact_local =
@@ -46,9 +75,9 @@ struct Scene {
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<Elastic> elastics;
-    std::vector<Load> static_loads;  // present at every load factor, zero included
+    std::vector<Load> static_loads;  // held on every branch
     std::vector<Branch> branches;
-    std::optional<Wheel> wheel;
+    std::vector<Wheel> wheels;
     std::vector<Probe> probes;
 };
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "reports/baseline.hpp"
 #include "reports/exit_code.hpp"
 #include "reports/files.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "compare/deviation.hpp"
-#include "models/scene_words.hpp"
+#include "models/reader/words.hpp"
 #include "reports/provenance.hpp"
 
 namespace elastocheck::reports {

@@ -12,7 +12,7 @@
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reports/document.hpp"
 #include "reports/exit_code.hpp"

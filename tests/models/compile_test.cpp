@@ -11,7 +11,7 @@
 #include <random>
 
 #include "models/lowering.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 
 namespace elastocheck {
 namespace {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "tests/models/bench_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "tests/models/bench_scene.hpp"
 
 namespace elastocheck {

@@ -1,5 +1,5 @@
 // What the reader understands: the shipped scenes, the ways to write a thing, and files as such.
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "recursive/solve.hpp"
 
 int main(int argc, char** argv) {

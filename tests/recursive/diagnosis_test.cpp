@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "recursive/solve.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "recursive/assembly.hpp"
 #include "recursive/diagnosis.hpp"
 #include "recursive/solve.hpp"

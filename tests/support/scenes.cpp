@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 
 namespace elastocheck::support {
 namespace {
@@ -31,7 +31,8 @@ void for_each_feature(Scene& scene, F&& f) {
                 if constexpr (requires { s.axis_j; }) f(s.axis_j);
                 if constexpr (requires { s.normal_i; }) f(s.normal_i);
                 if constexpr (requires { s.normal_j; }) f(s.normal_j);
-                if constexpr (requires { s.x_i; }) f(s.x_i), f(s.y_i), f(s.x_j), f(s.y_j);
+                if constexpr (requires { s.x_i; }) f(s.x_i), f(s.x_j), f(s.y_i);
+                if constexpr (requires { s.y_j; }) f(s.y_j);
             },
             joint.kind);
     for (auto& elastic : scene.elastics) std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic.kind);
@@ -42,7 +43,8 @@ template <class F>
 void for_each_load(Scene& scene, F&& f) {
     for (auto& load : scene.static_loads) f(load.kind);
     for (auto& branch : scene.branches)
-        for (auto& load : branch.loads) f(load.kind);
+        for (auto& driver : branch.drivers)
+            if (auto* load = std::get_if<Load>(&driver.what)) f(load->kind);
 }
 
 }  // namespace
@@ -98,11 +100,9 @@ Scene with_body_axes(const Scene& original, const std::vector<Quaterniond>& turn
         if (auto* force = std::get_if<DeadForce>(&load))
             force->at.s_local = turn(force->at.body) * force->at.s_local;
     });
-    if (scene.wheel) {
-        auto& wheel = *scene.wheel;
+    for (auto& wheel : scene.wheels)
         for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local})
             *v = turn(wheel.body) * *v;
-    }
     return scene;
 }
 
@@ -125,7 +125,8 @@ Scene mirrored(const Scene& original) {
     axial << 1, -1, 1, -1, 1, -1;
     for (auto& elastic : scene.elastics)
         if (auto* bushing = std::get_if<Bushing>(&elastic.kind)) {
-            bushing->K = axial.asDiagonal() * bushing->K * axial.asDiagonal();
+            auto& law = std::get<LinearStiffness>(bushing->law);
+            law.K = axial.asDiagonal() * law.K * axial.asDiagonal();
             bushing->preload = axial.asDiagonal() * bushing->preload;
         }
     for_each_load(scene, [&](LoadKind& load) {
@@ -137,8 +138,11 @@ Scene mirrored(const Scene& original) {
             moment.m = -(S * moment.m);
         }
     });
-    if (scene.wheel) {
-        auto& wheel = *scene.wheel;
+    for (auto& branch : scene.branches)
+        for (auto& driver : branch.drivers)
+            if (auto* preload = std::get_if<Preload>(&driver.what))
+                preload->direction = axial.asDiagonal() * preload->direction;
+    for (auto& wheel : scene.wheels) {
         for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local}) *v = S * *v;
         wheel.side = -wheel.side;
     }
@@ -158,7 +162,17 @@ Scene reversed(const Scene& original) {
         else
             renumber(std::get<DeadMoment>(load).body);
     });
-    if (scene.wheel) renumber(scene.wheel->body);
+    for (auto& wheel : scene.wheels) renumber(wheel.body);
+    const auto other_end = [](int& k, std::size_t count) { k = static_cast<int>(count) - 1 - k; };
+    for (auto& branch : scene.branches)
+        for (auto& driver : branch.drivers) {
+            if (auto* motion = std::get_if<Motion>(&driver.what))
+                other_end(motion->joint, scene.joints.size());
+            if (auto* length = std::get_if<FreeLength>(&driver.what))
+                other_end(length->elastic, scene.elastics.size());
+            if (auto* preload = std::get_if<Preload>(&driver.what))
+                other_end(preload->elastic, scene.elastics.size());
+        }
     std::ranges::reverse(scene.bodies);
     std::ranges::reverse(scene.joints);
     std::ranges::reverse(scene.elastics);

@@ -1,5 +1,5 @@
 #include <elastocheck/models/compile.hpp>
-#include <elastocheck/models/scene_file.hpp>
+#include <elastocheck/models/reader/scene_file.hpp>
 #include <elastocheck/recursive/solve.hpp>
 #include <iostream>
 

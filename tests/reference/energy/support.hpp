@@ -9,7 +9,7 @@
 #include <random>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "reference/energy/solve.hpp"
 
 namespace elastocheck::reference::energy {

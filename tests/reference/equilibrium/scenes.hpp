@@ -8,7 +8,7 @@
 #include <random>
 
 #include "models/compile.hpp"
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 #include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck::reference::equilibrium::test {

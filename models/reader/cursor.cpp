@@ -1,4 +1,4 @@
-#include "models/scene_cursor.hpp"
+#include "models/reader/cursor.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "models/scene_words.hpp"
+#include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 namespace {

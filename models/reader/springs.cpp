@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "models/scene_sections.hpp"
+#include "models/reader/sections.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -37,7 +37,7 @@ Elastic read_spring(const std::string& name, const Cursor& at, const Definitions
     const double k = defs.units.rate_si(rate(at.require("rate")));
     return {name, AxialSpring{.i = point_of(i, from, defs),
                               .j = point_of(j, to, defs),
-                              .k = k,
+                              .law = LinearRate{k},
                               .free_length = free_length(at, length, k, defs.units)}};
 }
 

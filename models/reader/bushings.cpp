@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "models/scene_sections.hpp"
+#include "models/reader/sections.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -170,7 +170,7 @@ Elastic read_bushing(const std::string& name, const Cursor& at, const Definition
             "give a second one");
     const Eigen::Quaterniond A = Eigen::Quaterniond(frame.axes).normalized();
     const auto marker = [&](BodyId body) { return Marker{body, point_of(body, p, defs).s_local, A}; };
-    return {name, Bushing{.i = marker(i), .j = marker(j), .K = K, .preload = preload}};
+    return {name, Bushing{.i = marker(i), .j = marker(j), .law = LinearStiffness{K}, .preload = preload}};
 }
 
 }  // namespace elastocheck::reader

@@ -1,10 +1,10 @@
-#include "models/scene_definitions.hpp"
+#include "models/reader/definitions.hpp"
 
 #include <fmt/format.h>
 
 #include <numbers>
 
-#include "models/scene_look_up.hpp"
+#include "models/reader/look_up.hpp"
 
 namespace elastocheck::reader {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "models/scene_sections.hpp"
+#include "models/reader/sections.hpp"
 
 namespace elastocheck::reader {
 namespace {

@@ -1,12 +1,12 @@
-#include "models/scene_file.hpp"
+#include "models/reader/scene_file.hpp"
 
 #include <fmt/format.h>
 
 #include <fstream>
 #include <system_error>
 
-#include "models/scene_sections.hpp"
-#include "models/scene_yaml.hpp"
+#include "models/reader/sections.hpp"
+#include "models/reader/yaml.hpp"
 
 namespace elastocheck {
 namespace reader {
@@ -58,9 +58,9 @@ Scene read_tree(const Cursor& scene) {
     section("bushings", result.elastics, read_bushing);
     check_all_held(scene, result);
     read_loads(scene, defs, result.static_loads, result.branches);
-    if (const auto wheel = scene.optional("wheel")) result.wheel = read_wheel(*wheel, defs);
+    if (const auto wheel = scene.optional("wheel")) result.wheels.push_back(read_wheel(*wheel, defs));
     section("probes", result.probes, read_probe);
-    if (!result.wheel && result.probes.empty()) scene.fail("no output; a wheel or a probe is needed");
+    if (result.wheels.empty() && result.probes.empty()) scene.fail("no output; a wheel or a probe is needed");
     return result;
 }
 
@@ -74,7 +74,8 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
     const auto local = [&](const Cursor& field) {
         return point_of(body, hardpoint(field, defs), defs).s_local;
     };
-    Wheel wheel{.body = body,
+    Wheel wheel{.name = {},
+                .body = body,
                 .centre_local = local(centre),
                 .contact_local = local(contact ? *contact : centre),
                 .spin_axis_local = direction(spin_axis, defs),

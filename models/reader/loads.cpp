@@ -12,9 +12,9 @@
 #include <map>
 #include <variant>
 
-#include "models/scene_look_up.hpp"
-#include "models/scene_sections.hpp"
-#include "models/scene_words.hpp"
+#include "models/reader/look_up.hpp"
+#include "models/reader/sections.hpp"
+#include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -65,17 +65,22 @@ std::vector<Load> chosen_loads(const Cursor& at, const std::map<std::string, Loa
 Branch read_branch(const std::string& name, const Cursor& at, const Definitions& defs,
                    const std::map<std::string, Load>& loads) {
     at.only_keys({"load", "to", "steps"});
-    Branch branch{.name = name, .loads = chosen_loads(at.require("load"), loads)};
-    if (std::all_of(branch.loads.begin(), branch.loads.end(), is_zero))
+    Branch branch;
+    branch.name = name;
+    std::vector<Load> chosen = chosen_loads(at.require("load"), loads);
+    if (std::all_of(chosen.begin(), chosen.end(), is_zero))
         at.require("load").fail("zero in every component; a branch needs a load");
     const Cursor to = at.require("to");
     branch.to = to.number();
     if (branch.to == 0) to.fail("zero leads nowhere; allowed: any other load factor");
     branch.steps = at.require("steps").whole_number(1, most_steps);
-    if (std::all_of(branch.loads.begin(), branch.loads.end(), is_moment))
+    if (std::all_of(chosen.begin(), chosen.end(), is_moment)) {
+        branch.unit = ParameterUnit::newton_metre;
         branch.to = defs.units.moment_si(branch.to);
-    else
-        for (Load& load : branch.loads) convert_moment(load, defs.units);
+    } else {
+        for (Load& load : chosen) convert_moment(load, defs.units);
+    }
+    for (const Load& load : chosen) branch.drivers.push_back({.what = load, .start = 0, .rate = 1});
     return branch;
 }
 

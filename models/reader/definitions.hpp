@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "models/mechanism.hpp"
-#include "models/scene_cursor.hpp"
+#include "models/reader/cursor.hpp"
 
 namespace elastocheck::reader {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "models/reader/cursor.hpp"
+#include "models/reader/definitions.hpp"
 #include "models/scene.hpp"
-#include "models/scene_cursor.hpp"
-#include "models/scene_definitions.hpp"
 
 namespace elastocheck::reader {
 

@@ -1,4 +1,4 @@
-#include "models/scene_yaml.hpp"
+#include "models/reader/yaml.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "models/scene_file.hpp"
-#include "models/scene_words.hpp"
+#include "models/reader/scene_file.hpp"
+#include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 namespace {

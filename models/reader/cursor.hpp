@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/scene_yaml.hpp"
+#include "models/reader/yaml.hpp"
 
 namespace elastocheck::reader {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "models/scene_cursor.hpp"
-#include "models/scene_words.hpp"
+#include "models/reader/cursor.hpp"
+#include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 

@@ -1,4 +1,4 @@
-#include "models/scene_words.hpp"
+#include "models/reader/words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,59 @@
+#include "models/branch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elastocheck {
+namespace {
+
+// Which joints stand on the branch.
+std::vector<bool> standing(const Model& model, const Branch& branch) {
+    std::vector<bool> stands;
+    for (const auto& joint : model.joints) stands.push_back(!joint.only_where_driven);
+    for (const auto& driver : branch.drivers)
+        if (const auto* motion = std::get_if<Motion>(&driver.what))
+            stands[static_cast<std::size_t>(motion->joint)] = true;
+    return stands;
+}
+
+}  // namespace
+
+std::vector<Branch> ways(const Branch& branch) {
+    if (branch.from == 0) return {branch};
+    const double whole = std::abs(branch.from) + std::abs(branch.to);
+    std::vector<Branch> result;
+    for (const double end : {branch.from, branch.to}) {
+        if (end == 0) continue;
+        Branch way = branch;
+        way.from = 0;
+        way.to = end;
+        way.steps = std::max(1, static_cast<int>(std::lround(branch.steps * std::abs(end) / whole)));
+        result.push_back(way);
+    }
+    return result;
+}
+
+Model on_branch(const Model& model, const Branch& branch) {
+    const std::vector<bool> stands = standing(model, branch);
+    Model result = model;
+    result.branches = {branch};
+    result.constraints.clear();
+    for (auto& joint : result.joints) joint.driven = -1;
+    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+        const auto joint = static_cast<std::size_t>(model.constraints[k].joint);
+        if (!stands[joint]) continue;
+        if (model.joints[joint].driven == static_cast<int>(k))
+            result.joints[joint].driven = static_cast<int>(result.constraints.size());
+        result.constraints.push_back(model.constraints[k]);
+    }
+    return result;
+}
+
+bool stands_on(const Model& model, const Branch& branch) {
+    const std::vector<bool> stands = standing(model, branch);
+    return branch.from == 0 && std::ranges::all_of(model.constraints, [&](const Constraint& constraint) {
+               return stands[static_cast<std::size_t>(constraint.joint)];
+           });
+}
+
+}  // namespace elastocheck
