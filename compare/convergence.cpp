@@ -218,9 +218,9 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     result.as_formal =
         std::abs(law.p - formal_order) <= std::min(0.25, std::max(0.1 * formal_order, two_errors));
 
-    // What the law leaves at the very finest level; the finest value may lie on the fitted limit by luck, so
-    // the larger counts. Once levels lie at round-off the finest is the limit, better than extrapolation
-    // could be.
+    // What the law leaves at the very finest level; the finest value may lie
+    // on the fitted limit by luck, so the larger counts. Once levels lie at
+    // round-off the finest is the limit, better than extrapolation could be.
     const bool extrapolated = used == levels.size();
     const double law_error = std::abs(law.C) * std::pow(levels[used - 1].steps / levels.back().steps, law.p);
     result.limit = extrapolated ? law.limit : levels.back().value;

@@ -1,5 +1,5 @@
-// The series over its order, as other methods over their steps: how many expansions, what they cost, how
-// near.
+// The series over its order, as other methods over their steps:
+// how many expansions, what they cost, how near.
 #pragma once
 
 #include <functional>

@@ -4,8 +4,7 @@
 // gets worse again, one that starts each step from the true residual stays where it is. Read at the end of
 // the first branch (of its last way, where it has two):
 //
-//   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no
-//   reference,
+//   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no reference,
 //               so nothing but the arithmetic bounds it; for the published method it is the paper's own norm
 //   error       from the equilibrium leg, bounded by its uncertainty; for the published method by its gap
 #pragma once
@@ -64,8 +63,8 @@ struct PrecisionStudy {
 // Throws std::invalid_argument for a method that is unknown or chooses its own steps.
 PrecisionStudy precision_study(const Model& model, const PrecisionOptions& options = {});
 
-// Of values over steps, fewest first; those that are not finite are passed over, those below the uncertainty
-// are equal.
+// Of values over steps, fewest first; those that are not finite
+// are passed over, those below the uncertainty are equal.
 Floor floor_of(const std::vector<int>& steps, const std::vector<double>& values, double uncertainty = 0);
 
 }  // namespace elastocheck::compare

@@ -37,8 +37,8 @@ struct Tolerance {
     double deg = std::numeric_limits<double>::infinity();
 };
 
-// "0.01mm,0.001deg": a length, an angle or both, in any order. Throws std::invalid_argument that says what is
-// allowed.
+// "0.01mm,0.001deg": a length, an angle or both, in any order.
+// Throws std::invalid_argument that says what is allowed.
 Tolerance parse_tolerance(std::string_view text);
 
 // max(mm / tolerance, deg / tolerance): up to 1 is good enough. NaN if either is.

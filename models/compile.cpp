@@ -215,8 +215,8 @@ bool is_free_follower(const Graph& graph, const std::vector<bool>& kept, BodyId 
     return true;
 }
 
-// Takes free followers away, one after the other, from the loose ends inwards. Returns them; `kept` is
-// updated.
+// Takes free followers away, one after the other,
+// from the loose ends inwards. Returns them; `kept` is updated.
 std::vector<BodyId> drop_free_followers(const Graph& graph, std::vector<bool>& kept) {
     std::vector<BodyId> dropped;
     std::vector<BodyId> candidates(kept.size());

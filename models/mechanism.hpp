@@ -43,8 +43,8 @@ struct Marker {
     Eigen::Quaterniond A_local = Eigen::Quaterniond::Identity();  // marker axes to body axes
 };
 
-// ---- Joints, under their usual names. `i` is the first body, `j` the second. lowering.hpp says what each is
-// made of.
+// ---- Joints, under their usual names. `i` is the first body,
+// `j` the second. lowering.hpp says what each is made of.
 
 struct Spherical {
     Point i, j;
@@ -146,8 +146,7 @@ struct Elastic {
     ElasticKind kind;
 };
 
-// ---- Dead loads: they keep their direction in ground axes while their point of application moves with the
-// body.
+// ---- Dead loads: they keep their direction in ground axes while their point of application moves.
 
 struct DeadForce {
     Point at;

@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // on rows of unit length
 
-// The root mean square lever of everything that is attached to a body: invariant under motions of the ground
-// frame.
+// The root mean square lever of everything that is attached to a body:
+// invariant under motions of the ground frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;

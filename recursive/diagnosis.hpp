@@ -1,10 +1,10 @@
-// What the design position tells before anything is solved: rank, redundant constraints, idle modes,
-// conditioning.
+// What the design position tells before anything is solved:
+// rank, redundant constraints, idle modes, conditioning.
 //
-// Rank is a question of geometry, not of stiffness: it is judged on rows of unit length, in coordinates (Δr,
-// L Δπ) with L a characteristic length, so neither the unit of length nor a rate of 1e12 N/m can hide an
-// equation. An idle mode is a Δq that no constraint and no elastic element notices: a null vector of the
-// stacked rows
+// Rank is a question of geometry, not of stiffness: it is judged on rows of unit length,
+// in coordinates (Δr, L Δπ) with L a characteristic length, so neither the unit
+// of length nor a rate of 1e12 N/m can hide an equation. An idle mode is a Δq that
+// no constraint and no elastic element notices: a null vector of the stacked rows
 //
 //   ⎡ Φ_q           ⎤
 //   ⎣ √K_e B_e, ... ⎦     one block per elastic element, Bᵀ K_e B its stiffness (elastic.hpp)

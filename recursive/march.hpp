@@ -113,8 +113,8 @@ Real size_of_force(const March<Real>& s, const Vector<Real>& force) {
     return force.cwiseQuotient(s.system.weight.head(s.n())).norm();
 }
 
-// How far the held motions are from idle, and the held combinations from redundant, at q: 0 for exactly so,
-// up to 1.
+// How far the held motions are from idle, and the held
+// combinations from redundant, at q: 0 for exactly so, up to 1.
 //   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
 //   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
 template <class Real>

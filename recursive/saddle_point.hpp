@@ -115,8 +115,8 @@ void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
     system.solution.setZero(N + d);
 }
 
-// x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is
-// allocated.
+// x = (Δq, λ) for the right-hand side (f, lower),
+// with the factors of the last `factorise`. Nothing is allocated.
 template <class Real>
 void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower,
                      Vector<Real>& x) {

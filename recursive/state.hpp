@@ -83,8 +83,8 @@ Eigen::Quaternion<Real> exponential(const Vector3<Real>& dpi) {
     return {cos(half), v.x(), v.y(), v.z()};
 }
 
-// q + Δq, Δq_i = (Δr_i, Δπ_i) with Δπ in ground axes [6 nb]: eqs. (4)-(5), the rotation by the exponential
-// map.
+// q + Δq, Δq_i = (Δr_i, Δπ_i) with Δπ in ground axes [6 nb]:
+// eqs. (4)-(5), the rotation by the exponential map.
 template <class Real, class Increment>
 void advance(State<Real>& q, const Eigen::MatrixBase<Increment>& dq) {
     for (BodyId b = 0; b < q.bodies(); ++b) {

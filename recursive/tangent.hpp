@@ -8,8 +8,8 @@
 // geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load stiffness. Increments are
 // (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from equilibrium.
 //
-// Everything below is a variation of a force F at a lever, written as 3×12 matrices over (Δr_i, Δπ_i, Δr_j,
-// Δπ_j):
+// Everything below is a variation of a force F at a lever,
+// written as 3×12 matrices over (Δr_i, Δπ_i, Δr_j, Δπ_j):
 //
 //   δp = δr - s̃ δπ,   δu = -ũ δπ,   δ(x × F) = -F̃ δx + x̃ δF .
 #pragma once
@@ -25,8 +25,8 @@ namespace detail {
 template <class Real>
 using Variation = Eigen::Matrix<Real, 3, 12>;
 
-// δp of a point with lever s on the first (slot 0) or second (slot 1) body, and δu of a direction fixed in
-// it.
+// δp of a point with lever s on the first (slot 0) or second
+// (slot 1) body, and δu of a direction fixed in it.
 template <class Real>
 Variation<Real> of_point(int slot, const Vector3<Real>& s) {
     Variation<Real> v = Variation<Real>::Zero();

@@ -254,8 +254,8 @@ BuildDistance distance(const Provenance& was, const Provenance& is) {
 }
 
 std::string not_committed(const std::filesystem::path& file) {
-    // A container's checkout often belongs to another user than the one who looks at it; only blobs are
-    // compared.
+    // A container's checkout often belongs to another user
+    // than the one who looks at it; only blobs are compared.
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
     const std::string git = "git -c safe.directory='*' -C " + in_quotes(folder) + " ";
     const std::string leaf = file.filename().string();

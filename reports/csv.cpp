@@ -5,7 +5,7 @@
 namespace elastocheck::reports {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string cell(std::string_view text) {
     if (text.find_first_of(",\"\n\r") == text.npos) return std::string(text);
     std::string doubled;
     for (const char c : text) {
@@ -20,14 +20,14 @@ std::string quoted(std::string_view text) {
 std::string curves_header(const std::vector<compare::Channel>& channels) {
     std::string line = "branch,leg,load factor,travel [mm]";
     for (const auto& channel : channels)
-        line += fmt::format(",{}", quoted(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
+        line += fmt::format(",{}", cell(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
     return line + "\n";
 }
 
 std::string curves_rows(const std::string& branch, const compare::LegRun& run) {
     std::string rows;
     for (std::size_t k = 0; k < run.curve.load.size(); ++k) {
-        rows += fmt::format("{},{},{:.17g},", quoted(branch), name(run.leg), run.curve.load[k]);
+        rows += fmt::format("{},{},{:.17g},", cell(branch), name(run.leg), run.curve.load[k]);
         if (!run.curve.travel.empty()) rows += fmt::format("{:.17g}", run.curve.travel[k]);
         for (const double value : run.curve.values[k]) rows += fmt::format(",{:.17g}", value);
         rows += "\n";

@@ -8,8 +8,8 @@
 
 namespace elastocheck::reports {
 
-// Header and rows: branch, leg, load factor, travel [mm], then every channel with its unit; 17 significant
-// digits.
+// Header and rows: branch, leg, load factor, travel [mm],
+// then every channel with its unit; 17 significant digits.
 std::string curves_header(const std::vector<compare::Channel>& channels);
 std::string curves_rows(const std::string& branch, const compare::LegRun& run);
 std::string curves_csv(const compare::Comparison& comparison);

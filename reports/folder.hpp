@@ -9,8 +9,8 @@
 
 namespace elastocheck::reports {
 
-// The new folder while it is being filled, beside the one it will replace. One that is not published is
-// removed.
+// The new folder while it is being filled, beside the one
+// it will replace. One that is not published is removed.
 class Staging {
   public:
     // Throws FileError when `folder` is a file, or holds anything that is not listed in its own `manifest`:

@@ -137,8 +137,8 @@ pugi::xml_node add_test(pugi::xml_node suite, const GatedScene& scene, const std
     return test;
 }
 
-// One test says whether the scene could be judged; one more per branch and channel or counter what came of
-// it.
+// One test says whether the scene could be judged;
+// one more per branch and channel or counter what came of it.
 void add_suite(pugi::xml_node root, const GatedScene& scene) {
     auto suite = root.append_child("testsuite");
     suite.append_attribute("name") = in_xml(scene.file).c_str();

@@ -111,8 +111,8 @@ constexpr std::pair<const char*, const char*> usual[] = {{"fill", "none"},
                                                          {"stroke-linejoin", "round"},
                                                          {"font-size", "11.00"}};
 
-// gnuplot opens a group for nearly every stroke; neighbours that look alike become one. Many figures go into
-// one page.
+// gnuplot opens a group for nearly every stroke; neighbours
+// that look alike become one. Many figures go into one page.
 void shrink(xml_node root) {
     std::set<std::string> used;
     for_each(root, [&](xml_node node) { used.insert(node.attribute("xlink:href").value()); });

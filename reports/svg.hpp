@@ -7,8 +7,8 @@
 
 namespace elastocheck::reports {
 
-// Safe for the colour-blind, each with a twin for dark paper. Order: page.hpp, Colour. Scripts use the light
-// ones.
+// Safe for the colour-blind, each with a twin for dark paper.
+// Order: page.hpp, Colour. Scripts use the light ones.
 struct Tint {
     std::string_view light, dark;  // "#rrggbb"
 };

@@ -1,5 +1,5 @@
-// Templates hold the markup, C++ holds none. They are Mustache, live in reports/templates/ and are part of
-// the program.
+// Templates hold the markup, C++ holds none. They are Mustache,
+// live in reports/templates/ and are part of the program.
 #pragma once
 
 #include <nlohmann/json.hpp>

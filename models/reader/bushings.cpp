@@ -138,9 +138,9 @@ Vector6 read_preload(const Cursor& bushing, const Units& units) {
     return preload;
 }
 
-// Whether the bushing stays the same when its frame turns about `axis`. A quarter turn is enough to tell: a
-// tensor of second order or a vector that survives it survives any turn. It only swaps entries, so nothing is
-// rounded.
+// Whether the bushing stays the same when its frame turns about `axis`.
+// A quarter turn is enough to tell: a tensor of second order or a vector that
+// survives it survives any turn. It only swaps entries, so nothing is rounded.
 bool is_round_about(int axis, const Matrix6& K, const Vector6& preload) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     Matrix3d turn = Matrix3d::Zero();

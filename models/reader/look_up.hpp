@@ -12,8 +12,8 @@
 
 namespace elastocheck::reader {
 
-// What `at` names in the table; an error names the nearest entry. `kind` says what the table holds,
-// "hardpoint".
+// What `at` names in the table; an error names the nearest entry.
+// `kind` says what the table holds, "hardpoint".
 template <class T>
 const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
     const std::string& name = at.text("the name of a " + kind);

@@ -5,8 +5,8 @@
 namespace elastocheck::reader {
 namespace {
 
-// ℓ₀ [m]. The force at the design length ℓ is k (ℓ - ℓ₀), so a preload P, compression positive, means ℓ₀ = ℓ
-// + P / k.
+// ℓ₀ [m]. The force at the design length ℓ is k (ℓ - ℓ₀),
+// so a preload P, compression positive, means ℓ₀ = ℓ + P / k.
 double free_length(const Cursor& spring, double length, double k, const Units& units) {
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");

@@ -6,9 +6,9 @@
 //
 //   C(g) = (1 - h·g) I + h̃ + h gᵀ,   h = 2 g / (1 + g·g)
 //
-// once a body: what is fixed in it turns by a linear map of these coefficients. 2 g is Δπ to first order, so
-// that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
-// all.
+// once a body: what is fixed in it turns by a linear map of these coefficients.
+// 2 g is Δπ to first order, so that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ),
+// is the consistent tangent of tangent.hpp. derivation.md has it all.
 #pragma once
 
 #include <variant>

@@ -29,10 +29,10 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
 // An x_p that vanishes by symmetry is taken for |x_{p-1}| / R. NaN if a coefficient is not finite.
 double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load, double radius);
 
-// The singularity nearest to τ = 0. Near a limit point, as near most branch points, x ~ (1 - τ/τ_s)^½:
-// divided by the binomial coefficients (½ over k) the coefficients are those of a geometric series, two of
-// them for a complex pair, y_k = b_1 y_{k-1} + b_2 y_{k-2}; b from the last orders by least squares, τ_s from
-// its roots.
+// The singularity nearest to τ = 0. Near a limit point, as near most branch points,
+// x ~ (1 - τ/τ_s)^½: divided by the binomial coefficients (½ over k) the coefficients
+// are those of a geometric series, two of them for a complex pair, y_k = b_1 y_{k-1} + b_2 y_{k-2};
+// b from the last orders by least squares, τ_s from its roots.
 Singularity nearest_singularity(const March<double>& s, const Coefficients& c);
 
 // Σ c_k τ^k of the columns c_k.

@@ -7,8 +7,8 @@
 // ⎣ Φ_q      0   ⎦ ⎩ λ_k  ⎭ = - ⎩ Φ_k ⎭  +  a_k ⎩ 0 ⎭      G_k, Φ_k of the lower orders alone     (24)
 //
 // f the branch's load per unit of the load factor. With the load as parameter, a = a_0 + τ. With arc length,
-// τ is the motion of the bodies projected on its first coefficient, and
-// a_k follows from it; the path then passes limit points. derivation.md tells the rest.
+// τ is the motion of the bodies projected on its first coefficient, and a_k follows from it; the path then
+// passes limit points. derivation.md tells the rest.
 #pragma once
 
 #include <optional>

@@ -6,14 +6,12 @@
 //    so that SLSQP's first Hessian, the unit matrix, is the right one and its first steps are Newton steps.
 //
 // 2. The function is V + λᵀΦ with λ fixed at the best multipliers of the centre. It equals V wherever Φ = 0,
-// so
-//    it has the same constrained minima, but its gradient is small and its own multipliers almost vanish. The
-//    line search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of constraints under load
+//    so it has the same constrained minima, but its gradient is small and its own multipliers almost vanish.
+//    The line search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of constraints under load
 //    spoils them (Maratos).
 //
 // 3. All values are changes since the centre, summed without cancellation (potential.hpp, constraints.hpp):
-// the
-//    function-value test has its floor at the roundoff of the change, not of V. Charts of large steps end
+//    the function-value test has its floor at the roundoff of the change, not of V. Charts of large steps end
 //    there; the next chart, centred at their result, has a floor far below.
 //
 // 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not change along

@@ -11,8 +11,8 @@
 
 namespace elastocheck::reference::energy {
 
-// The value is V(x) - V(0), summed from changes so that it keeps its relative accuracy near the centre of the
-// chart.
+// The value is V(x) - V(0), summed from changes so that it
+// keeps its relative accuracy near the centre of the chart.
 struct Potential {
     double change = 0;         // [J]
     Eigen::VectorXd gradient;  // ∂V/∂x [6nb], N and N·m

@@ -69,8 +69,9 @@ Vector3d rotation_vector(const Quaterniond& q) {
 }
 
 // With q = (w, v), s = |v|, the half angle α = atan2(s, w) and g = α/s: θ = 2 g v. Then
-//   Δθ = 2 (g Δv + Δg v_c),   Δs = Δv·(v + v_c)/(s + s_c),   η = α - α_c = atan2(Δs w_c - Δw s_c, w w_c + s
-//   s_c), Δg = (η - g_c Δs)/s = (η - g Δs)/s_c,  of which the one with the larger divisor is used.
+//   Δθ = 2 (g Δv + Δg v_c),   Δs = Δv·(v + v_c)/(s + s_c),
+//   η  = α - α_c = atan2(Δs w_c - Δw s_c, w w_c + s s_c),
+//   Δg = (η - g_c Δs)/s = (η - g Δs)/s_c,  of which the one with the larger divisor is used.
 LogChange log_change(const Quaterniond& q_c, const Quaterniond& dq) {
     const Vector3d v_c = q_c.vec(), dv = dq.vec(), v = v_c + dv;
     const double w_c = q_c.w(), w = w_c + dq.w();

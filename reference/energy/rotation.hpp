@@ -1,5 +1,5 @@
-// Finite rotations as rotation vectors: exp, its exact Jacobian, log, and *changes* of both without
-// cancellation.
+// Finite rotations as rotation vectors: exp, its exact Jacobian,
+// log, and *changes* of both without cancellation.
 //
 // The solver compares energies that differ by 1e-20 J at a level of 100 J. So nothing here is computed as
 // "new minus old": every change is written in terms of the increment itself and keeps its relative accuracy

@@ -29,9 +29,9 @@ MatrixXd orthonormal(const MatrixXd& columns) {
     return Q;
 }
 
-// Rank is judged on the equilibrated matrix D_r J D_c (Ruiz: rows and columns of size one), because stiff and
-// soft elements side by side are no sign of singularity. Its null vectors v, u are mapped back: V ~ D_c v, U
-// ~ D_r u.
+// Rank is judged on the equilibrated matrix D_r J D_c (Ruiz: rows and columns of size one),
+// because stiff and soft elements side by side are no sign of singularity.
+// Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
 NullSpaces null_spaces(const MatrixXd& J) {
     VectorXd D_r = VectorXd::Ones(J.rows()), D_c = VectorXd::Ones(J.cols());
     MatrixXd A = J;

@@ -43,8 +43,8 @@ struct Judge {
     }
 };
 
-// What a joint's constraints push with, one column a row and unit reaction, as (force; moment about `at` / L)
-// [6 × rows].
+// What a joint's constraints push with, one column a row and unit
+// reaction, as (force; moment about `at` / L) [6 × rows].
 MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
     MatrixXd columns(6, 0);
     const auto& constraints = judge.system.model->constraints;
@@ -76,8 +76,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     Judge judge{system, state, {}, std::vector<Balance>(model.bodies.size())};
     Residuals worst;
 
-    // A quaternion off the unit sphere is an error of direction; what follows is judged for the nearest
-    // rotation.
+    // A quaternion off the unit sphere is an error of direction;
+    // what follows is judged for the nearest rotation.
     for (const auto& pose : state.poses) {
         raise(worst.direction, std::abs(pose.p.norm() - 1));
         judge.frames.push_back({pose.r - system.centre, pose.p.normalized()});
@@ -114,8 +114,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         judge.apply(joint.i, on_i, +1);
         judge.apply(joint.j, on_i, -1);
 
-        // A joint without friction cannot transmit everything: what lies outside the span of its constraints
-        // counts too.
+        // A joint without friction cannot transmit everything:
+        // what lies outside the span of its constraints counts too.
         const MatrixXd C = transmitted_by(judge, static_cast<int>(n), on_i.at);
         Vector6 left_over;
         left_over << on_i.force, on_i.moment / system.length;

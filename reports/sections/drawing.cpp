@@ -53,8 +53,8 @@ void add_circle(Series& series, const Points& points, const View& view) {
     if (!points.empty()) series.rows.emplace_back();
 }
 
-// The same on both axes, so that squares look square: 1, 2 or 5 times a power of ten, four or so on the
-// longer.
+// The same on both axes, so that squares look square: 1,
+// 2 or 5 times a power of ten, four or so on the longer.
 double tick(const Figure& figure) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (const auto& series : figure.series)

@@ -1,17 +1,14 @@
 // Speed of the recursion, as ratios within one process.
 //
-//   bare: 600 × PartialPivLU factor + solve of a dense 27×27 matrix, what the paper's method cannot do
-//   without.
+//   bare      600 × PartialPivLU factor + solve of a dense 27×27 matrix, what the paper's method cannot do
+//             without
+//   sweep     the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`
+//   points    the same 2 × 301 output points by `adaptive`, `series` and both references; the ratio to the
+//             equilibrium leg
+//   branches  both branches by `series`, as polynomials; the ratio to the published sweep
 //
-//   sweep: the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`.
-//
-//   points: the same 2 × 301 output points by `adaptive`, `series` and both references; the ratio to the
-//   equilibrium leg.
-//
-//   branches: both branches by `series`, as polynomials; the ratio to the published sweep.
-//
-// The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
-// both.
+// The counter `ratio` is measured against its base in turns,
+// sweep by sweep, so that a slow moment slows both.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/LU>

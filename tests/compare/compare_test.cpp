@@ -45,8 +45,8 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
 }
 
 TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
-    // At 1 N nothing has turned yet, and where nothing is preloaded eq. (24) is the tangent of the true
-    // equations.
+    // At 1 N nothing has turned yet, and where nothing is preloaded
+    // eq. (24) is the tangent of the true equations.
     for (const auto& name : support::scene_names()) {
         if (name == "mcpherson_preload") continue;
         Scene scene = support::scene(name);
@@ -85,8 +85,7 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
 }
 
 TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
-    // What is known of the published method: percents at equal load, a small part of it at equal
-    // travel.
+    // What is known of the published method: percents at equal load, a small part of it at equal travel.
     for (const auto& branch : mcpherson().branches) {
         const auto& load = branch.deviation.equal_load.channels;
         const auto& travel = branch.deviation.equal_travel.channels;

@@ -1,5 +1,5 @@
-// Orders, limits and bands: exact laws, published examples, and every sequence that must not be given an
-// order.
+// Orders, limits and bands: exact laws, published examples,
+// and every sequence that must not be given an order.
 #include "compare/convergence.hpp"
 
 #include <gtest/gtest.h>
@@ -160,8 +160,8 @@ std::vector<Level> levels_of(const Published& example) {
     return levels;
 }
 
-// The order as defined there: p = |ln|e32/e21| + q(p)| / ln r21, q = ln((r21^p - s) / (r32^p - s)), s =
-// sgn(e32/e21).
+// The order as defined there: p = |ln|e32/e21| + q(p)| / ln r21,
+// q = ln((r21^p - s) / (r32^p - s)), s = sgn(e32/e21).
 double fixed_point(const std::vector<Level>& levels) {
     const double r21 = levels[2].steps / levels[1].steps, r32 = levels[1].steps / levels[0].steps;
     const double ratio = (levels[0].value - levels[1].value) / (levels[1].value - levels[2].value);

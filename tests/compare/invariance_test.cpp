@@ -90,8 +90,8 @@ TEST_P(EveryLeg, MirrorsTheOtherSideOfTheVehicle) {
 }
 
 TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
-    // Outputs turn with the frame, so it is turned back: the displacements and reactions are compared as
-    // vectors.
+    // Outputs turn with the frame, so it is turned back:
+    // the displacements and reactions are compared as vectors.
     const Eigen::Vector3d t(3, -2, 1);
     for (const auto& name : support::scene_names()) {
         const Model a = compile(support::scene(name)),

@@ -163,8 +163,8 @@ std::vector<Lowered> all_joints(const Place& at) {
     };
 }
 
-// Calls check(place, joint) for every joint between two bodies, a body and ground, and ground and a body, in
-// many places.
+// Calls check(place, joint) for every joint between two bodies,
+// a body and ground, and ground and a body, in many places.
 template <class Check>
 void sweep(Check check) {
     Random random;

@@ -194,8 +194,8 @@ TEST(Readme, ItsExampleIsAScene) {
 
 // ---- Units.
 
-// A scene with something of everything; `L`, `A` stand for what a number in metres or radians is multiplied
-// by.
+// A scene with something of everything; `L`, `A` stand
+// for what a number in metres or radians is multiplied by.
 std::string scene_in(const std::string& length, const std::string& angle) {
     const double L = length == "mm" ? 1000 : 1;        // per m
     const double A = angle == "deg" ? per_degree : 1;  // per rad
@@ -483,8 +483,8 @@ std::string bench_with(const Matrix6& K) {
     return bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
 }
 
-// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere may be like. Its zero eigenvalues come out as
-// ±1e-16.
+// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere
+// may be like. Its zero eigenvalues come out as ±1e-16.
 TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
     std::mt19937 random(6);
     std::normal_distribution<double> normal;

@@ -16,8 +16,8 @@
 namespace elastocheck::recursive::series {
 namespace {
 
-// Polynomials by their coefficients, truncated: the closed forms are expanded with what is written here
-// alone.
+// Polynomials by their coefficients, truncated:
+// the closed forms are expanded with what is written here alone.
 using Poly = std::vector<double>;
 Poly times(const Poly& a, const Poly& b) {
     Poly c(a.size(), 0);
@@ -356,8 +356,8 @@ TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
 }
 
 TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
-    // The second pass, linear in x_k, against the matrix it is solved with: G_k with x_k in place must
-    // vanish.
+    // The second pass, linear in x_k, against the matrix
+    // it is solved with: G_k with x_k in place must vanish.
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];

@@ -107,10 +107,10 @@ TEST(ClosedForm, PreloadSettlesBeforeTheBranchStarts) {
         EXPECT_NEAR(position(state, scene.probes[0].at).z() - 0.4, (600 + state.load) / 75e3, 1e-13);
 }
 
-// A dead moment m has no potential for finite rotations, but re-centred charts find where it balances: a body
-// held by a rotational bushing K_R on ground (frame on the body) turns by θ with J⁻ᵀ(-θ) K_R θ = Aᵀ m. Here
-// the rotation is chosen and the moment that holds it computed, by differences of the energy, and then found
-// again.
+// A dead moment m has no potential for finite rotations, but re-centred charts find where it balances:
+// a body held by a rotational bushing K_R on ground (frame on the body) turns
+// by θ with J⁻ᵀ(-θ) K_R θ = Aᵀ m. Here the rotation is chosen and the moment
+// that holds it computed, by differences of the energy, and then found again.
 TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
     Random random;
     const Vector3d K_R(300, 600, 900);

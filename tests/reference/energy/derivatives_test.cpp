@@ -211,8 +211,8 @@ TEST(Potential, IsTheLawsOfTheElements) {
             if (one.loading.relief != 0) continue;
             const std::vector<Pose> centre{random.pose(), random.pose()};
             Chart chart = chart_about(centre);
-            // Small enough for the logarithm to stay on its sheet most of the time; the few others are left
-            // out.
+            // Small enough for the logarithm to stay on its sheet
+            // most of the time; the few others are left out.
             move_to(chart, random.many(12, 0.1));
             const double expected = energy(one.model, poses(chart)) - energy(one.model, centre);
             if (bushing_rotations(one.model, centre).norm() > 2.8) continue;

@@ -45,8 +45,8 @@ TEST(McPherson, EveryPointSatisfiesItsOwnConditions) {
     }
 }
 
-// The wheel goes where the wheel should go: up under an upward load, and by what wheel and spring rates
-// allow.
+// The wheel goes where the wheel should go: up under an upward load,
+// and by what wheel and spring rates allow.
 TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
     const Solved& s = solved();
     for (std::size_t b = 0; b < s.paths.size(); ++b) {

@@ -77,8 +77,8 @@ TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
     }
 }
 
-// A column of one spring and a sideways one: straight up to P = k L, where standing straight stops being a
-// minimum.
+// A column of one spring and a sideways one: straight up to P = k L,
+// where standing straight stops being a minimum.
 TEST(Outcomes, BucklingIsNotPassedOver) {
     Model model;
     model.name = "column";

@@ -86,8 +86,8 @@ TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
     }
 }
 
-// The wheel of the McPherson strut by the method of sections: four joints, the coil and the load, forces and
-// moments.
+// The wheel of the McPherson strut by the method of sections:
+// four joints, the coil and the load, forces and moments.
 TEST(Reactions, WheelIsInBalance) {
     const Scene scene = scene_named("mcpherson");
     const Model model = compile(scene);
@@ -115,8 +115,8 @@ TEST(Reactions, WheelIsInBalance) {
     EXPECT_LE(worst, 1e-7);
 }
 
-// A two-force member pulls along itself and transmits no moment; the ball joint and the in-plane constraint
-// likewise.
+// A two-force member pulls along itself and transmits no moment;
+// the ball joint and the in-plane constraint likewise.
 TEST(Reactions, MembersCarryWhatTheirKindCanCarry) {
     const Model model = compile(scene_named("mcpherson"));
     const auto path = solve(model, model.branches[1], sweep(model.branches[1]));

@@ -84,8 +84,8 @@ TEST(Rotation, ChangeOfTheLogAgreesWithTheDifference) {
     EXPECT_LE(worst, 2e-14);
 }
 
-// dθ = J⁻¹(θ) δ + O(δ²): for δ down to 1e-14 the change is right to 1e-12 of itself, which a difference could
-// not be.
+// dθ = J⁻¹(θ) δ + O(δ²): for δ down to 1e-14 the change
+// is right to 1e-12 of itself, which a difference could not be.
 TEST(Rotation, ChangeOfTheLogKeepsItsRelativeAccuracy) {
     Random random;
     double worst = 0;

@@ -86,8 +86,8 @@ TEST(EquilibriumClosedForm, PendulumTurnsInItsPlane) {
     });
 }
 
-// k_R θ = M about an axis that stays where it is, up to nearly half a turn, whichever body the frame rides
-// on.
+// k_R θ = M about an axis that stays where it is,
+// up to nearly half a turn, whichever body the frame rides on.
 TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
     std::mt19937 random(11);
     Worst worst;
@@ -142,8 +142,8 @@ TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// A pendulum without any element stands by its weight alone: tan θ = F / W. Its spin is idle and does not
-// matter.
+// A pendulum without any element stands by its weight alone:
+// tan θ = F / W. Its spin is idle and does not matter.
 TEST(EquilibriumClosedForm, WeightAloneHoldsAHangingPendulum) {
     Scene s;
     s.bodies = {{"bob", {{0, 0, -0.5}, Quaterniond::Identity()}}};

@@ -100,8 +100,8 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfA
     EXPECT_TRUE(within(worst, 2e-15 * 4));
 }
 
-// The logarithm jumps at half a turn. Close to it there is no number at all, rather than one that may be the
-// other.
+// The logarithm jumps at half a turn. Close to it there
+// is no number at all, rather than one that may be the other.
 TEST(EquilibriumElements, HalfATurnIsNotANumber) {
     for (const double short_of : {0., 1e-9, 1e-7})
         for (const double sign : {1., -1.}) {

@@ -1,5 +1,5 @@
-// What provably does not matter: unit of length, ground frame, order, body axes, side, number of steps, the
-// run.
+// What provably does not matter: unit of length, ground frame,
+// order, body axes, side, number of steps, the run.
 #include <fmt/format.h>
 
 #include "tests/reference/equilibrium/scenes.hpp"

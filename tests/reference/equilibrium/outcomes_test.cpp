@@ -100,8 +100,8 @@ TEST(EquilibriumOutcome, BucklingIsReportedAsSingular) {
     expect_points_in_balance(model, model.branches[0], path);
 }
 
-// θ = M / k ends at half a turn, where the logarithm has no value: the branch ends there too and never comes
-// back as -θ.
+// θ = M / k ends at half a turn, where the logarithm has no value:
+// the branch ends there too and never comes back as -θ.
 TEST(EquilibriumOutcome, ABushingAtHalfATurnEndsTheBranch) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 100);
     s.branches = {twist(0, {0, 1, 0})};
@@ -116,8 +116,8 @@ TEST(EquilibriumOutcome, ABushingAtHalfATurnEndsTheBranch) {
         EXPECT_NEAR(state.poses[0].p.angularDistance(Quaterniond::Identity()), state.load / 100, 1e-10);
 }
 
-// Without rotational rates a bushing does not care how far it is turned: a bar whose tip is pulled round the
-// clock.
+// Without rotational rates a bushing does not care how far
+// it is turned: a bar whose tip is pulled round the clock.
 TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 0);
     auto& bushing = std::get<Bushing>(s.elastics[0].kind);
@@ -131,8 +131,8 @@ TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
     std::vector<double> loads;
     for (int n = 0; n <= 10; ++n) loads.push_back(n);
     const auto path = solve(model, model.branches[0], loads);
-    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (-2, 0, 0): moment 10·2·0.3 sin φ + 0.3 F cos φ
-    // = 0
+    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (-2, 0, 0):
+    // moment 10·2·0.3 sin φ + 0.3 F cos φ = 0
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {
         const Vector3d tip = position(state, {0, {0.3, 0, 0}});

@@ -250,8 +250,8 @@ TEST_F(EquilibriumResiduals, ShowEveryWrongReaction) {
         }
 }
 
-// Two joints on one body and ground can trade a moment without disturbing any balance; a ball joint cannot
-// carry it.
+// Two joints on one body and ground can trade a moment without
+// disturbing any balance; a ball joint cannot carry it.
 TEST_F(EquilibriumResiduals, ShowAWrenchThatTheJointCannotTransmit) {
     Scene s = hinged_bar({0.5, 0, 0}, {0, 1, 0}, 100);
     s.joints.push_back({"ball", Spherical{{0, {0, 0.2, 0}}, {ground, {0, 0.2, 0}}}});

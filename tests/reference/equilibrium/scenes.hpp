@@ -161,8 +161,8 @@ inline Scene reversed(Scene s) {
     return s;
 }
 
-// y -> -y. With S = diag(1, -1, 1): vectors S v, rotations and axes S A S, turning quantities (moments, θ) -S
-// v.
+// y -> -y. With S = diag(1, -1, 1): vectors S v,
+// rotations and axes S A S, turning quantities (moments, θ) -S v.
 inline Scene mirrored(Scene s) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     const auto mirror = [&](const Quaterniond& p) { return Quaterniond(p.w(), -p.x(), p.y(), -p.z()); };
