@@ -16,15 +16,10 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/analysis.hpp"
+#include "recursive/series/options.hpp"
 
 namespace elastocheck::recursive::series {
-
-struct Options {
-    int order = 16;            // p
-    double tolerance = 1e-12;  // truncation error of any body's position [m] and orientation times L [m]
-    int expansions = 200;      // at most
-    bool arc_length = false;   // as parameter instead of the load
-};
 
 // The pole or branch point nearest to τ = 0 as the coefficients tell it.
 struct Singularity {
@@ -56,7 +51,8 @@ struct Path {
     Outcome outcome = Outcome::converged;
     std::string detail;
     std::vector<Expansion> expansions;
-    std::vector<double> limits;  // load factors at which the path turns back (arc length), or ends (load)
+    std::vector<double> limits;  // values of a at which the path turns back (arc length), or ends
+    Branch branch;               // that was followed
     bool arc_length = false;
     int rejected = 0;  // expansions whose far end was found wanting and drawn nearer
     Counts counts;     // iterations: back-substitutions; evaluations: residuals, not coefficients
