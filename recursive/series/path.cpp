@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "recursive/series/expand.hpp"
-#include "recursive/steps.hpp"
+#include "recursive/settle.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
@@ -236,6 +236,8 @@ void look_for_turns(Walk& w, double reach) {
 
 // Begins at the design position, where the analysis has the factors.
 Outcome begin_at_design(Walk& w, const Analysis& analysis) {
+    w.go_to(1);
+    if (w.e.drive == Drive::start && pushes_idle_mode(w.s)) return Outcome::loaded_idle_mode;
     w.go_to(0);
     apply_all(w);
     return judge(w.s, w.s.q, analysis.pivot_ratio);
@@ -288,6 +290,7 @@ bool starts_as_drawn(const Branch& branch) {
 }  // namespace
 
 Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {
+    check(model, branch);
     March<double> s(model, branch, analysis);
     s.consistent = true;
     const auto finish = [&](Walk& w, Outcome outcome) {
@@ -295,7 +298,6 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
         if (outcome != Outcome::converged) w.path.detail = words(w, outcome);
         w.path.counts = s.counts;
         w.path.arc_length = options.arc_length;
-        w.path.branch = branch;
         if (w.e.drive == Drive::start) w.path.expansions.clear();
         return std::move(w.path);
     };
@@ -339,7 +341,7 @@ std::optional<Place> find(const Path& path, double load) {
     return std::nullopt;
 }
 
-Equilibrium evaluate(const Model& model, const Path& path, Place place) {
+Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path, Place place) {
     const Expansion& expansion = path.expansions[place.expansion];
     Vector<double> x;
     horner(expansion.x, place.tau, x);
@@ -348,7 +350,7 @@ Equilibrium evaluate(const Model& model, const Path& path, Place place) {
     displace(from, x, q);
     Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
     const double a = polynomial(expansion.load, place.tau);
-    record<double>(model, inputs_at<double>(model, path.branch, a), q, q,
+    record<double>(model, inputs_at<double>(model, branch, a), q, q,
                    Vector<double>(x.tail(constraint_rows(model))), a, point);
     return point;
 }

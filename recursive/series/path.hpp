@@ -52,7 +52,6 @@ struct Path {
     std::string detail;
     std::vector<Expansion> expansions;
     std::vector<double> limits;  // values of a at which the path turns back (arc length), or ends
-    Branch branch;               // that was followed
     bool arc_length = false;
     int rejected = 0;  // expansions whose far end was found wanting and drawn nearer
     Counts counts;     // iterations: back-substitutions; evaluations: residuals, not coefficients
@@ -60,6 +59,7 @@ struct Path {
 
 // From load factor 0 to branch.to. With the load as parameter, ends with `limit_point` where no equilibrium
 // continues the branch.
+Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
 Path follow(const Model& model, const Branch& branch, const Options& options = {});
 
 // Where on the path a load factor is met, the first time.
@@ -70,7 +70,7 @@ struct Place {
 std::optional<Place> find(const Path& path, double load);
 
 // The configuration there, λ as joint wrenches; nothing is solved.
-Equilibrium evaluate(const Model& model, const Path& path, Place place);
+Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path, Place place);
 
 // The same at `points` equal increments of the load factor from 0 to branch.to, as far as the path leads;
 // with arc length as parameter at equal increments of it along the whole path.
