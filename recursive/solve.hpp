@@ -3,6 +3,7 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/analysis.hpp"
 #include "recursive/method.hpp"
 
 namespace elastocheck::recursive {
