@@ -1,5 +1,5 @@
 // Baseline files: what is written is read again, and nothing misspelt is read as something else.
-#include "reports/baseline.hpp"
+#include "reports/gate/baseline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "models/compile.hpp"
-#include "reports/files.hpp"
+#include "reports/files/files.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -1,5 +1,5 @@
 // What the gate tells people and CI, from hand-made verdicts.
-#include "reports/gate_report.hpp"
+#include "reports/gate/gate_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // result.json says what was compared, in a form that cannot lie by leaving out.
-#include "reports/document.hpp"
+#include "reports/document/document.hpp"
 
 #include <gtest/gtest.h>
 
 #include "models/compile.hpp"
-#include "reports/csv.hpp"
+#include "reports/tables/csv.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {

@@ -1,5 +1,5 @@
 // Files are written whole or not at all.
-#include "reports/files.hpp"
+#include "reports/files/files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A report is a folder that is replaced in one step, and never somebody else's.
-#include "reports/report.hpp"
+#include "reports/page/report.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 #include <random>
 #include <thread>
 
-#include "reports/field.hpp"
-#include "reports/folder.hpp"
-#include "reports/templates.hpp"
+#include "reports/document/field.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/page/templates.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
