@@ -11,10 +11,14 @@
 
 #include "models/compile.hpp"
 #include "models/scene_file.hpp"
+#include "reports/command/arguments.hpp"
 #include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
 #include "reports/files/files.hpp"
 #include "reports/gate/baseline.hpp"
 #include "reports/gate/gate_report.hpp"
+#include "reports/text/escape.hpp"
+#include "reports/text/terminal.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -54,20 +58,26 @@ std::vector<Task> tasks(const GateOptions& options) {
     if (!all.empty()) return all;
     const fs::path folder = options.folder.empty() ? "baselines" : options.folder;
     std::error_code unreadable;
-    for (const auto& entry : fs::directory_iterator(folder, unreadable)) {
+    const auto entries = fs::directory_iterator(folder, unreadable);
+    if (unreadable && unreadable != std::errc::no_such_file_or_directory)
+        throw FileError(fmt::format("{}: cannot be read: {}", folder.string(), unreadable.message()));
+    for (const auto& entry : entries) {
         if (entry.path().extension() != ".json") continue;
+        if (const std::string wrong = flaw(entry.path().filename().string()); !wrong.empty())
+            throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text",
+                                        (folder / for_terminal(entry.path().filename().string())).string(),
+                                        wrong));
         try {
             const BaselineFile file = parse_baseline(read_whole(entry.path()), entry.path().string());
             all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
-        } catch (const BaselineError& error) {
+        } catch (const std::runtime_error& error) {  // BaselineError, FileError
             all.push_back({entry.path(), entry.path(), error.what()});
         }
     }
     std::ranges::sort(all, {}, &Task::baseline);
     if (all.empty())
-        fmt::print(stderr,
-                   "elastocheck: there is no baseline in {}; name a SCENE, or the folder with --baseline\n",
-                   folder.string());
+        complain("elastocheck: there is no baseline in {}; name a SCENE, or the folder with --baseline\n",
+                 folder.string());
     return all;
 }
 
@@ -75,6 +85,7 @@ std::vector<Task> tasks(const GateOptions& options) {
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
     const Model model = compile(read_scene(task.scene));
+    check_memory(model, 0, static_cast<int>(compare::legs.size()), false);
     compare::Options how;
     if (options.progress)
         how.progress = [&](std::string_view what) {
@@ -100,9 +111,15 @@ GatedScene unjudged(const Task& task) {
     return scene;
 }
 
+// Something of that name, be it a link that leads nowhere.
+bool is_there(const fs::path& file) {
+    std::error_code failed;
+    return fs::symlink_status(file, failed).type() != fs::file_type::not_found;
+}
+
 // The accepted baseline; without one the scene's verdict says why.
 std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
-    if (!fs::exists(task.baseline)) {
+    if (!is_there(task.baseline)) {
         scene.verdict.reasons.push_back(
             fmt::format("there is no baseline {}; 'elastocheck gate {} --accept --reason ...' makes one",
                         task.baseline.string(), task.scene.string()));
@@ -113,7 +130,7 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;
-    } catch (const BaselineError& error) {
+    } catch (const std::runtime_error& error) {  // BaselineError, FileError: one scene's, not the whole run's
         scene.verdict.reasons.emplace_back(error.what());
         return std::nullopt;
     }
@@ -148,6 +165,9 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
         } else {
             compile(read_scene(task.scene));  // a bad scene is to be told apart from a missing baseline
         }
+    } catch (const std::invalid_argument& error) {  // more than there is memory for
+        scene.bad_input = true;
+        scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));
     } catch (const SceneError& error) {
         scene.bad_input = true;
         scene.verdict.reasons.emplace_back(error.what());
@@ -161,16 +181,15 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
 // limit: limits are changed by hand, where a review sees it.
 int accept_scene(const Task& task, const GateOptions& options) {
     if (!task.no_scene.empty()) {
-        fmt::print(stderr, "elastocheck: {}\n", task.no_scene);
+        complain("elastocheck: {}\n", task.no_scene);
         return could_not_judge;
     }
     GatedScene scene = unjudged(task);
-    const bool there = fs::exists(task.baseline);
+    const bool there = is_there(task.baseline);
     const auto was = accepted(task, scene);
     if (there && !was) {
-        fmt::print(stderr,
-                   "elastocheck: {}\nRestore or delete it first: its tolerances and limits would be lost.\n",
-                   scene.verdict.reasons.front());
+        complain("elastocheck: {}\nRestore or delete it first: its tolerances and limits would be lost.\n",
+                 scene.verdict.reasons.front());
         return could_not_judge;
     }
     BaselineFile is = measured(task, options);
@@ -182,23 +201,22 @@ int accept_scene(const Task& task, const GateOptions& options) {
                 fmt::format("branch '{}', {}: {} is not finite", s.branch, name(s.quantity), s.channel));
     if (now.series.empty()) worthless.emplace_back("nothing was measured");
     if (!worthless.empty()) {
-        fmt::print(stderr, "elastocheck: {}: nothing is accepted: {}\n", scene.file,
-                   fmt::join(worthless, "; "));
+        complain("elastocheck: {}: nothing is accepted: {}\n", scene.file, fmt::join(worthless, "; "));
         return could_not_judge;
     }
     is.baseline.reason = options.reason;
     if (!was) {
-        fmt::print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
+        print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
     } else {
         is.baseline.tolerances = was->baseline.tolerances;
         is.baseline.limits = was->baseline.limits;
         judge(*was, is, name(ToleranceClass::same_build), scene);
         scene.differs = "every change beyond rounding";
-        fmt::print("{}", gate_table(scene));
+        print(gate_table(scene));
         const bool over = std::ranges::any_of(scene.verdict.offences, &compare::Offence::of_limit);
         if (over) {
-            fmt::print("{}: not accepted: an absolute limit is broken; limits are changed by hand, in {}\n",
-                       scene.file, task.baseline.string());
+            print("{}: not accepted: an absolute limit is broken; limits are changed by hand, in {}\n",
+                  scene.file, task.baseline.string());
             return limit_broken;
         }
         const auto text_without_reason = [](BaselineFile file) {
@@ -207,12 +225,12 @@ int accept_scene(const Task& task, const GateOptions& options) {
             return baseline_text(file);
         };
         if (text_without_reason(*was) == text_without_reason(is) && !blank(was->baseline.reason)) {
-            fmt::print("{}: left as it is\n", task.baseline.string());
+            print("{}: left as it is\n", task.baseline.string());
             return fine;
         }
     }
-    write_whole(task.baseline, baseline_text(is));
-    fmt::print("{}: written\n", task.baseline.string());
+    write_whole(task.baseline, baseline_text(is), baseline_file);
+    print("{}: written\n", task.baseline.string());
     return fine;
 }
 
@@ -238,15 +256,23 @@ int gate(const GateOptions& options) {
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
     if (!options.from.empty() && options.scenes.size() != 1)
         throw std::invalid_argument("--from: needs exactly one SCENE");
+    // GitHub's file is there already, and other steps write to it too.
+    const char* given = std::getenv("GITHUB_STEP_SUMMARY");
+    const bool to_append = given != nullptr && !options.summary.empty() && options.summary == given;
+    if (!options.junit.empty()) check_may_write(options.junit, junit_file);
+    if (!options.summary.empty() && !to_append) check_may_write(options.summary, summary_file);
     std::vector<GatedScene> scenes;
     for (const auto& task : tasks(options)) {
         scenes.push_back(gate_scene(task, options));
-        fmt::print("{}", gate_table(scenes.back()));
+        print(gate_table(scenes.back()));
     }
-    fmt::print("{}\n", gate_conclusion(scenes));
-    if (says_yes("GITHUB_ACTIONS")) fmt::print("{}", annotations(scenes));
-    if (!options.junit.empty()) write_whole(options.junit, junit(scenes));
-    if (!options.summary.empty()) write_whole(options.summary, step_summary(scenes));
+    print("{}\n", gate_conclusion(scenes));
+    if (says_yes("GITHUB_ACTIONS")) print(annotations(scenes));
+    if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
+    if (to_append)
+        append(options.summary, step_summary(scenes));
+    else if (!options.summary.empty())
+        write_whole(options.summary, step_summary(scenes), summary_file);
     return exit_code(scenes);
 }
 
@@ -256,11 +282,17 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
     const auto options = std::make_shared<GateOptions>();
     options->progress = std::move(progress);
     auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
-    command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)");
-    command->add_option("--baseline", options->folder,
-                        "folder of the baselines (default: baselines/ beside each SCENE, or here)");
-    command->add_option("--junit", options->junit, "write JUnit XML to this file");
-    command->add_option("--summary", options->summary, "write a Markdown summary to this file");
+    command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
+        ->check(a_name());
+    command
+        ->add_option("--baseline", options->folder,
+                     "folder of the baselines (default: baselines/ beside each SCENE, or here)")
+        ->check(a_name());
+    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_name());
+    command
+        ->add_option("--summary", options->summary,
+                     "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY")
+        ->check(a_name());
     std::vector<std::string> kinds;
     kinds.reserve(std::size(compare::tolerance_classes));
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
@@ -268,8 +300,10 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
         ->add_option("--class", options->kind,
                      "tolerances: same-build, cross-build or physical (default: by how the builds differ)")
         ->check(CLI::IsMember(kinds).description(""));
-    command->add_option("--from", options->from,
-                        "judge this measurement (a file like a baseline); nothing is solved");
+    command
+        ->add_option("--from", options->from,
+                     "judge this measurement (a file like a baseline); nothing is solved")
+        ->check(a_name());
     command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
     command->add_option("--reason", options->reason, "why, in words; with --accept");
     return {command, [options] { return gate(*options); }};

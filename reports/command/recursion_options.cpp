@@ -8,12 +8,13 @@
 #include <stdexcept>
 
 #include "compare/trade.hpp"
+#include "reports/command/limits.hpp"
 
 namespace elastocheck::reports {
 
 void add_recursion_options(CLI::App& command, RecursionRequest& request) {
     command.add_option("--steps", request.steps, "load steps per branch (default: as the scene says)")
-        ->check(CLI::Range(1, 10'000'000));
+        ->check(CLI::Range(1, most_steps));
     command.add_option("--tolerance", request.tolerance,
                        "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)");
     command.add_option("--order", request.order, "of the series (default: 16)")->check(CLI::Range(1, 60));

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace elastocheck {
+namespace elastocheck::reports {
 
 struct ReportRequest {
     std::vector<std::string> scenes;
@@ -26,4 +26,4 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request);
 int report(const ReportRequest& request, const std::string& reproduce,
            const std::function<void(std::string_view)>& progress);
 
-}  // namespace elastocheck
+}  // namespace elastocheck::reports

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reports/text/escape.hpp"
+
 namespace elastocheck::reports {
 
 void Field::fail(const std::string& what) const {
@@ -29,8 +31,10 @@ Field Field::operator[](std::string_view key) const {
 std::vector<std::pair<std::string, Field>> Field::entries() const {
     if (!value->is_object()) fail(fmt::format("expected an object, found {}", value->type_name()));
     std::vector<std::pair<std::string, Field>> all;
-    for (const auto& [key, entry] : value->items())
+    for (const auto& [key, entry] : value->items()) {
+        if (const std::string wrong = flaw(key); !wrong.empty()) fail("a name in it: " + wrong);
         all.emplace_back(key, Field{&entry, fmt::format("{}.{}", path, key), file});
+    }
     return all;
 }
 
@@ -62,7 +66,9 @@ bool Field::truth() const {
 
 std::string Field::text() const {
     if (!value->is_string()) fail(fmt::format("expected text, found {}", value->type_name()));
-    return value->get<std::string>();
+    auto text = value->get<std::string>();
+    if (const std::string wrong = flaw(text); !wrong.empty()) fail("expected one line of text: " + wrong);
+    return text;
 }
 
 std::vector<double> Field::numbers() const {

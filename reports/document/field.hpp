@@ -31,7 +31,7 @@ struct Field {
     double number() const;  // NaN where the document says null
     int whole() const;
     bool truth() const;
-    std::string text() const;
+    std::string text() const;  // one line, fit to be shown (escape.hpp: flaw)
     std::vector<double> numbers() const;
     std::vector<std::string> texts() const;
 };

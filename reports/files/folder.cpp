@@ -10,8 +10,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <set>
+#include <sstream>
+
+#include "reports/document/provenance.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -24,33 +26,72 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> files_in(const fs::path& folder) {
     std::vector<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (!entry.is_directory() || entry.is_symlink())
-            files.push_back(entry.path().lexically_relative(folder).generic_string());
+    std::error_code failed;
+    for (auto at = fs::recursive_directory_iterator(folder, failed); !failed && at != fs::end(at);
+         at.increment(failed))
+        if (!at->is_directory() || at->is_symlink())
+            files.push_back(at->path().lexically_relative(folder).generic_string());
+    if (failed) fail(folder, fmt::format("cannot be read: {}", failed.message()));
     std::ranges::sort(files);
     return files;
 }
 
-// What `compare -o`, `converge -o` and `trade -o` leave in a folder, told by the document among it.
-bool holds_result(const fs::path& folder) {
-    std::string start(200, '\0');
-    std::ifstream in(folder / "result.json", std::ios::binary);
-    in.read(start.data(), static_cast<std::streamsize>(start.size()));
-    return start.find("\"elastocheck/result/") != start.npos;
+// In a staging folder until it is published: whatever is in there, this program put there.
+constexpr const char* marker = ".elastocheck-staging";
+
+std::string line_of(const fs::path& folder, const std::string& file) {
+    return fmt::format("{}  {}", input_hash(read_whole(folder / file)), file);
 }
 
-// Everything in the folder must be on its list.
+// The lines of a manifest of ours; none where there is another file of that name.
+std::set<std::string> listed_in(const fs::path& folder) {
+    std::set<std::string> lines;
+    if (!fs::is_regular_file(fs::symlink_status(folder / manifest))) return lines;
+    std::istringstream in(read_whole(folder / manifest));
+    std::string line;
+    if (!std::getline(in, line) || line != manifest_head) return lines;
+    while (std::getline(in, line)) lines.insert(line);
+    return lines;
+}
+
+bool is_ours(const fs::path& folder, const std::string& file, const std::set<std::string>& listed) {
+    return fs::is_regular_file(fs::symlink_status(folder / file)) && listed.contains(line_of(folder, file));
+}
+
+// Everything in the folder must be on its manifest, as it was written.
 void check_ours(const fs::path& folder) {
-    std::set<std::string> listed{manifest};
-    if (holds_result(folder))
-        listed.insert({"result.json", "curves.csv", "convergence.csv", "attribution.csv", "trade.csv",
-                       "precision.csv"});
-    std::ifstream in(folder / manifest);
-    for (std::string line; std::getline(in, line);) listed.insert(line);
+    const auto files = files_in(folder);
+    const auto listed = listed_in(folder);
+    for (const auto& file : files) {
+        if (is_ours(folder, file, listed) || (file == manifest && !listed.empty())) continue;
+        const bool changed =
+            std::ranges::any_of(listed, [&](const auto& line) { return line.ends_with("  " + file); });
+        fail(folder / file,
+             changed
+                 ? "was changed since elastocheck wrote it, and replacing the folder would lose that; choose "
+                   "another folder, or remove this one"
+                 : "is no part of a report, and replacing the folder would lose it; choose another folder");
+    }
+}
+
+// Removes what check_ours would let pass, then the folders that are empty; the manifest last, so that a kill
+// on the way leaves what can still be recognised.
+void remove_ours(const fs::path& folder) {
+    std::error_code ignored;
+    if (fs::is_regular_file(fs::symlink_status(folder / marker))) {
+        fs::remove_all(folder, ignored);
+        return;
+    }
+    const auto listed = listed_in(folder);
     for (const auto& file : files_in(folder))
-        if (!listed.contains(file))
-            fail(folder / file,
-                 "is no part of a report, and replacing the folder would lose it; choose another folder");
+        if (file != manifest && is_ours(folder, file, listed)) fs::remove(folder / file, ignored);
+    std::vector<fs::path> folders;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_directory() && !entry.is_symlink()) folders.push_back(entry.path());
+    std::ranges::sort(folders, std::ranges::greater{}, [](const fs::path& f) { return f.native().size(); });
+    for (const auto& inner : folders) ::rmdir(inner.c_str());
+    if (!listed.empty() && files_in(folder).size() == 1) fs::remove(folder / manifest, ignored);
+    ::rmdir(folder.c_str());  // fails where something is left
 }
 
 std::string staging_prefix(const fs::path& target) {
@@ -75,7 +116,10 @@ void remove_abandoned(const fs::path& target) {
             continue;
         const int lock = lock_folder(entry.path());
         if (lock < 0) continue;
-        fs::remove_all(entry.path(), ignored);
+        try {
+            remove_ours(entry.path());
+        } catch (const std::exception&) {  // somebody else's after all, or not to be read: it stays
+        }
         ::close(lock);
     }
 }
@@ -90,14 +134,17 @@ void flush_folder(const fs::path& folder) {
 // The folder itself, behind links, after the check that it may be replaced.
 fs::path resolved(const fs::path& folder) {
     std::error_code failed;
+    if (folder.empty()) fail("''", "is no name of a folder");
     fs::path target = fs::weakly_canonical(fs::absolute(folder), failed);
     if (failed) fail(folder, failed.message());
     if (!target.has_filename()) target = target.parent_path();
     if (!target.has_filename()) fail(folder, "is the root of a file system; choose a folder below it");
-    if (fs::exists(target)) {
-        if (!fs::is_directory(target)) fail(folder, "is a file; a report is a folder");
-        check_ours(target);
-    }
+    const auto status = fs::status(target, failed);
+    if (status.type() == fs::file_type::not_found) return target;
+    if (status.type() == fs::file_type::none) fail(folder, failed.message());
+    if (status.type() != fs::file_type::directory)
+        fail(folder, "is a file; what is written here is a folder");
+    check_ours(target);
     return target;
 }
 
@@ -115,6 +162,7 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
         fail(folder, fmt::format("cannot be written: {}", std::strerror(errno)));
     staging_ = name;
     lock_ = lock_folder(staging_);
+    fill(staging_ / marker, "");
     ::chmod(
         staging_.c_str(), 0777 & ~[] {
             const mode_t mask = ::umask(0);
@@ -124,15 +172,20 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
 }
 
 Staging::~Staging() {
-    std::error_code ignored;
-    if (!staging_.empty()) fs::remove_all(staging_, ignored);
     if (lock_ >= 0) ::close(lock_);
+    if (staging_.empty()) return;
+    try {
+        remove_ours(staging_);
+    } catch (const std::exception&) {  // what cannot be read is left beside the folder
+    }
 }
 
 void Staging::publish() {
-    std::string list;
-    for (const auto& file : files_in(staging_)) list += file + "\n";
-    write_whole(staging_ / manifest, list);
+    std::string list = fmt::format("{}\n", manifest_head);
+    for (const auto& file : files_in(staging_))
+        if (file != marker) list += line_of(staging_, file) + "\n";
+    fill(staging_ / manifest, list);
+    fs::remove(staging_ / marker);
     for (const auto& entry : fs::recursive_directory_iterator(staging_))
         if (entry.is_directory()) flush_folder(entry.path());
     flush_folder(staging_);
@@ -148,6 +201,12 @@ void Staging::publish() {
         fail(target_, fmt::format("cannot be written: {}", std::strerror(errno)));
     }
     flush_folder(target_.parent_path());
+}
+
+void write_folder(const fs::path& folder, const std::vector<NamedContent>& files) {
+    Staging staging(folder);
+    for (const auto& [name, content] : files) fill(staging.path() / name, content);
+    staging.publish();
 }
 
 }  // namespace elastocheck::reports

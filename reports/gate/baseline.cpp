@@ -10,6 +10,8 @@
 #include <set>
 
 #include "reports/document/document.hpp"
+#include "reports/document/json.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -51,7 +53,20 @@ const json& array(const Field& field) {
 
 std::string text(const Field& field) {
     if (!field.value.is_string()) refuse(field, "is not a text");
-    return field.value.get<std::string>();
+    auto text = field.value.get<std::string>();
+    if (const std::string wrong = flaw(text); !wrong.empty())
+        refuse(field, "is not a line of text: " + wrong);
+    return text;
+}
+
+// Text of several lines.
+std::string paragraphs(const Field& field) {
+    if (!field.value.is_string()) refuse(field, "is not a text");
+    auto text = field.value.get<std::string>();
+    std::string one_line = text;
+    std::ranges::replace(one_line, '\n', ' ');
+    if (const std::string wrong = flaw(one_line); !wrong.empty()) refuse(field, "is not text: " + wrong);
+    return text;
 }
 
 double number(const Field& field) {
@@ -87,8 +102,10 @@ Provenance provenance_of(const Field& field) {
     p.cpu = text(at(field, "cpu"));
     const Field libraries = at(field, "libraries");
     if (!libraries.value.is_object()) refuse(libraries, "is not an object");
-    for (const auto& [name, version] : libraries.value.items())
+    for (const auto& [name, version] : libraries.value.items()) {
+        if (const std::string wrong = flaw(name); !wrong.empty()) refuse(libraries, "a name: " + wrong);
         p.libraries.push_back({name, text({version, libraries.path + "." + name})});
+    }
     return p;
 }
 
@@ -152,7 +169,7 @@ BaselineFile parse(const json& whole) {
     file.baseline.accepted.scene = text(at(scene, "name"));
     file.input_hash = text(at(scene, "input_hash"));
     expect_fields(at(top, "accepted"), {"reason"});
-    file.baseline.reason = text(at(at(top, "accepted"), "reason"));
+    file.baseline.reason = paragraphs(at(at(top, "accepted"), "reason"));
     file.provenance = provenance_of(at(top, "provenance"));
     file.baseline.tolerances = tolerances_of(at(top, "tolerances"));
     for (const auto& limit : array(at(top, "limits")))
@@ -173,12 +190,6 @@ BaselineFile parse(const json& whole) {
         if (!seen.emplace(s.branch, s.quantity, s.channel).second) refuse(field, "is there twice");
     }
     return file;
-}
-
-std::string in_quotes(const std::string& word) {  // for a shell
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
-    return quoted + "'";
 }
 
 // First line of what a command prints, "" when it fails.
@@ -227,9 +238,11 @@ std::string baseline_text(const BaselineFile& file) {
 BaselineFile parse_baseline(std::string_view text, const std::string& file_name) {
     try {
         if (text.empty()) throw BaselineError("the file is empty");
-        return parse(json::parse(text));
+        return parse(parse_json(text));
     } catch (const BaselineError& error) {
         throw BaselineError(fmt::format("{}: {}", file_name, error.what()));
+    } catch (const JsonError& error) {
+        throw BaselineError(fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
     } catch (const json::exception& error) {
         throw BaselineError(fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
     }
@@ -257,11 +270,11 @@ std::string not_committed(const std::filesystem::path& file) {
     // A container's checkout often belongs to another user than the one who looks at it; only blobs are
     // compared.
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-    const std::string git = "git -c safe.directory='*' -C " + in_quotes(folder) + " ";
+    const std::string git = "git -c safe.directory='*' -C " + for_shell(folder) + " ";
     const std::string leaf = file.filename().string();
-    const std::string committed = first_line(git + "rev-parse --verify -q " + in_quotes("HEAD:./" + leaf));
+    const std::string committed = first_line(git + "rev-parse --verify -q " + for_shell("HEAD:./" + leaf));
     if (committed.empty()) return "it is not committed to a git repository";
-    if (committed != first_line(git + "hash-object -- " + in_quotes(leaf)))
+    if (committed != first_line(git + "hash-object -- " + for_shell(leaf)))
         return "it differs from what is committed";
     return "";
 }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -84,26 +85,12 @@ std::string headline(const GatedScene& scene) {
     return line;
 }
 
-// One cell of a Markdown table: nothing in it is markup, and it is not too long.
+// One cell of a Markdown table, not too long; nothing in it is markup.
 std::string cell(std::string_view text) {
-    std::string safe;
-    for (const char c : text) {
-        if (safe.size() >= cell_length && (static_cast<unsigned char>(c) & 0xC0) != 0x80) return safe + "...";
-        switch (c) {
-            case '|':
-            case '`':
-            case '*':
-            case '_':
-            case '[':
-            case '\\': safe += '\\', safe += c; break;
-            case '<': safe += "&lt;"; break;
-            case '&': safe += "&amp;"; break;
-            case '\n':
-            case '\r': safe += ' '; break;
-            default: safe += c;
-        }
-    }
-    return safe;
+    if (std::string safe = for_markdown(text); safe.size() <= cell_length) return safe;
+    std::size_t end = std::min(text.size(), cell_length / 2);  // every character may need a backslash
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
+    return for_markdown(text.substr(0, end)) + "...";
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -116,24 +103,16 @@ json count_beyond(std::size_t all, std::size_t shown) {
     return all > shown ? json(std::to_string(all - shown)) : json(false);
 }
 
-// XML 1.0 has no way to write most control characters.
-std::string in_xml(std::string_view text) {
-    std::string legal(text);
-    std::ranges::replace_if(
-        legal, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t'; }, '?');
-    return legal;
-}
-
 void add_message(pugi::xml_node test, const char* kind, std::string_view message, const std::string& text) {
     auto node = test.append_child(kind);
-    node.append_attribute("message") = in_xml(message).c_str();
-    node.text() = in_xml(text).c_str();
+    node.append_attribute("message") = for_xml(message).c_str();
+    node.text() = for_xml(text).c_str();
 }
 
 pugi::xml_node add_test(pugi::xml_node suite, const GatedScene& scene, const std::string& test_name) {
     auto test = suite.append_child("testcase");
-    test.append_attribute("classname") = in_xml(scene.file).c_str();
-    test.append_attribute("name") = in_xml(test_name).c_str();
+    test.append_attribute("classname") = for_xml(scene.file).c_str();
+    test.append_attribute("name") = for_xml(test_name).c_str();
     return test;
 }
 
@@ -141,7 +120,7 @@ pugi::xml_node add_test(pugi::xml_node suite, const GatedScene& scene, const std
 // it.
 void add_suite(pugi::xml_node root, const GatedScene& scene) {
     auto suite = root.append_child("testsuite");
-    suite.append_attribute("name") = in_xml(scene.file).c_str();
+    suite.append_attribute("name") = for_xml(scene.file).c_str();
     int tests = 1, failures = 0;
     const bool error = !scene.verdict.reasons.empty();
 
@@ -178,23 +157,9 @@ void add_suite(pugi::xml_node root, const GatedScene& scene) {
     suite.append_attribute("errors") = error ? 1 : 0;
 }
 
-// GitHub reads % and line ends in a command's text, and : and , in its properties.
-std::string escaped(std::string_view text, bool property) {
-    std::string result;
-    for (const char c : text) switch (c) {
-            case '%': result += "%25"; break;
-            case '\r': result += "%0D"; break;
-            case '\n': result += "%0A"; break;
-            case ':': result += property ? "%3A" : ":"; break;
-            case ',': result += property ? "%2C" : ","; break;
-            default: result += c;
-        }
-    return result;
-}
-
 std::string annotation(const GatedScene& scene, const std::string& title, const std::string& text) {
-    return fmt::format("::error file={},title={}::{}\n", escaped(scene.file, true), escaped(title, true),
-                       escaped(text, false));
+    return fmt::format("::error file={},title={}::{}\n", for_github_property(scene.file),
+                       for_github_property(title), for_github(text));
 }
 
 }  // namespace

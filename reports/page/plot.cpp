@@ -8,6 +8,7 @@
 #include "reports/files/files.hpp"
 #include "reports/page/gnuplot.hpp"
 #include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -88,13 +89,12 @@ std::string figure_data(const Figure& figure) {
     std::string text = bars ? "series,x,y,x low,x high,y low,y high\n" : "series,x,y\n";
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
         if (k > 0) text += "\n\n";
-        std::string name = figure.series[k].title;
-        std::ranges::replace(name, '"', '\'');
+        const std::string name = for_csv(figure.series[k].title);
         bool broken = true;  // no blank line first, none twice
         for (const auto& row : figure.series[k].rows) {
             if (row.empty() && broken) continue;
             broken = row.empty();
-            if (!row.empty()) text += fmt::format("\"{}\"", name);
+            if (!row.empty()) text += name;
             for (const double value : row) text += fmt::format(",{:.9g}", value);
             text += "\n";
         }
@@ -110,9 +110,8 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
     const fs::path figures = folder / "figures";
     std::vector<std::string> scripts;
     for (const auto& [figure, name] : plots) {
-        write_whole(figures / (name + ".csv"), figure_data(*figure));
-        write_whole(figures / (name + ".gp"),
-                    render("figure.gp", script_data(*figure, name), Escape::gnuplot));
+        fill(figures / (name + ".csv"), figure_data(*figure));
+        fill(figures / (name + ".gp"), render("figure.gp", script_data(*figure, name), Escape::gnuplot));
         scripts.push_back("figures/" + name + ".gp");
     }
     if (scripts.empty()) return {};
@@ -126,7 +125,7 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
         const fs::path svg = figures / (name + ".svg");
         pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1), figure->title,
                                       figure->description));
-        write_whole(svg, pictures.back().alone);
+        fill(svg, pictures.back().alone);
         if (!options.keep_source)
             for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));
     }

@@ -7,8 +7,10 @@
 #include <set>
 #include <sstream>
 
+#include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/field.hpp"
+#include "reports/document/json.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/page/numbers.hpp"
@@ -17,6 +19,7 @@
 #include "reports/page/sections/sections.hpp"
 #include "reports/page/svg.hpp"
 #include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -196,37 +199,6 @@ json alarms(const Field& result) {
             {"table", table_json(table)}};
 }
 
-// ---- beside the page
-
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == text.npos) return text;
-    std::string doubled;
-    for (const char c : text) doubled += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return fmt::format("\"{}\"", doubled);
-}
-
-// Every point of every leg, a number a row: scenes differ in their outputs.
-std::string curves_csv(const Field& result) {
-    std::string csv = "scene,branch,leg,load factor,travel [mm],output,unit,value\n";
-    for (const auto& scene : result["scenes"].items()) {
-        if (!scene.find("branches")) continue;
-        for (const auto& branch : scene["branches"].items())
-            for (const auto& leg : branch["legs"].items()) {
-                const LegCurve curve = curve_of(branch, leg["leg"].text());
-                for (const auto& channel : main_channels_of(scene)) {
-                    const auto values = curve.channel(channel.name);
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format(
-                            "{},{},{},{:.10g},{},{},{},{:.17g}\n", quoted(scene["name"].text()),
-                            quoted(branch["name"].text()), curve.leg, curve.load[k],
-                            k < curve.travel.size() ? fmt::format("{:.10g}", curve.travel[k]) : "",
-                            quoted(channel.name), channel.unit, values[k]);
-                }
-            }
-    }
-    return csv;
-}
-
 }  // namespace
 
 std::string numbers_csv(const json& result, const std::string& file) {
@@ -234,9 +206,10 @@ std::string numbers_csv(const json& result, const std::string& file) {
     const Field root{&result, "", &file};
     const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
                          const char* quantity, double value, double tolerance) {
-        csv += fmt::format(
-            "{},{},{},{},{},{:.12g},{:.1g}\n", quoted(fs::path(scene["source"].text()).stem().string()),
-            quoted(branch["name"].text()), channel.name, channel.unit, quantity, value, tolerance);
+        csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
+                           for_csv(fs::path(scene["source"].text()).stem().string()),
+                           for_csv(branch["name"].text()), for_csv(channel.name), for_csv(channel.unit),
+                           quantity, value, tolerance);
     };
     for (const auto& scene : root["scenes"].items())
         for (const auto& branch : scene["branches"].items()) {
@@ -261,9 +234,13 @@ std::string numbers_csv(const json& result, const std::string& file) {
 }
 
 json parse_result(std::string_view text, const std::string& file) {
-    json result = json::parse(text, nullptr, false);
+    json result;
     const Field root{&result, "", &file};
-    if (result.is_discarded()) root.fail("is no JSON, or was cut off");
+    try {
+        result = parse_json(text);
+    } catch (const JsonError& error) {
+        root.fail(error.what());
+    }
     const Field schema = root["schema"];
     if (schema.text() != result_schema)
         schema.fail(
@@ -298,18 +275,18 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         {"scenes", scenes},
         {"summary", table_json(summary(parts))},
         {"provenance", provenance(root)},
-        {"reproduce", root["reproduce"].text()},
+        {"reproduce", for_terminal(root["reproduce"].text())},
         {"alarms", alarms(root)},
         {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     if (options.archive) {
-        write_whole(staging.path() / "README.md", markdown);
-        write_whole(staging.path() / "numbers.csv", numbers_csv(result, file));
+        fill(staging.path() / "README.md", markdown);
+        fill(staging.path() / "numbers.csv", numbers_csv(result, file));
     } else {
-        write_whole(staging.path() / "report.html", render("html/page", data, Escape::html));
-        write_whole(staging.path() / "report.md", markdown);
-        write_whole(staging.path() / "result.json", result.dump(1) + "\n");
-        write_whole(staging.path() / "curves.csv", curves_csv(root));
+        fill(staging.path() / "report.html", render("html/page", data, Escape::html));
+        fill(staging.path() / "report.md", markdown);
+        fill(staging.path() / "result.json", result.dump(1) + "\n");
+        fill(staging.path() / "curves.csv", curves_csv(result, file));
     }
     staging.publish();
 }

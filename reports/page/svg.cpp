@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -175,10 +176,10 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
     root.append_attribute("aria-labelledby") = fmt::format("{} {}", title_id, description_id).c_str();
     xml_node about = root.prepend_child("desc");
     about.append_attribute("id") = description_id.c_str();
-    about.text() = description.c_str();
+    about.text() = for_xml(description).c_str();
     xml_node name = root.prepend_child("title");
     name.append_attribute("id") = title_id.c_str();
-    name.text() = title.c_str();
+    name.text() = for_xml(title).c_str();
 
     Illustration result;
     result.inlined = text(root);

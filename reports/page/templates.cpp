@@ -5,6 +5,7 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
+#include "reports/text/escape.hpp"
 #include "templates_embedded.hpp"  // generated: name and text of every template
 
 namespace elastocheck::reports {
@@ -38,35 +39,21 @@ ms::data mustache(const json& value) {
     }
 }
 
-// Whatever Markdown may read as its own.
-std::string markdown_escape(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        if (std::string_view("\\`*_[]<>#|~&").find(c) != std::string_view::npos) safe.push_back('\\');
-        safe.push_back(c == '\n' ? ' ' : c);
-    }
-    return safe;
-}
-
-// Inside single quotes, where gnuplot substitutes nothing.
-std::string gnuplot_escape(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        if (c == '\'') safe.push_back(c);
-        safe.push_back(static_cast<unsigned char>(c) < ' ' ? ' ' : c);
-    }
-    return safe;
-}
-
 }  // namespace
 
 std::string render(std::string_view name, const json& data, Escape escape) {
     ms::mustache page{std::string(text_of(name))};
     if (!page.is_valid())
         throw std::logic_error(fmt::format("template '{}': {}", name, page.error_message()));
-    if (escape == Escape::markdown) page.set_custom_escape(markdown_escape);
-    if (escape == Escape::gnuplot) page.set_custom_escape(gnuplot_escape);
-    if (escape == Escape::nothing) page.set_custom_escape([](const std::string& text) { return text; });
+    page.set_custom_escape([escape](const std::string& text) {
+        switch (escape) {
+            case Escape::html: return for_html(text);
+            case Escape::markdown: return for_markdown(text);
+            case Escape::gnuplot: return for_gnuplot(text);
+            case Escape::nothing: break;
+        }
+        return text;
+    });
     ms::data root = mustache(data);
     for (const auto& entry : embedded_templates)
         root.set(std::string(entry.name), ms::partial{[text = entry.text] { return std::string(text); }});

@@ -1,4 +1,4 @@
-// Curves as CSV, to plot again.
+// The curves of one leg as CSV, a column a channel: what `elastocheck solve` prints.
 #pragma once
 
 #include <string>
@@ -12,6 +12,5 @@ namespace elastocheck::reports {
 // digits.
 std::string curves_header(const std::vector<compare::Channel>& channels);
 std::string curves_rows(const std::string& branch, const compare::LegRun& run);
-std::string curves_csv(const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "reports/text/escape.hpp"
+
 namespace elastocheck::reports {
 
 std::string order_table(const std::vector<compare::BranchOrders>& orders) {
@@ -56,7 +58,7 @@ std::string orders_csv(const std::vector<compare::BranchOrders>& orders) {
             csv += fmt::format(
                 "{},{:g},{},{},{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
                 "{:.17g},{:.17g},{:.17g}\n",
-                branch.branch, l.tolerance, l.order, name(l.outcome), l.expansions, l.rejected,
+                for_csv(branch.branch), l.tolerance, l.order, name(l.outcome), l.expansions, l.rejected,
                 l.work.factorisations, l.work.solves, l.error.mm, l.error.deg, branch.uncertainty.mm,
                 branch.uncertainty.deg, l.force, l.error_end, l.first_reach, l.nearest.radius,
                 l.nearest.angle, l.nearest.misfit);

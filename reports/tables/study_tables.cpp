@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "reports/text/escape.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -166,12 +168,12 @@ std::string study_csv(const compare::Study& study) {
                                        "{},{},{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{:.17g},{:.17g},"
                                        "{:.17g},{:.17g},"
                                        "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
-                                       branch.branch, method.method, reading_name(load),
-                                       study.channels[c].name, symbol(study.channels[c].unit), study.steps[l],
-                                       s.step_error_end[l], s.step_error_max[l], s.step_error_rms[l],
-                                       method.constraint_error[l], name(s.end.behaviour), s.end.order,
-                                       s.end.order_error, s.end.limit, s.end.band, s.gap, s.gap_max,
-                                       s.gap_rms, s.gap_exponent, s.uncertainty, s.range);
+                                       for_csv(branch.branch), method.method, reading_name(load),
+                                       for_csv(study.channels[c].name), symbol(study.channels[c].unit),
+                                       study.steps[l], s.step_error_end[l], s.step_error_max[l],
+                                       s.step_error_rms[l], method.constraint_error[l], name(s.end.behaviour),
+                                       s.end.order, s.end.order_error, s.end.limit, s.end.band, s.gap,
+                                       s.gap_max, s.gap_rms, s.gap_exponent, s.uncertainty, s.range);
                     }
             }
     return csv;
@@ -185,7 +187,7 @@ std::string attribution_csv(const compare::Study& study, const std::vector<Branc
             for (std::size_t c = 0; c < shares.size(); ++c) {
                 const GapShare& s = shares[c];
                 csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
-                                   branch.branch, reading_name(load), study.channels[c].name,
+                                   for_csv(branch.branch), reading_name(load), study.channels[c].name,
                                    symbol(study.channels[c].unit), s.whole, s.lever, s.axis, s.load, s.rest,
                                    s.band);
             }

@@ -73,6 +73,9 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
     for (const auto& [text, answer] : std::vector<Damage>{
              {"", "the file is empty"},
              {" \n", "is not the JSON of a baseline"},
+             {std::string(100'000, '['), "nested more than 64 deep"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"x\\n::error::"), "control character U+000A"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"\xE2\x80\xAE"), "turns the direction of writing"},
              {"{}", "has no schema"},
              {"[]", "has no schema"},
              {"null", "has no schema"},
