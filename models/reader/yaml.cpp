@@ -21,6 +21,10 @@ constexpr std::size_t deepest_nesting = 16;  // a scene needs five: bushings, on
 
 int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 
+// Length of the UTF-8 sequence at the beginning of `text`, 0 if there is none (RFC 3629, table of well-formed
+// sequences).
+std::size_t utf8_length(std::string_view text);
+
 // Collects the parser's events into a tree of values.
 class TreeBuilder final : public YAML::EventHandler {
   public:
@@ -40,6 +44,7 @@ class TreeBuilder final : public YAML::EventHandler {
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   const std::string& text) override {
         refuse_tag(mark, tag);
+        refuse_unprintable(mark, text);
         add({.kind = Value::Kind::scalar, .text = text, .line = line_of(mark)});
     }
     void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
@@ -112,6 +117,23 @@ class TreeBuilder final : public YAML::EventHandler {
         if (!is_own) fail_at(mark, fmt::format("tags ({}) are not part of the scene format", quote(tag)));
     }
 
+    // What the escapes of a quoted text come out as: names go into tables, scripts and terminals. Some of
+    // them
+    // (\N, \_) yaml-cpp turns into bytes that are not UTF-8.
+    void refuse_unprintable(const YAML::Mark& mark, std::string_view text) const {
+        for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
+            length = utf8_length(text);
+            if (length == 0) fail_at(mark, "an escape that is no UTF-8; write the character itself");
+            const std::string_view c = text.substr(0, length);
+            const bool control = static_cast<unsigned char>(c[0]) < 0x20 || c == "\x7F" ||
+                                 (c >= "\xC2\x80" && c <= "\xC2\x9F") || c == "\u2028" || c == "\u2029";
+            const bool turns = c == "\u061C" || c == "\u200E" || c == "\u200F" ||
+                               (c >= "\u202A" && c <= "\u202E") || (c >= "\u2066" && c <= "\u2069");
+            if (control) fail_at(mark, "a control character; a text of a scene is one line");
+            if (turns) fail_at(mark, "a character that turns the direction of writing");
+        }
+    }
+
     // The keys on the way to where the parser is, "joints.ball_joint".
     std::string path() const {
         std::string path;
@@ -129,8 +151,11 @@ class TreeBuilder final : public YAML::EventHandler {
     std::vector<Open> open;
 };
 
+<<<<<<< HEAD:models/reader/yaml.cpp
 // Length of the UTF-8 sequence at the beginning of `text`,
 // 0 if there is none (RFC 3629, table of well-formed sequences).
+=======
+>>>>>>> refs/heads/reports:models/reader/yaml.cpp
 std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) {
         return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;

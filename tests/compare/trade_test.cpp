@@ -14,7 +14,7 @@
 #include "recursive/solve.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
-#include "reports/trade_tables.hpp"
+#include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {

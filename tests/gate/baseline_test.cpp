@@ -1,5 +1,5 @@
 // Baseline files: what is written is read again, and nothing misspelt is read as something else.
-#include "reports/baseline.hpp"
+#include "reports/gate/baseline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "models/compile.hpp"
-#include "reports/files.hpp"
+#include "reports/files/files.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -73,6 +73,9 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
     for (const auto& [text, answer] : std::vector<Damage>{
              {"", "the file is empty"},
              {" \n", "is not the JSON of a baseline"},
+             {std::string(100'000, '['), "nested more than 64 deep"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"x\\n::error::"), "control character U+000A"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"\xE2\x80\xAE"), "turns the direction of writing"},
              {"{}", "has no schema"},
              {"[]", "has no schema"},
              {"null", "has no schema"},

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <map>
 
-#include "reports/baseline.hpp"
-#include "reports/files.hpp"
+#include "reports/files/files.hpp"
+#include "reports/gate/baseline.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "reports/baseline.hpp"
+#include "reports/gate/baseline.hpp"
 #include "tests/support/command.hpp"
 
 namespace {

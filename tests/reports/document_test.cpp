@@ -1,10 +1,10 @@
 // result.json says what was compared, in a form that cannot lie by leaving out.
-#include "reports/document.hpp"
+#include "reports/document/document.hpp"
 
 #include <gtest/gtest.h>
 
 #include "models/compile.hpp"
-#include "reports/csv.hpp"
+#include "reports/tables/csv.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -91,7 +91,9 @@ TEST(Document, InputHashIsFnv1a) {
 
 TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const Made made;
-    const std::string csv = curves_csv(made.comparison);
+    std::string csv = curves_header(made.comparison.channels);
+    for (const auto& branch : made.comparison.branches)
+        for (const auto& run : branch.runs) csv += curves_rows(branch.branch, run);
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
     const std::string header = csv.substr(0, csv.find('\n'));
     EXPECT_TRUE(header.starts_with("branch,leg,load factor,travel [mm],wheel_centre_x [mm],")) << header;

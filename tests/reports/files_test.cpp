@@ -1,5 +1,5 @@
 // Files are written whole or not at all.
-#include "reports/files.hpp"
+#include "reports/files/files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,29 +18,92 @@ int entries(const std::filesystem::path& folder) {
 TEST(WriteWhole, MakesTheFolderAndReplacesAnOlderFile) {
     const Folder folder;
     const auto file = folder.path / "new" / "deep" / "result.json";
-    write_whole(file, "one");
-    write_whole(file, std::string(3'000'000, 'x'));
-    EXPECT_EQ(text_of(file).size(), 3'000'000u);
-    write_whole(file, "");
-    EXPECT_EQ(text_of(file), "");
+    const std::string one = std::string(summary_file.beginning) + "passed\n";
+    write_whole(file, one + std::string(3'000'000, 'x'), summary_file);
+    EXPECT_EQ(text_of(file).size(), one.size() + 3'000'000u);
+    write_whole(file, one, summary_file);
+    EXPECT_EQ(text_of(file), one);
     EXPECT_EQ(entries(file.parent_path()), 1);
+}
+
+// What a path holds, to be left alone; and what is said.
+TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
+    namespace fs = std::filesystem;
+    const Folder folder;
+    const auto refusal = [](const fs::path& file, const FileKind& kind) {
+        std::string why;
+        try {
+            write_whole(file, std::string(kind.beginning), kind);
+        } catch (const FileError& error) {
+            why = error.what();
+        }
+        return why;
+    };
+    const auto expect = [&](const fs::path& file, const FileKind& kind, const std::string& why) {
+        const std::string said = refusal(file, kind);
+        EXPECT_NE(said.find(why), said.npos) << kind.name << ": " << said;
+    };
+    const std::string scene = folder.write("scene.yaml", "elastocheck: 1\nname: x\n"),
+                      empty = folder.write("empty", ""),
+                      baseline = folder.write("b.json", "{\"schema\":\"elastocheck/baseline/1\"}");
+    for (const auto& kind : {curves_file, rates_file, junit_file, summary_file}) {
+        for (const auto& file : {scene, empty, baseline}) {
+            const std::string before = text_of(file);
+            expect(file, kind, "is there, and is no " + std::string(kind.name) + " that elastocheck wrote");
+            EXPECT_EQ(text_of(file), before);
+        }
+        expect(folder.path, kind, "is a folder");
+        expect("/dev/null", kind, "is a character device");
+    }
+    EXPECT_EQ(refusal(baseline, baseline_file), "");
+    expect(scene, baseline_file, "is no baseline");
+
+    // A link, be its target ours, absent or itself.
+    const auto ours = folder.path / "s.md";
+    EXPECT_EQ(refusal(ours, summary_file), "");
+    fs::create_symlink(ours, folder.path / "link");
+    fs::create_symlink(folder.path / "nowhere", folder.path / "dangling");
+    fs::create_symlink(folder.path / "loop", folder.path / "loop");
+    for (const char* link : {"link", "dangling", "loop"}) {
+        expect(folder.path / link, summary_file, "is a symbolic link");
+        EXPECT_TRUE(fs::is_symlink(folder.path / link));
+    }
+    EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
+}
+
+TEST(Append, AddsToARegularFileAndToNothingElse) {
+    const Folder folder;
+    const auto file = folder.write("summary", "another step's\n");
+    append(file, "ours\n");
+    EXPECT_EQ(text_of(file), "another step's\nours\n");
+    std::filesystem::create_symlink(file, folder.path / "link");
+    EXPECT_THROW(append(folder.path / "link", "x"), FileError);
+    EXPECT_THROW(append("/dev/null", "x"), FileError);
+    EXPECT_THROW(append(folder.path / "none", "x"), FileError);
+    EXPECT_EQ(text_of(file), "another step's\nours\n");
+}
+
+TEST(ReadWhole, ReadsFilesAndNoDevices) {
+    const Folder folder;
+    EXPECT_EQ(read_whole(folder.write("f", "x")), "x");
+    for (const auto& odd : {std::filesystem::path("/dev/zero"), folder.path, folder.path / "none"})
+        EXPECT_THROW(read_whole(odd), FileError) << odd;
 }
 
 TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
     const Folder folder;
     folder.write("file", "old");
-    EXPECT_THROW(write_whole(folder.path / "file" / "result.json", "x"), FileError);
+    EXPECT_THROW(write_whole(folder.path / "file" / "result.json", "x", curves_file), FileError);
     std::filesystem::create_directory(folder.path / "taken");
     std::filesystem::create_directory(folder.path / "taken" / "inside");
     try {
-        write_whole(folder.path / "taken", "x");
+        write_whole(folder.path / "taken", "x", curves_file);
         ADD_FAILURE() << "a folder was overwritten";
     } catch (const FileError& error) {
-        EXPECT_NE(std::string(error.what()).find("taken: cannot be written"), std::string::npos)
-            << error.what();
+        EXPECT_NE(std::string(error.what()).find("taken: is a folder"), std::string::npos) << error.what();
     }
     EXPECT_EQ(entries(folder.path), 2);
-    EXPECT_THROW(write_whole("/dev/full/result.json", "x"), FileError);
+    EXPECT_THROW(write_whole("/dev/full/result.json", "x", curves_file), FileError);
 }
 
 }  // namespace

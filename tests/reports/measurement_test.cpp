@@ -1,10 +1,10 @@
 // Measured curves: read, refused, compared.
-#include "reports/measurement.hpp"
+#include "reports/document/measurement.hpp"
 
 #include <gtest/gtest.h>
 
 #include "models/compile.hpp"
-#include "reports/sections/sections.hpp"
+#include "reports/page/sections/sections.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -1,5 +1,5 @@
 // Numbers as people read them.
-#include "reports/numbers.hpp"
+#include "reports/page/numbers.hpp"
 
 #include <gtest/gtest.h>
 

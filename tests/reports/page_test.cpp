@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "reports/report.hpp"
+#include "reports/page/report.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"

@@ -1,5 +1,5 @@
 // A report is a folder that is replaced in one step, and never somebody else's.
-#include "reports/report.hpp"
+#include "reports/page/report.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,9 +12,11 @@
 #include <random>
 #include <thread>
 
-#include "reports/field.hpp"
-#include "reports/folder.hpp"
-#include "reports/templates.hpp"
+#include "reports/document/field.hpp"
+#include "reports/document/provenance.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/page/plot.hpp"
+#include "reports/page/templates.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
@@ -116,6 +118,38 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
     EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
 }
 
+// A name with a line end would leave the string or the comment it stands in.
+TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
+    const Folder folder;
+    for (const std::string evil :
+         {"x\nsystem 'touch hacked'\n", "`touch hacked`", "'.system('touch hacked').'", "x\\",
+          "\"; system \"touch hacked\"", "x\r\nsystem('touch hacked')", "x\u2028system('touch hacked')",
+          "@x\n!touch hacked"}) {
+        Figure figure{.id = "f", .title = evil, .description = evil, .x = evil, .y = evil};
+        figure.series.push_back({evil, Series::Style::line, ink, 0, {{0, 0}, {1, 1}}});
+        figure.bands.push_back({0, 1, evil});
+        figure.y_ticks = {{0.5, evil}};
+        EXPECT_EQ(draw({{&figure, "f"}}, folder.path, {}).size(), 1u) << evil;
+        int files = 0;
+        for (const auto& entry : fs::recursive_directory_iterator(folder.path))
+            files += !entry.is_directory();
+        EXPECT_EQ(files, 3) << evil;  // the script, its data, the picture
+    }
+    // A document with such a name is refused before it comes to that.
+    json result = small_result("x");
+    result["scenes"][0]["branches"][0]["name"] = "up\nsystem 'touch hacked'";
+    try {
+        write_report(result, "result.json", folder.path / "r");
+        ADD_FAILURE() << "a line end in a name";
+    } catch (const ResultError& error) {
+        EXPECT_TRUE(
+            contains(error.what(),
+                     "result.json: scenes[0].branches[0].name: expected one line of text: it has the control "
+                     "character U+000A"))
+            << error.what();
+    }
+}
+
 TEST(Report, TwoScenesOfOneNameShareAPage) {
     const Folder folder;
     json result = small_result("twin");
@@ -187,20 +221,71 @@ TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
     EXPECT_TRUE(contains(refusal(folder.path / "r"), "figures/mine.svg: is no part of a report"));
     EXPECT_EQ(contents_of(folder.path / "r"), before);
     const auto file = folder.write("file", "mine");
-    EXPECT_TRUE(contains(refusal(file), "is a file; a report is a folder"));
+    EXPECT_TRUE(contains(refusal(file), "is a file; what is written here is a folder"));
     EXPECT_TRUE(contains(refusal("/"), "choose a folder below it"));
     EXPECT_EQ(text_of(file), "mine");
 }
 
-TEST(Report, ReplacesWhatCompareLeftAndWhatALinkPointsTo) {
+TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     const Folder folder;
-    fs::create_directory(folder.path / "r");
-    std::ofstream(folder.path / "r" / "result.json") << "{\n \"schema\": \"elastocheck/result/1\"}";
-    std::ofstream(folder.path / "r" / "curves.csv") << "old";
+    // Somebody's list of files is no proof, even if it lists all there is.
+    const fs::path theirs = folder.path / "theirs";
+    fs::create_directory(theirs);
+    std::ofstream(theirs / "files.txt") << "thesis.tex\nfiles.txt\n";
+    std::ofstream(theirs / "thesis.tex") << "years of work";
+    Contents before = contents_of(theirs);
+    EXPECT_TRUE(contains(refusal(theirs), "files.txt: is no part of a report")) << refusal(theirs);
+    EXPECT_EQ(contents_of(theirs), before);
+    // Nor is one with our first line and the name, but another content.
+    std::ofstream(theirs / "files.txt") << "elastocheck files 1\n" << input_hash("draft") << "  thesis.tex\n";
+    EXPECT_TRUE(contains(refusal(theirs), "thesis.tex: was changed since elastocheck wrote it"))
+        << refusal(theirs);
+    EXPECT_TRUE(fs::exists(theirs / "thesis.tex"));
+    // A result.json beside it proves nothing either.
+    const fs::path result = folder.path / "result";
+    fs::create_directory(result);
+    std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/2\"}";
+    std::ofstream(result / "curves.csv") << "measured by hand";
+    before = contents_of(result);
+    EXPECT_TRUE(contains(refusal(result), "curves.csv: is no part of a report"));
+    EXPECT_EQ(contents_of(result), before);
+    // What was edited in a report of ours, or a link put in its place.
+    write_report(small_result("old"), "result.json", folder.path / "r");
+    std::ofstream(folder.path / "r" / "report.md", std::ios::app) << "my remark\n";
+    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: was changed since"))
+        << refusal(folder.path / "r");
+    fs::remove(folder.path / "r" / "report.md");
+    fs::create_symlink(theirs / "thesis.tex", folder.path / "r" / "report.md");
+    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: was changed since"));
+    fs::remove(folder.path / "r" / "report.md");
+    EXPECT_EQ(refusal(folder.path / "r"), "written");
+}
+
+TEST(Report, WhatAKilledRunLeftIsRemovedAndWhatOnlyLooksLikeItIsNot) {
+    const Folder folder;
+    const fs::path marked = folder.path / ".r.elastocheck-aaaaaa",
+                   unlike = folder.path / ".r.elastocheck-notes";
+    fs::create_directories(marked / "figures");
+    std::ofstream(marked / ".elastocheck-staging").flush();
+    std::ofstream(marked / "figures" / "half.svg") << "<svg";
+    fs::create_directories(unlike);
+    std::ofstream(unlike / "notes.txt") << "mine";
+    EXPECT_EQ(refusal(folder.path / "r"), "written");
+    EXPECT_FALSE(fs::exists(marked));
+    EXPECT_EQ(text_of(unlike / "notes.txt"), "mine");
+}
+
+TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
+    const Folder folder;
+    write_folder(folder.path / "r", {{"result.json", "{}"}, {"curves.csv", "old"}});
     fs::create_directory_symlink(folder.path / "r", folder.path / "link");
     EXPECT_EQ(refusal(folder.path / "link"), "written");
     EXPECT_TRUE(fs::is_symlink(folder.path / "link"));
     EXPECT_TRUE(fs::exists(folder.path / "r" / "report.html"));
+    fs::create_symlink(folder.path / "loop", folder.path / "loop");
+    EXPECT_TRUE(contains(refusal(folder.path / "loop"), "Too many levels of symbolic links"))
+        << refusal(folder.path / "loop");
+    EXPECT_TRUE(contains(refusal(""), "is no name of a folder"));
 }
 
 TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {
@@ -236,6 +321,18 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
         support::says(command + " report --from " + folder.write("d.json", doubtful.dump()) + " -o " + out);
     EXPECT_EQ(inconclusive.code, 3);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
+}
+
+TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
+    const Folder folder;
+    for (const std::string open : {"[", "{\"a\":"}) {
+        std::string deep = "{\"schema\":\"elastocheck/result/2\",\"scenes\":";
+        for (int k = 0; k < 100'000; ++k) deep += open;
+        const auto said = support::says(command + " report --from " + folder.write("deep.json", deep) +
+                                        " -o " + (folder.path / "out").string());
+        EXPECT_EQ(said.code, 2);
+        EXPECT_TRUE(contains(said.err, "deep.json: nested more than 64 deep")) << said.err;
+    }
 }
 
 TEST(ReportCommand, SaysWhatItNeeds) {

@@ -7,10 +7,10 @@
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
-#include "reports/document.hpp"
-#include "reports/order_tables.hpp"
-#include "reports/study_tables.hpp"
-#include "reports/trade_tables.hpp"
+#include "reports/document/document.hpp"
+#include "reports/tables/order_tables.hpp"
+#include "reports/tables/study_tables.hpp"
+#include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {

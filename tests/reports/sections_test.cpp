@@ -1,10 +1,10 @@
 // What a report says is a function of result.json, and a broken document is told by its broken field.
-#include "reports/sections/sections.hpp"
+#include "reports/page/sections/sections.hpp"
 
 #include <gtest/gtest.h>
 
-#include "reports/report.hpp"
-#include "reports/templates.hpp"
+#include "reports/page/report.hpp"
+#include "reports/page/templates.hpp"
 #include "tests/reports/result.hpp"
 
 namespace elastocheck::reports {

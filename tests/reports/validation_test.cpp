@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "models/compile.hpp"
-#include "reports/document.hpp"
-#include "reports/report.hpp"
+#include "reports/document/document.hpp"
+#include "reports/page/report.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/scenes.hpp"
 

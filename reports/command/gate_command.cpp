@@ -1,0 +1,312 @@
+#include "reports/command/gate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "reports/command/arguments.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/files/files.hpp"
+#include "reports/gate/baseline.hpp"
+#include "reports/gate/gate_report.hpp"
+#include "reports/text/escape.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using compare::ToleranceClass;
+
+struct GateOptions {
+    std::vector<std::string> scenes;
+    std::string folder, junit, summary, kind, from, reason;
+    bool accept = false;
+    std::function<void(std::string_view)> progress;
+};
+
+bool says_yes(const char* variable) {
+    const char* value = std::getenv(variable);
+    const std::string_view word = value == nullptr ? "" : value;
+    return !word.empty() && word != "false" && word != "0";
+}
+
+bool blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
+
+// A scene and the baseline that judges it.
+struct Task {
+    fs::path scene, baseline;
+    std::string no_scene;  // why no scene is known for this baseline
+};
+
+fs::path baseline_of(const fs::path& scene, const std::string& folder) {
+    return (folder.empty() ? scene.parent_path() / "baselines" : fs::path(folder)) /
+           (scene.stem().string() + ".json");
+}
+
+std::vector<Task> tasks(const GateOptions& options) {
+    std::vector<Task> all;
+    for (const auto& scene : options.scenes) all.push_back({scene, baseline_of(scene, options.folder), ""});
+    if (!all.empty()) return all;
+    const fs::path folder = options.folder.empty() ? "baselines" : options.folder;
+    std::error_code unreadable;
+    const auto entries = fs::directory_iterator(folder, unreadable);
+    if (unreadable && unreadable != std::errc::no_such_file_or_directory)
+        throw FileError(fmt::format("{}: cannot be read: {}", folder.string(), unreadable.message()));
+    for (const auto& entry : entries) {
+        if (entry.path().extension() != ".json") continue;
+        if (const std::string wrong = flaw(entry.path().filename().string()); !wrong.empty())
+            throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text",
+                                        (folder / for_terminal(entry.path().filename().string())).string(),
+                                        wrong));
+        try {
+            const BaselineFile file = parse_baseline(read_whole(entry.path()), entry.path().string());
+            all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
+        } catch (const std::runtime_error& error) {  // BaselineError, FileError
+            all.push_back({entry.path(), entry.path(), error.what()});
+        }
+    }
+    std::ranges::sort(all, {}, &Task::baseline);
+    if (all.empty())
+        complain("elastocheck: there is no baseline in {}; name a SCENE, or the folder with --baseline\n",
+                 folder.string());
+    return all;
+}
+
+// What this build measures of a scene, or what --from says that another did.
+BaselineFile measured(const Task& task, const GateOptions& options) {
+    if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
+    const Model model = compile(read_scene(task.scene));
+    check_memory(model, 0, static_cast<int>(compare::legs.size()), false);
+    compare::Options how;
+    if (options.progress)
+        how.progress = [&](std::string_view what) {
+            options.progress(fmt::format("{}: {}", task.scene.filename().string(), what));
+        };
+    BaselineFile file;
+    file.baseline.accepted = compare::measure(model, compare::compare(model, how));
+    if (options.progress) options.progress("");
+    file.scene_file =
+        fs::relative(task.scene, task.baseline.parent_path().empty() ? "." : task.baseline.parent_path())
+            .generic_string();
+    file.input_hash = input_hash(read_whole(task.scene));
+    file.provenance = provenance();
+    for (const auto kind : compare::tolerance_classes)
+        file.baseline.tolerances[kind] = compare::default_tolerances(kind);
+    return file;
+}
+
+GatedScene unjudged(const Task& task) {
+    GatedScene scene;
+    scene.file = task.scene.string();
+    scene.baseline_file = task.baseline.string();
+    return scene;
+}
+
+// Something of that name, be it a link that leads nowhere.
+bool is_there(const fs::path& file) {
+    std::error_code failed;
+    return fs::symlink_status(file, failed).type() != fs::file_type::not_found;
+}
+
+// The accepted baseline; without one the scene's verdict says why.
+std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
+    if (!is_there(task.baseline)) {
+        scene.verdict.reasons.push_back(
+            fmt::format("there is no baseline {}; 'elastocheck gate {} --accept --reason ...' makes one",
+                        task.baseline.string(), task.scene.string()));
+        return std::nullopt;
+    }
+    try {
+        BaselineFile file = parse_baseline(read_whole(task.baseline), task.baseline.string());
+        scene.accepted = file.baseline.accepted;
+        scene.reason = file.baseline.reason;
+        return file;
+    } catch (const std::runtime_error& error) {  // BaselineError, FileError: one scene's, not the whole run's
+        scene.verdict.reasons.emplace_back(error.what());
+        return std::nullopt;
+    }
+}
+
+void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced, GatedScene& scene) {
+    const BuildDistance apart = distance(was.provenance, is.provenance);
+    ToleranceClass kind = apart.kind;
+    scene.differs = apart.differs;
+    for (const auto wanted : compare::tolerance_classes)
+        if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
+    scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
+    if (was.input_hash != is.input_hash)
+        scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {})",
+                                          was.input_hash, is.input_hash));
+}
+
+GatedScene gate_scene(const Task& task, const GateOptions& options) {
+    GatedScene scene = unjudged(task);
+    if (!task.no_scene.empty()) {
+        scene.verdict.reasons.push_back(task.no_scene);
+        return scene;
+    }
+    try {
+        if (const auto was = accepted(task, scene)) {
+            judge(*was, measured(task, options), options.kind, scene);
+            // A baseline made in the same run would find itself right.
+            if (says_yes("CI"))
+                if (const std::string why = not_committed(task.baseline); !why.empty())
+                    scene.verdict.reasons.push_back(
+                        fmt::format("nobody can have reviewed {}: {}", task.baseline.string(), why));
+        } else {
+            compile(read_scene(task.scene));  // a bad scene is to be told apart from a missing baseline
+        }
+    } catch (const std::invalid_argument& error) {  // more than there is memory for
+        scene.bad_input = true;
+        scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));
+    } catch (const SceneError& error) {
+        scene.bad_input = true;
+        scene.verdict.reasons.emplace_back(error.what());
+    } catch (const BaselineError& error) {  // of --from
+        scene.verdict.reasons.emplace_back(error.what());
+    }
+    return scene;
+}
+
+// Prints what changes, then writes. What proves nothing is not accepted, nor is what breaks an absolute
+// limit: limits are changed by hand, where a review sees it.
+int accept_scene(const Task& task, const GateOptions& options) {
+    if (!task.no_scene.empty()) {
+        complain("elastocheck: {}\n", task.no_scene);
+        return could_not_judge;
+    }
+    GatedScene scene = unjudged(task);
+    const bool there = is_there(task.baseline);
+    const auto was = accepted(task, scene);
+    if (there && !was) {
+        complain("elastocheck: {}\nRestore or delete it first: its tolerances and limits would be lost.\n",
+                 scene.verdict.reasons.front());
+        return could_not_judge;
+    }
+    BaselineFile is = measured(task, options);
+    const auto& now = is.baseline.accepted;
+    std::vector<std::string> worthless = now.inconclusive;
+    for (const auto& s : now.series)
+        if (!std::ranges::all_of(s.values, [](double v) { return std::isfinite(v); }))
+            worthless.push_back(
+                fmt::format("branch '{}', {}: {} is not finite", s.branch, name(s.quantity), s.channel));
+    if (now.series.empty()) worthless.emplace_back("nothing was measured");
+    if (!worthless.empty()) {
+        complain("elastocheck: {}: nothing is accepted: {}\n", scene.file, fmt::join(worthless, "; "));
+        return could_not_judge;
+    }
+    is.baseline.reason = options.reason;
+    if (!was) {
+        print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
+    } else {
+        is.baseline.tolerances = was->baseline.tolerances;
+        is.baseline.limits = was->baseline.limits;
+        judge(*was, is, name(ToleranceClass::same_build), scene);
+        scene.differs = "every change beyond rounding";
+        print(gate_table(scene));
+        const bool over = std::ranges::any_of(scene.verdict.offences, &compare::Offence::of_limit);
+        if (over) {
+            print("{}: not accepted: an absolute limit is broken; limits are changed by hand, in {}\n",
+                  scene.file, task.baseline.string());
+            return limit_broken;
+        }
+        const auto text_without_reason = [](BaselineFile file) {
+            file.baseline.reason.clear();
+            file.provenance = {};
+            return baseline_text(file);
+        };
+        if (text_without_reason(*was) == text_without_reason(is) && !blank(was->baseline.reason)) {
+            print("{}: left as it is\n", task.baseline.string());
+            return fine;
+        }
+    }
+    write_whole(task.baseline, baseline_text(is), baseline_file);
+    print("{}: written\n", task.baseline.string());
+    return fine;
+}
+
+int accept(const GateOptions& options) {
+    if (says_yes("CI"))
+        throw std::invalid_argument(
+            "--accept: not where CI is set: a baseline is accepted by a person, and reviewed");
+    if (blank(options.reason))
+        throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
+    if (!options.from.empty())
+        throw std::invalid_argument("--accept: only what was measured here, not --from");
+    int code = fine;
+    const auto all = tasks(options);
+    for (const auto& task : all) {
+        const int of_scene = accept_scene(task, options);
+        if (code == fine || of_scene == limit_broken) code = of_scene;
+    }
+    return all.empty() ? could_not_judge : code;
+}
+
+int gate(const GateOptions& options) {
+    if (options.accept) return accept(options);
+    if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
+    if (!options.from.empty() && options.scenes.size() != 1)
+        throw std::invalid_argument("--from: needs exactly one SCENE");
+    // GitHub's file is there already, and other steps write to it too.
+    const char* given = std::getenv("GITHUB_STEP_SUMMARY");
+    const bool to_append = given != nullptr && !options.summary.empty() && options.summary == given;
+    if (!options.junit.empty()) check_may_write(options.junit, junit_file);
+    if (!options.summary.empty() && !to_append) check_may_write(options.summary, summary_file);
+    std::vector<GatedScene> scenes;
+    for (const auto& task : tasks(options)) {
+        scenes.push_back(gate_scene(task, options));
+        print(gate_table(scenes.back()));
+    }
+    print("{}\n", gate_conclusion(scenes));
+    if (says_yes("GITHUB_ACTIONS")) print(annotations(scenes));
+    if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
+    if (to_append)
+        append(options.summary, step_summary(scenes));
+    else if (!options.summary.empty())
+        write_whole(options.summary, step_summary(scenes), summary_file);
+    return exit_code(scenes);
+}
+
+}  // namespace
+
+GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progress) {
+    const auto options = std::make_shared<GateOptions>();
+    options->progress = std::move(progress);
+    auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
+    command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
+        ->check(a_name());
+    command
+        ->add_option("--baseline", options->folder,
+                     "folder of the baselines (default: baselines/ beside each SCENE, or here)")
+        ->check(a_name());
+    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_name());
+    command
+        ->add_option("--summary", options->summary,
+                     "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY")
+        ->check(a_name());
+    std::vector<std::string> kinds;
+    kinds.reserve(std::size(compare::tolerance_classes));
+    for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
+    command
+        ->add_option("--class", options->kind,
+                     "tolerances: same-build, cross-build or physical (default: by how the builds differ)")
+        ->check(CLI::IsMember(kinds).description(""));
+    command
+        ->add_option("--from", options->from,
+                     "judge this measurement (a file like a baseline); nothing is solved")
+        ->check(a_name());
+    command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
+    command->add_option("--reason", options->reason, "why, in words; with --accept");
+    return {command, [options] { return gate(*options); }};
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,202 @@
+// The elastocheck command.
+//
+// Exit codes: 0 fine · 1 a gate's limit is broken · 2 bad input · 3 could not judge · 4 a bug in here.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "models/reader/scene_file.hpp"
+#include "models/reader/words.hpp"
+#include "reports/command/arguments.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/gate_command.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/command/recursion_options.hpp"
+#include "reports/command/report_command.hpp"
+#include "reports/command/study_commands.hpp"
+#include "reports/document/field.hpp"
+#include "reports/document/measurement.hpp"
+#include "reports/document/provenance.hpp"
+#include "reports/files/files.hpp"
+#include "reports/page/gnuplot.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace {
+
+using namespace elastocheck;
+using namespace elastocheck::reports;
+
+// Says what CLI11 says, and after a word it does not know, the nearest one it does.
+int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+    std::string message = error.what();
+    const CLI::App* scope = &app;
+    std::vector<std::string> known;
+    if (!app.get_subcommands().empty()) scope = app.get_subcommands().front();
+    const bool in_command = scope != &app;
+    if (!in_command)
+        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
+            known.push_back(command->get_name());
+    for (const auto* option : scope->get_options())
+        if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+        dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+        for (int k = 1; k < argc; ++k) {
+            const std::string argument = argv[k], word = argument.substr(0, argument.find('='));
+            const bool option = word.starts_with("--");
+            if ((!in_command && k == 1 && !option) ||
+                (option && std::ranges::find(known, word) == known.end())) {
+                message = fmt::format("{} {}{}", option ? "unknown option" : "unknown command",
+                                      reader::quote(word), reader::did_you_mean(word, known, "known"));
+                break;
+            }
+        }
+    }
+    complain("elastocheck: {}\nelastocheck --help tells more.\n", message);
+    return bad_input;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{
+        "Can I trust my suspension solver? One scene, solved three ways that share nothing but the scene:\n"
+        "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy "
+        "minimisation.",
+        "elastocheck"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", provenance().version);
+    app.footer(
+        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 internal error.\n"
+        "Scene files are described in models/scenes/README.md.");
+
+    std::string scene, output;
+    // A leg, or a method of the recursion; its first one, the published, goes by the leg's name too.
+    std::vector<std::string> methods, rungs_of_recursion;
+    for (const auto leg : compare::legs) methods.emplace_back(name(leg));
+    for (const auto& rung : recursive::methods) {
+        methods.emplace_back(rung.name);
+        rungs_of_recursion.emplace_back(rung.name);
+    }
+    RecursionRequest recursion_request;
+    std::string method = "published", rates;
+
+    auto* inspect_command = app.add_subcommand(
+        "inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
+    auto* solve_command = app.add_subcommand("solve", "Solve a scene one way and print the curves as CSV");
+    auto* compare_command =
+        app.add_subcommand("compare", "Solve a scene all three ways and show how far apart they are");
+    auto* converge_command =
+        app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
+    auto* trade_command = app.add_subcommand(
+        "trade", "What accuracy costs: every method against both references, and a recommendation");
+    const GateCommand gate_command = add_gate(app, progress);
+    for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
+        command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_name());
+    for (auto* command : {solve_command, compare_command}) add_recursion_options(*command, recursion_request);
+    solve_command
+        ->add_option(
+            "--method", method,
+            "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive or "
+            "series; equilibrium; energy")
+        ->check(CLI::IsMember(methods).description(""));
+    compare_command
+        ->add_option(
+            "--method", method,
+            "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
+            "or series")
+        ->check(CLI::IsMember(rungs_of_recursion).description(""));
+    solve_command->add_flag("--arc-length", recursion_request.arc_length,
+                            "series: follow the path by arc length, through limit points");
+    solve_command
+        ->add_option("--rates", rates, "series: write the derivatives of travel and outputs to this CSV file")
+        ->check(a_name());
+    solve_command->add_option("-o,--output", output, "write the CSV to this file instead")->check(a_name());
+    compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv")
+        ->check(a_name());
+
+    std::vector<std::string> rungs{"published"}, known_rungs{"all"};
+    for (const auto& rung : recursive::methods)
+        if (!rung.adaptive) known_rungs.emplace_back(rung.name);
+    std::vector<int> levels;
+    converge_command
+        ->add_option("--method", rungs,
+                     "published (default), closed, balanced, tangent, chord, midpoint, series, or all")
+        ->delimiter(',')
+        ->check(CLI::IsMember(known_rungs).description(""));
+    converge_command
+        ->add_option("--steps", levels,
+                     "step counts per branch, at least five, increasing (default: 75,150,...,2400)")
+        ->delimiter(',')
+        ->check(CLI::Range(1, most_steps));
+    converge_command
+        ->add_option("-o,--output", output, "folder for result.json, convergence.csv and attribution.csv")
+        ->check(a_name());
+
+    std::string tolerance = "0.01mm,0.001deg";
+    trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
+    trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv")
+        ->check(a_name());
+
+    ReportRequest request;
+    const auto* report_command = add_report_command(app, request);
+
+    try {
+        check_words(argc, argv);
+        const std::string command = command_line(argc, argv);
+        app.parse(argc, argv);
+        if (*report_command) return report(request, command, progress);
+        if (*inspect_command) return inspect(scene);
+        if (*solve_command || *compare_command) {
+            const auto leg =
+                std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });
+            const bool reference = leg != compare::legs.end() && *leg != compare::Leg::recursive;
+            if (leg == compare::legs.end()) recursion_request.method = method;
+            const recursive::Options how = recursion(recursion_request);
+            if (!rates.empty() && !how.method.series)
+                throw std::invalid_argument("--rates: only with --method series");
+            if (*compare_command) return compare_legs(scene, how, output, command);
+            return solve(scene, reference ? *leg : compare::Leg::recursive, how, rates, output);
+        }
+        if (*gate_command.parsed) return gate_command.run();
+        if (*converge_command) return converge(scene, rungs, levels, output, command);
+        return trade(scene, tolerance, output, command);
+    } catch (const CLI::Success& done) {
+        return app.exit(done);
+    } catch (const CLI::ParseError& error) {
+        return explain(app, error, argc, argv);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const auto fail = [](Exit code, std::string_view what) -> int {
+        complain("elastocheck: {}{}\n", code == bug ? "internal error: " : "", what);
+        return code;
+    };
+    try {
+        const int code = run(argc, argv);
+        finish_printing();
+        return code;
+    } catch (const SceneError& error) {
+        return fail(bad_input, error.what());
+    } catch (const FileError& error) {
+        return fail(bad_input, error.what());
+    } catch (const ResultError& error) {
+        return fail(bad_input, error.what());
+    } catch (const MeasurementError& error) {
+        return fail(bad_input, error.what());
+    } catch (const PlotError& error) {
+        return fail(bad_input, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {  // loops of links, folders that are closed
+        return fail(bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
+    } catch (const std::invalid_argument& error) {
+        return fail(bad_input, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(bad_input, "more memory was asked for than there is; take fewer steps");
+    } catch (const std::exception& error) {
+        return fail(bug, error.what());
+    }
+}

@@ -1,0 +1,60 @@
+#include "reports/command/recursion_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "compare/trade.hpp"
+#include "reports/command/limits.hpp"
+
+namespace elastocheck::reports {
+
+void add_recursion_options(CLI::App& command, RecursionRequest& request) {
+    command.add_option("--steps", request.steps, "load steps per branch (default: as the scene says)")
+        ->check(CLI::Range(1, most_steps));
+    command.add_option("--tolerance", request.tolerance,
+                       "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)");
+    command.add_option("--order", request.order, "of the series (default: 16)")->check(CLI::Range(1, 60));
+    command.add_option("--expansions", request.expansions, "of the series, at most (default: 200)")
+        ->check(CLI::Range(1, 1'000'000));
+}
+
+recursive::Options recursion(const RecursionRequest& request) {
+    recursive::Options options;
+    options.method = recursive::find_method(request.method).value();
+    options.steps = request.steps;
+    const auto belongs = [&](bool given, bool has, std::string_view option, std::string_view to) {
+        if (given && !has)
+            throw std::invalid_argument(
+                fmt::format("{}: only with --method {}, not with {}", option, to, request.method));
+    };
+    belongs(!request.tolerance.empty(), !recursive::has_steps(options.method), "--tolerance",
+            "adaptive or series");
+    belongs(request.order > 0, options.method.series, "--order", "series");
+    belongs(request.expansions > 0, options.method.series, "--expansions", "series");
+    belongs(request.arc_length, options.method.series, "--arc-length", "series");
+    if (request.order > 0) options.series.order = request.order;
+    if (request.expansions > 0) options.series.expansions = request.expansions;
+    options.series.arc_length = request.arc_length;
+    if (!request.tolerance.empty()) {
+        const compare::Tolerance tolerance = compare::parse_tolerance(request.tolerance);
+        if (std::isfinite(tolerance.mm)) {
+            options.length_tolerance = options.series.tolerance = 1e-3 * tolerance.mm;
+            if (!std::isfinite(tolerance.deg)) options.angle_tolerance = options.length_tolerance;
+        }
+        if (std::isfinite(tolerance.deg)) {
+            if (options.method.series)
+                throw std::invalid_argument(
+                    "--tolerance: the series is told one length, such as 1e-9mm, which bounds positions and, "
+                    "times "
+                    "the model's size, angles");
+            options.angle_tolerance = tolerance.deg * std::numbers::pi / 180;
+        }
+    }
+    return options;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,197 @@
+#include "reports/command/report_command.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "compare/compare.hpp"
+#include "compare/order_study.hpp"
+#include "compare/precision.hpp"
+#include "compare/profile.hpp"
+#include "compare/study.hpp"
+#include "compare/trade.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/diagnosis.hpp"
+#include "reports/command/arguments.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/document/document.hpp"
+#include "reports/document/field.hpp"
+#include "reports/document/json.hpp"
+#include "reports/document/measurement.hpp"
+#include "reports/files/files.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/page/gnuplot.hpp"
+#include "reports/page/report.hpp"
+#include "reports/tables/order_tables.hpp"
+#include "reports/tables/study_tables.hpp"
+#include "reports/tables/trade_tables.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+using Progress = std::function<void(std::string_view)>;
+
+// The recommended configuration over the whole branch, for the figure that shows it inside the tolerance.
+json recommended(const Model& model, const compare::Trade& trade) {
+    if (!trade.recommendation) return nullptr;
+    const auto& point = trade.points[trade.recommendation->point];
+    json branches = json::array();
+    for (const auto& branch : model.branches) {
+        const auto profile = compare::profile(model, branch, point);
+        branches.push_back({{"name", branch.name},
+                            {"load", profile.load},
+                            {"error_mm", profile.mm},
+                            {"error_deg", profile.deg}});
+    }
+    json result = {{"method", point.method}};
+    if (point.steps > 0) result["steps"] = point.steps;
+    if (point.own_tolerance > 0) result["own_tolerance_m"] = point.own_tolerance;
+    result["branches"] = branches;
+    return result;
+}
+
+json solve_scene(const std::string& file, const ReportRequest& request, const Progress& progress) {
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
+    json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+
+    compare::Options options;
+    options.progress = tell;
+    const auto comparison = compare::compare(model, options);
+    add_comparison(document, scene, model, comparison);
+    auto reasons = reasons_of(comparison);
+    if (!request.measured.empty())
+        add_measurement(document, read_whole(request.measured), request.measured, model, comparison);
+
+    compare::StudyOptions study_options;
+    study_options.methods.clear();
+    for (const auto& method : recursive::methods)
+        if (recursive::has_steps(method)) study_options.methods.push_back(method);
+    study_options.progress = tell;
+    const auto study = compare::study(model, study_options);
+    document["convergence"] = study_json(study, compare::attribute_gap(model, tell));
+    for (const auto& reason : study.inconclusive)
+        if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
+
+    compare::TradeOptions trade_options;
+    trade_options.tolerance = compare::parse_tolerance(request.tolerance);
+    if (request.archive) trade_options.rounds = 0;
+    trade_options.progress = tell;
+    const auto trade = compare::trade(model, trade_options);
+    document["trade"] = trade_json(trade);
+    if (const json profile = recommended(model, trade); !profile.is_null()) document["recommended"] = profile;
+
+    document["orders"] = orders_json(compare::order_study(model, {.progress = tell}));
+
+    // A million steps, as `elastocheck trade` takes them, show more of round-off and take half a minute.
+    document["precision"] = precision_json(
+        compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
+    add_verdict(document, comparison.compared, reasons);
+    return document;
+}
+
+json read_alarms(const std::string& file) {
+    json alarms;
+    try {
+        alarms = parse_json(read_whole(file));
+    } catch (const JsonError& error) {
+        throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    }
+    if (!alarms.is_array())
+        throw std::invalid_argument(file + ": is not the results.json that ./dev mutate writes");
+    return alarms;
+}
+
+// What differs from run to run.
+void remove_times(json& value) {
+    if (value.is_object()) {
+        value.erase("seconds");
+        value.erase("cpu");
+    }
+    if (value.is_structured())
+        for (auto& entry : value) remove_times(entry);
+}
+
+}  // namespace
+
+CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
+    auto* command = app.add_subcommand(
+        "report", "Everything about one or more scenes as a page: verdict, figures, tables");
+    command->add_option("SCENE", request.scenes, "scene files (YAML)")->check(a_name());
+    command->add_option("--from", request.from, "draw from this result.json, without solving")
+        ->check(a_name());
+    command
+        ->add_option("-o,--output", request.folder,
+                     "folder for report.html, report.md, result.json, curves.csv, figures/")
+        ->required()
+        ->check(a_name());
+    command->add_option("--tolerance", request.tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
+    command
+        ->add_option("--alarms", request.alarms,
+                     "results.json of seeded faults (./dev mutate), to show which alarms ring")
+        ->check(a_name());
+    command
+        ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
+        ->check(a_name());
+    command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
+        ->check(CLI::IsMember({"svg", "pdf"}).description(""));
+    command->add_flag(
+        "--archive", request.archive,
+        "only what belongs in version control: README.md, numbers.csv, figures/*.svg, without times");
+    return command;
+}
+
+int report(const ReportRequest& request, const std::string& reproduce, const Progress& progress) {
+    if (request.from.empty() == request.scenes.empty())
+        throw std::invalid_argument("report: needs scene files or --from a result.json, one of the two");
+    if (!request.measured.empty() && request.scenes.size() != 1)
+        throw std::invalid_argument("report: --measured belongs to one scene; give one");
+    const auto start = std::chrono::steady_clock::now();
+    // What can be wrong is said before the work, not after it.
+    Staging::check(request.folder);
+    run_gnuplot(".", {"--version"});
+    (void)compare::parse_tolerance(request.tolerance);
+    for (const auto& scene : request.scenes)
+        check_memory(compile(read_scene(scene)), 0, static_cast<int>(compare::legs.size()), true);
+    if (!request.measured.empty()) (void)read_whole(request.measured);
+    if (!request.alarms.empty() && !request.from.empty())
+        throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
+    const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
+    std::string file = request.from;
+    json result;
+    if (!request.from.empty()) {
+        result = parse_result(read_whole(file), file);
+    } else {
+        file = "result.json";
+        result = document(reproduce, provenance());
+        for (const auto& scene : request.scenes)
+            result["scenes"].push_back(solve_scene(scene, request, progress));
+        if (!alarms.is_null()) result["alarms"] = alarms;
+        if (request.archive) remove_times(result);
+        result = json::parse(result.dump());  // as a reader of the file will see it: NaN is null
+    }
+    write_report(result, file, request.folder,
+                 {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
+    progress("");
+    int code = fine;
+    for (const auto& scene : result["scenes"])
+        if (!scene["verdict"]["conclusive"].get<bool>()) {
+            code = could_not_judge;
+            for (const auto& reason : scene["verdict"]["reasons"])
+                complain("{}: inconclusive: {}\n", scene["source"].get<std::string>(),
+                         reason.get<std::string>());
+        }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    print("{0}/{1}: {2} scene{3}, {4:.1f} s\n", request.folder, request.archive ? "README.md" : "report.html",
+
+          result["scenes"].size(), result["scenes"].size() == 1 ? "" : "s", elapsed.count());
+    return code;
+}
+
+}  // namespace elastocheck::reports

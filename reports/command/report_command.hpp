@@ -1,0 +1,29 @@
+// `elastocheck report`: everything the other commands find, as a page.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reports {
+
+struct ReportRequest {
+    std::vector<std::string> scenes;
+    std::string from;  // a result.json, in place of scenes
+    std::string folder;
+    std::string measured;  // CSV
+    std::string alarms;    // JSON, what `./dev mutate` found
+    std::string tolerance = "0.01mm,0.001deg";
+    std::string figures = "svg";
+    bool archive = false;
+};
+
+CLI::App* add_report_command(CLI::App& app, ReportRequest& request);
+
+// The exit code. `reproduce` is the command line as given; `progress` is told what is being done.
+int report(const ReportRequest& request, const std::string& reproduce,
+           const std::function<void(std::string_view)>& progress);
+
+}  // namespace elastocheck::reports

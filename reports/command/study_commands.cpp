@@ -1,0 +1,207 @@
+#include "reports/command/study_commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "compare/order_study.hpp"
+#include "compare/precision.hpp"
+#include "compare/rates.hpp"
+#include "compare/study.hpp"
+#include "compare/trade.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/diagnosis.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/document/curves.hpp"
+#include "reports/document/document.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/tables/comparison_tables.hpp"
+#include "reports/tables/csv.hpp"
+#include "reports/tables/inspection.hpp"
+#include "reports/tables/order_tables.hpp"
+#include "reports/tables/study_tables.hpp"
+#include "reports/tables/trade_tables.hpp"
+#include "reports/text/escape.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// result.json of one scene and the tables beside it, in one step.
+void write_results(const std::string& folder, const std::string& command, json part,
+                   std::vector<NamedContent> tables) {
+    json result = document(command, provenance());
+    result["scenes"].push_back(std::move(part));
+    std::string written;
+    if (result["scenes"][0].contains("branches"))
+        tables.insert(tables.begin(), {"curves.csv", curves_csv(json::parse(result.dump()), "result.json")});
+    tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
+    write_folder(folder, tables);
+    for (const auto& file : tables)
+        written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", folder, file.name);
+    print("Written: {}\n", written);
+}
+
+// The rates of a polynomial branch beside its curve: travel and main channels per unit of the load factor.
+std::string rates_csv(const Model& model, const recursive::Options& how) {
+    std::string csv = "branch,load factor,travel [mm per unit]";
+    for (const auto& channel : compare::channels(model))
+        if (channel.main)
+            csv += fmt::format(",{}",
+                               for_csv(fmt::format("{} [{} per unit]", channel.name, symbol(channel.unit))));
+    csv += "\n";
+    for (const auto& branch : model.branches) {
+        const auto path = recursive::series::follow(model, branch, how.series);
+        const int steps = how.steps > 0 ? how.steps : branch.steps;
+        for (int k = 0; k <= steps; ++k) {
+            const double load = branch.to * k / steps;
+            const auto place = recursive::series::find(path, load);
+            if (!place) break;
+            const auto rates = compare::channel_rates(model, branch, path, *place);
+            csv += fmt::format("{},{:.17g},{:.17g}", for_csv(branch.name), load, rates.travel);
+            for (const double slope : rates.slope) csv += fmt::format(",{:.17g}", slope);
+            csv += "\n";
+        }
+    }
+    return csv;
+}
+
+std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
+    std::vector<recursive::Method> methods;
+    for (const auto& method : recursive::methods)
+        if (recursive::has_steps(method) &&
+            (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
+            methods.push_back(method);
+    return methods;
+}
+
+}  // namespace
+
+int inspect(const std::string& file) {
+    const Model model = compile(read_scene(file));
+    print(inspection(model, recursive::diagnose(model)));
+    return fine;
+}
+
+int solve(const std::string& file, compare::Leg leg, const recursive::Options& how, const std::string& rates,
+          const std::string& output) {
+    if (!output.empty()) check_may_write(output, curves_file);
+    if (!rates.empty()) check_may_write(rates, rates_file);
+    const Model model = compile(read_scene(file));
+    check_memory(model, how.steps, 1, false);
+    std::string csv = curves_header(compare::channels(model));
+    int code = fine;
+    for (const auto& branch : model.branches) {
+        progress(branch.name);
+        const compare::LegRun run = compare::run(model, branch, leg, how);
+        csv += curves_rows(branch.name, run);
+        if (run.path.outcome == Outcome::converged) continue;
+        progress("");
+        complain("{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
+                 name(run.path.outcome), run.path.detail);
+        code = could_not_judge;
+    }
+    progress("");
+    if (!rates.empty()) write_whole(rates, rates_csv(model, how), rates_file);
+    if (output.empty())
+        print(csv);
+    else
+        write_whole(output, csv, curves_file);
+    return code;
+}
+
+int compare_legs(const std::string& file, const recursive::Options& how, const std::string& folder,
+                 const std::string& command) {
+    if (!folder.empty()) Staging::check(folder);
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    check_memory(model, how.steps, static_cast<int>(compare::legs.size()), !folder.empty());
+    compare::Options options;
+    options.recursion = how;
+    options.progress = progress;
+    const compare::Comparison comparison = compare::compare(model, options);
+    progress("");
+    print(tables(model, comparison));
+    if (!folder.empty()) {
+        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+        add_comparison(part, scene, model, comparison);
+        add_verdict(part, comparison.compared, reasons_of(comparison));
+        write_results(folder, command, std::move(part), {});
+    }
+    return comparison.conclusive() ? fine : could_not_judge;
+}
+
+int converge(const std::string& file, const std::vector<std::string>& names, const std::vector<int>& steps,
+             const std::string& folder, const std::string& command) {
+    if (!folder.empty()) Staging::check(folder);
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    if (!steps.empty()) check_memory(model, *std::ranges::max_element(steps), 1, false);
+    compare::StudyOptions options;
+    options.methods = methods_named(names);
+    if (!steps.empty()) options.steps = steps;
+    options.progress = progress;
+    compare::Study study;
+    std::vector<compare::BranchAttribution> attribution;
+    if (!options.methods.empty()) {
+        study = compare::study(model, options);
+        attribution = compare::attribute_gap(model, progress);
+    }
+    std::vector<compare::BranchOrders> orders;
+    if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
+        orders = compare::order_study(model, {.progress = progress});
+    progress("");
+    if (!options.methods.empty()) print(study_tables(model, study, attribution));
+    print(order_table(orders));
+    const bool conclusive =
+        (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
+    if (!folder.empty()) {
+        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+        std::vector<NamedContent> files;
+        if (!options.methods.empty()) {
+            part["convergence"] = study_json(study, attribution);
+            files.push_back({"convergence.csv", study_csv(study)});
+            files.push_back({"attribution.csv", attribution_csv(study, attribution)});
+        }
+        if (!orders.empty()) {
+            part["orders"] = orders_json(orders);
+            files.push_back({"orders.csv", orders_csv(orders)});
+        }
+        auto reasons = study.inconclusive;
+        if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
+        add_verdict(part, 0, reasons);
+        write_results(folder, command, std::move(part), std::move(files));
+    }
+    return conclusive ? fine : could_not_judge;
+}
+
+int trade(const std::string& file, const std::string& tolerance, const std::string& folder,
+          const std::string& command) {
+    if (!folder.empty()) Staging::check(folder);
+    const Scene scene = read_scene(file);
+    const Model model = compile(scene);
+    compare::TradeOptions options;
+    options.tolerance = compare::parse_tolerance(tolerance);
+    options.progress = progress;
+    const compare::Trade trade = compare::trade(model, options);
+    const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
+    progress("");
+    print("{}\n{}", trade_table(model, trade), precision_table(precision));
+    if (!folder.empty()) {
+        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+        part["trade"] = trade_json(trade);
+        part["precision"] = precision_json(precision);
+        add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
+                    trade.inconclusive);
+        write_results(folder, command, std::move(part),
+                      {{"trade.csv", trade_csv(trade)}, {"precision.csv", precision_csv(precision)}});
+    }
+    return trade.recommendation ? fine : could_not_judge;
+}
+
+}  // namespace elastocheck::reports

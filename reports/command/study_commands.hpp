@@ -1,0 +1,27 @@
+// The commands that look at one scene: inspect, solve, compare, converge, trade. Each returns the exit code;
+// what can be wrong with where it writes is said before the work.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/compare.hpp"
+#include "recursive/solve.hpp"
+
+namespace elastocheck::reports {
+
+int inspect(const std::string& scene);
+
+// CSV of the curves to `output`, or to standard output where that is empty; of their derivatives to `rates`.
+int solve(const std::string& scene, compare::Leg leg, const recursive::Options& how, const std::string& rates,
+          const std::string& output);
+
+// Where `folder` is empty nothing is written; else result.json with `command` in it, and CSV files.
+int compare_legs(const std::string& scene, const recursive::Options& how, const std::string& folder,
+                 const std::string& command);
+int converge(const std::string& scene, const std::vector<std::string>& methods, const std::vector<int>& steps,
+             const std::string& folder, const std::string& command);
+int trade(const std::string& scene, const std::string& tolerance, const std::string& folder,
+          const std::string& command);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,14 @@
+// The curves of a result.json as CSV, to plot again.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace elastocheck::reports {
+
+// Every point of every leg, one number a row, since scenes differ in their outputs:
+// scene,branch,leg,load factor,travel [mm],output,unit,value. Throws ResultError; `file` is where it was
+// read.
+std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file);
+
+}  // namespace elastocheck::reports

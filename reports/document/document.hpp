@@ -1,0 +1,40 @@
+// result.json: everything a comparison found, for machines and for later reports.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "compare/compare.hpp"
+#include "models/scene.hpp"
+#include "recursive/diagnosis.hpp"
+#include "reports/document/provenance.hpp"
+
+namespace elastocheck::reports {
+
+// Raised when a field changes its meaning or vanishes; new fields may appear without.
+inline constexpr const char* result_schema = "elastocheck/result/2";
+
+// Who made it, with what: commit, compiler, flags, processor, libraries.
+nlohmann::ordered_json provenance_json(const Provenance& provenance);
+
+// {schema, reproduce, provenance, scenes: [...]}. Lengths in mm, angles in deg, forces in N, moments in N·m,
+// as every key or neighbouring "unit" says. A number that is not finite is null. `reproduce` is the command
+// that made it.
+nlohmann::ordered_json document(const std::string& reproduce, const Provenance& provenance);
+
+// A scene in it: name, source, hash, model as compiled. What was computed is added by those below, each under
+// a key of its own; a part that was not asked for is absent.
+nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input, const Model& model,
+                                      const recursive::Diagnosis& diagnosis);
+
+// "channels" and "branches": every point of every leg, deviations, certificates; "drawing": where the
+// hardpoints are at the design position and along the branches.
+void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
+                    const compare::Comparison& comparison);
+
+// "verdict": whether all that was computed could be judged, on how many numbers, and why not.
+void add_verdict(nlohmann::ordered_json& scene_document, int numbers_compared,
+                 const std::vector<std::string>& reasons);
+std::vector<std::string> reasons_of(const compare::Comparison& comparison);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,39 @@
+// Reading result.json: one value with its place in the document, which every complaint names.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reports {
+
+// A result document cannot be used. what() reads "FILE: scenes[0].branches[1].legs: missing".
+struct ResultError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// The document and the file's name outlive the field.
+struct Field {
+    const nlohmann::ordered_json* value;
+    std::string path;  // empty for the whole document
+    const std::string* file;
+
+    [[noreturn]] void fail(const std::string& what) const;
+
+    Field operator[](std::string_view key) const;                // must be there
+    std::optional<Field> find(std::string_view key) const;       // nothing when absent or null
+    std::vector<std::pair<std::string, Field>> entries() const;  // of an object
+    std::vector<Field> items() const;                            // of an array
+
+    double number() const;  // NaN where the document says null
+    int whole() const;
+    bool truth() const;
+    std::string text() const;  // one line, fit to be shown (escape.hpp: flaw)
+    std::vector<double> numbers() const;
+    std::vector<std::string> texts() const;
+};
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,155 @@
+#include "reports/files/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void cannot(const fs::path& file, const char* what, int error = errno) {
+    throw FileError(fmt::format("{}: cannot be {}: {}", file.string(), what, std::strerror(error)));
+}
+
+std::string without_space(std::string_view text) {
+    std::string solid;
+    for (const char c : text)
+        if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) solid.push_back(c);
+    return solid;
+}
+
+bool begins_as(const fs::path& file, const FileKind& kind) {
+    std::string start(2 * kind.beginning.size() + 64, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(start.data(), static_cast<std::streamsize>(start.size()));
+    start.resize(static_cast<std::size_t>(in.gcount()));
+    return without_space(start).starts_with(without_space(kind.beginning));
+}
+
+const char* sort_of(const struct stat& entry) {
+    return S_ISLNK(entry.st_mode)    ? "a symbolic link"
+           : S_ISDIR(entry.st_mode)  ? "a folder"
+           : S_ISBLK(entry.st_mode)  ? "a block device"
+           : S_ISCHR(entry.st_mode)  ? "a character device"
+           : S_ISFIFO(entry.st_mode) ? "a pipe"
+           : S_ISSOCK(entry.st_mode) ? "a socket"
+                                     : "something";
+}
+
+// Writes all, flushes, closes; false with errno set where that fails.
+bool write_and_close(int out, std::string_view content) {
+    bool good = true;
+    while (good && !content.empty()) {
+        const ssize_t written = ::write(out, content.data(), content.size());
+        if (written < 0 && errno == EINTR) continue;
+        good = written > 0;
+        if (good) content.remove_prefix(static_cast<std::size_t>(written));
+    }
+    good = good && (::fsync(out) == 0 || errno == EINVAL);
+    const int error = errno;
+    const bool closed = ::close(out) == 0;
+    if (!good) errno = error;
+    return good && closed;
+}
+
+}  // namespace
+
+void check_may_write(const fs::path& file, const FileKind& kind) {
+    struct stat entry {};
+    if (::lstat(file.c_str(), &entry) != 0) {
+        // A folder that is not there will be made; one that cannot be looked into is an error now.
+        if (errno != ENOENT) cannot(file, "written");
+        return;
+    }
+    if (!S_ISREG(entry.st_mode))
+        throw FileError(
+            fmt::format("{}: is {}; only regular files are written", file.string(), sort_of(entry)));
+    if (!begins_as(file, kind))
+        throw FileError(
+            fmt::format("{}: is there, and is no {} that elastocheck wrote; choose another name, or "
+                        "remove it",
+                        file.string(), kind.name));
+}
+
+void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
+    std::error_code failed;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
+    if (failed)
+        throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+    check_may_write(file, kind);
+    fs::path temporary = file;
+    int out = -1;
+    for (int k = 0; out < 0; ++k) {
+        temporary.replace_filename(fmt::format(".{}.{}-{}.tmp", file.filename().string(), ::getpid(), k));
+        out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (out < 0 && errno != EEXIST) cannot(file, "written");
+    }
+    bool good = write_and_close(out, content);
+    if (good) {
+        // Where nothing was, nothing may have come meanwhile; where there was one of ours, it is replaced.
+        const bool is_new = !fs::exists(fs::symlink_status(file, failed));
+        good = ::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, file.c_str(),
+                           is_new ? RENAME_NOREPLACE : 0) == 0;
+        if (!good && errno == EINVAL)  // a file system without it
+            good = ::rename(temporary.c_str(), file.c_str()) == 0;
+    }
+    if (good) return;
+    const int error = errno;
+    ::unlink(temporary.c_str());
+    cannot(file, "written", error);
+}
+
+void append(const fs::path& file, std::string_view content) {
+    const int out = ::open(file.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    if (out < 0) cannot(file, "appended to");
+    struct stat entry {};
+    if (::fstat(out, &entry) != 0 || !S_ISREG(entry.st_mode)) {
+        ::close(out);
+        throw FileError(
+            fmt::format("{}: is {}; only regular files are written", file.string(), sort_of(entry)));
+    }
+    if (!write_and_close(out, content)) cannot(file, "appended to");
+}
+
+void fill(const fs::path& file, std::string_view content) {
+    std::error_code failed;
+    fs::create_directories(file.parent_path(), failed);
+    if (failed)
+        throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+    const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (out < 0 || !write_and_close(out, content)) cannot(file, "written");
+}
+
+std::string read_whole(const fs::path& file) {
+    const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    struct stat entry {};
+    if (in < 0 || ::fstat(in, &entry) != 0) cannot(file, "read");
+    std::string text;
+    bool good = S_ISREG(entry.st_mode) || S_ISFIFO(entry.st_mode);
+    if (!good) {
+        ::close(in);
+        throw FileError(fmt::format("{}: cannot be read: it is {}", file.string(), sort_of(entry)));
+    }
+    for (char buffer[1 << 16]; good;) {
+        const ssize_t count = ::read(in, buffer, sizeof buffer);
+        if (count == 0) break;
+        if (count < 0 && errno == EINTR) continue;
+        good = count > 0;
+        if (good) text.append(buffer, static_cast<std::size_t>(count));
+    }
+    const int error = errno;
+    ::close(in);
+    if (!good) cannot(file, "read", error);
+    return text;
+}
+
+}  // namespace elastocheck::reports

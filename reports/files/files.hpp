@@ -1,0 +1,46 @@
+// Files are written whole or not at all, never over what is not ours, and read whole.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace elastocheck::reports {
+
+// A file could not be read or written, or must not be; what() names it and says why.
+struct FileError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// A kind of file that the command writes where the user says, and how one of its own is told: by how it
+// begins, white space apart.
+struct FileKind {
+    std::string_view name, beginning;
+};
+inline constexpr FileKind curves_file{"curves", "branch,leg,load factor,"};
+inline constexpr FileKind rates_file{"rates", "branch,load factor,travel [mm per unit]"};
+inline constexpr FileKind baseline_file{"baseline", R"({"schema": "elastocheck/baseline/)"};
+inline constexpr FileKind junit_file{
+    "JUnit report", R"(<?xml version="1.0" encoding="UTF-8"?><testsuites name="elastocheck gate")"};
+inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
+
+// Throws FileError unless there is nothing at `file`, or a regular file that begins as its kind does: no
+// device, no link, no folder, nothing that somebody else wrote.
+void check_may_write(const std::filesystem::path& file, const FileKind& kind);
+
+// check_may_write, then writes `content` to a temporary name beside `file`, flushes it to the disk and
+// renames it; creates the folder when it is missing. Throws FileError; an older file of that name is then
+// untouched.
+void write_whole(const std::filesystem::path& file, std::string_view content, const FileKind& kind);
+
+// Adds to a regular file that is there already. Throws FileError.
+void append(const std::filesystem::path& file, std::string_view content);
+
+// Writes a file in a folder that nobody else knows of yet (folder.hpp). Throws FileError.
+void fill(const std::filesystem::path& file, std::string_view content);
+
+// The content of a file or a pipe; throws FileError.
+std::string read_whole(const std::filesystem::path& file);
+
+}  // namespace elastocheck::reports

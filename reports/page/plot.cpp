@@ -1,0 +1,135 @@
+#include "reports/page/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/files/files.hpp"
+#include "reports/page/gnuplot.hpp"
+#include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+constexpr int width = 440, height = 290;  // [px] of a figure, for the type to keep its size on a phone
+
+const char* style_of(Series::Style style) {
+    switch (style) {
+        case Series::Style::line: return "lines linewidth 1.8";
+        case Series::Style::wide: return "lines linewidth 4";
+        case Series::Style::dashed: return "lines linewidth 1.6 dashtype (6,4)";
+        case Series::Style::thin: return "lines linewidth 1.2";
+        case Series::Style::points: return "points linewidth 1.4 pointsize 0.75";
+        case Series::Style::line_points: return "linespoints linewidth 1.4 pointsize 0.7";
+        case Series::Style::rings: return "points linewidth 1.5 pointsize 1.3";
+        case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
+    }
+    return "lines";
+}
+
+json range_of(double low, double high) {
+    const auto end = [](double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "*"; };
+    return fmt::format("{}:{}", end(low), end(high));
+}
+
+json script_data(const Figure& figure, const std::string& name) {
+    json series = json::array(), bands = json::array(), ticks = json::array();
+    for (std::size_t k = 0; k < figure.series.size(); ++k) {
+        const Series& s = figure.series[k];
+        const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
+                            s.style == Series::Style::line_points;
+        constexpr int symbols[] = {7, 5, 9, 11, 13, 6, 7, 4, 6, 8};
+        series.push_back({{"index", k},
+                          {"title", s.title},
+                          {"style", style_of(s.style)},
+                          {"symbol", points ? json(symbols[s.mark % 10]) : json(nullptr)},
+                          {"colour", palette[s.colour].light},
+                          {"bars", s.style == Series::Style::bars},
+                          {"last", k + 1 == figure.series.size()}});
+    }
+    for (const auto& band : figure.bands)
+        bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
+                         {"high", fmt::format("{:.9g}", band.high)},
+                         {"label", band.label},
+                         {"colour", palette[band.colour].light}});
+    for (const auto& [at, text] : figure.y_ticks)
+        ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
+    return {{"name", name},
+            {"title", figure.title},
+            {"width", std::lround(width * figure.width)},
+            {"height", std::lround(height * figure.height)},
+            {"width_in", fmt::format("{:.2f}", width * figure.width / 96.0)},
+            {"height_in", fmt::format("{:.2f}", height * figure.height / 96.0)},
+            {"x", figure.x},
+            {"y", figure.y},
+            {"log_x", figure.log_x},
+            {"log_y", figure.log_y},
+            {"equal_axes", figure.equal_axes},
+            {"reversed_x", figure.reversed_x},
+            {"reversed_y", figure.reversed_y},
+            {"y_range", range_of(figure.y_low, figure.y_high)},
+            {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
+            {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
+            {"ticks", ticks},
+            {"series", series},
+            {"bands", bands},
+            {"ink", palette[ink].light},
+            {"slate", palette[slate].light},
+            {"faint", palette[faint].light}};
+}
+
+// One block per series, two blank lines between them, one where a line is broken.
+std::string figure_data(const Figure& figure) {
+    const bool bars = !figure.series.empty() && figure.series.front().style == Series::Style::bars;
+    std::string text = bars ? "series,x,y,x low,x high,y low,y high\n" : "series,x,y\n";
+    for (std::size_t k = 0; k < figure.series.size(); ++k) {
+        if (k > 0) text += "\n\n";
+        const std::string name = for_csv(figure.series[k].title);
+        bool broken = true;  // no blank line first, none twice
+        for (const auto& row : figure.series[k].rows) {
+            if (row.empty() && broken) continue;
+            broken = row.empty();
+            if (!row.empty()) text += name;
+            for (const double value : row) text += fmt::format(",{:.9g}", value);
+            text += "\n";
+        }
+        while (text.ends_with("\n\n")) text.pop_back();
+    }
+    return text;
+}
+
+}  // namespace
+
+std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
+                               const PlotOptions& options) {
+    const fs::path figures = folder / "figures";
+    std::vector<std::string> scripts;
+    for (const auto& [figure, name] : plots) {
+        fill(figures / (name + ".csv"), figure_data(*figure));
+        fill(figures / (name + ".gp"), render("figure.gp", script_data(*figure, name), Escape::gnuplot));
+        scripts.push_back("figures/" + name + ".gp");
+    }
+    if (scripts.empty()) return {};
+    run_gnuplot(folder, scripts);  // one process: each script begins by resetting everything
+    if (options.pdf) {
+        scripts.insert(scripts.begin(), {"-e", "pdf=1"});
+        run_gnuplot(folder, scripts);
+    }
+    std::vector<Illustration> pictures;
+    for (const auto& [figure, name] : plots) {
+        const fs::path svg = figures / (name + ".svg");
+        pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1), figure->title,
+                                      figure->description));
+        fill(svg, pictures.back().alone);
+        if (!options.keep_source)
+            for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));
+    }
+    return pictures;
+}
+
+}  // namespace elastocheck::reports

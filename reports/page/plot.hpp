@@ -1,0 +1,28 @@
+// Figures drawn by gnuplot, each from a script and data that stay beside it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "reports/page/page.hpp"
+#include "reports/page/svg.hpp"
+
+namespace elastocheck::reports {
+
+struct Plot {
+    const Figure* figure = nullptr;
+    std::string name;  // of its files, without an ending
+};
+
+struct PlotOptions {
+    bool pdf = false;         // PDF files too
+    bool keep_source = true;  // scripts and data
+};
+
+// Writes figures/NAME.svg with NAME.gp and NAME.csv into `folder`; one picture per plot. The k-th picture's
+// ids begin with "fk", counted from 1. Throws PlotError, FileError.
+std::vector<Illustration> draw(const std::vector<Plot>& plots, const std::filesystem::path& folder,
+                               const PlotOptions& options);
+
+}  // namespace elastocheck::reports

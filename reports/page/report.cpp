@@ -1,0 +1,294 @@
+#include "reports/page/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <list>
+#include <set>
+#include <sstream>
+
+#include "reports/document/curves.hpp"
+#include "reports/document/document.hpp"
+#include "reports/document/field.hpp"
+#include "reports/document/json.hpp"
+#include "reports/files/files.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/page/numbers.hpp"
+#include "reports/page/plot.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/sections.hpp"
+#include "reports/page/svg.hpp"
+#include "reports/page/templates.hpp"
+#include "reports/text/escape.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+// ---- the page
+
+json table_json(const Table& table) {
+    json columns = json::array(), rows = json::array();
+    for (const auto& column : table.columns)
+        columns.push_back({{"name", column.name}, {"words", column.words}});
+    for (const auto& row : table.rows) {
+        json cells = json::array();
+        for (std::size_t c = 0; c < row.size(); ++c)
+            cells.push_back({{"text", row[c]},
+                             {"words", c < table.columns.size() && table.columns[c].words},
+                             {"head", c == 0}});
+        rows.push_back({{"cells", cells}});
+    }
+    return {{"caption", table.caption}, {"columns", columns}, {"rows", rows}, {"folded", table.folded}};
+}
+
+// Sentences of a section, a paragraph each.
+json paragraphs(const Section& section) {
+    json list = json::array();
+    std::istringstream lines(render("text/" + section.id, section.words, Escape::nothing));
+    for (std::string line; std::getline(lines, line);) {
+        while (!line.empty() && line.front() == ' ') line.erase(0, 1);
+        if (!line.empty()) list.push_back(line);
+    }
+    return list;
+}
+
+// A scene, its sections, and what its files and ids are called.
+struct ScenePart {
+    Field scene;
+    std::string id;
+    std::vector<Section> sections;
+    std::vector<Plot> plots{};
+};
+
+struct Page {
+    std::set<std::string> names{};
+    std::vector<Illustration> pictures{};
+    std::size_t next = 0;
+
+    std::string unique(const std::string& wanted) {
+        std::string name = wanted;
+        for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}-{}", wanted, n);
+        return name;
+    }
+
+    ScenePart part(const Field& scene) {
+        ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
+                       sections_of(scene)};
+        for (const auto& section : part.sections)
+            for (const auto& group : section.figures)
+                for (const auto& figure : group.figures)
+                    part.plots.push_back({&figure, unique(fmt::format("{}-{}", part.id, figure.id))});
+        return part;
+    }
+
+    json figure(const Plot& plot) {
+        return {{"name", plot.name},
+                {"title", plot.figure->title},
+                {"description", plot.figure->description},
+                {"svg", pictures.at(next++).inlined}};
+    }
+
+    json section(const Section& section, const ScenePart& part, std::size_t& plot) {
+        json single = json::array(), several = json::array(), tables = json::array();
+        for (const auto& group : section.figures) {
+            json figures = json::array();
+            for (std::size_t k = 0; k < group.figures.size(); ++k)
+                figures.push_back(figure(part.plots.at(plot++)));
+            json entry = {
+                {"caption", group.caption}, {"figures", figures}, {"table", table_json(group.table)}};
+            entry["wide"] = group.figures.size() > 1;
+            (group.figures.size() > 1 ? several : single).push_back(entry);
+        }
+        for (const auto& table : section.tables) tables.push_back(table_json(table));
+        json groups = single;
+        for (const auto& entry : several) groups.push_back(entry);
+        json tiles = section.words.contains("tiles") ? section.words["tiles"] : json::array();
+        json all = paragraphs(section);
+        return {
+            {"id", unique(fmt::format("{}-{}", part.id, section.id))},
+            {"title", section.title},
+            {"verdict", section.id == "verdict"},
+            {"paragraphs", all},
+            {"lead", all.empty() ? json("") : all[0]},
+            {"rest", all.size() > 1 ? json(std::vector<json>(all.begin() + 1, all.end())) : json::array()},
+            {"has_tiles", !tiles.empty()},
+            {"tiles", tiles},
+            {"has_figures", !groups.empty()},
+            {"groups", groups},
+            {"tables", tables}};
+    }
+
+    json scene(const ScenePart& part) {
+        json sections = json::array();
+        std::size_t plot = 0;
+        for (const auto& one : part.sections) sections.push_back(section(one, part, plot));
+        return {{"id", part.id},
+                {"name", part.scene["name"].text()},
+                {"conclusive", part.scene["verdict"]["conclusive"].truth()},
+                {"sections", sections}};
+    }
+};
+
+// Several scenes at a glance: what each one's verdict carries.
+Table summary(const std::list<ScenePart>& parts) {
+    Table table{
+        .caption = "At a glance: the published recursion against the references, and what to use instead",
+        .columns = {{"scene", true},
+                    {"verdict", true},
+                    {"worst at equal travel"},
+                    {"worst at equal load"},
+                    {"full load over travel, error"},
+                    {"cheapest within the tolerance", true}}};
+    for (const auto& part : parts) {
+        std::vector<std::string> row{part.scene["name"].text(), part.scene["verdict"]["conclusive"].truth()
+                                                                    ? "conclusive"
+                                                                    : "inconclusive"};
+        for (const char* key : {"travel", "load", "rate", "chosen"}) {
+            std::string cell = "–";
+            for (const auto& section : part.sections)
+                if (section.id == "verdict")
+                    for (const auto& tile : section.words["tiles"])
+                        if (tile["key"] == key) cell = tile["value"];
+            row.push_back(cell);
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+json provenance(const Field& result) {
+    const Field p = result["provenance"];
+    Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
+    table.rows = {{"elastocheck", p["elastocheck"].text()},
+                  {"commit", p["commit"].text() + (p["dirty"].truth() ? ", with uncommitted changes" : "")},
+                  {"compiler", p["compiler"].text()},
+                  {"flags", p["flags"].text()}};
+    if (const auto cpu = p.find("cpu")) table.rows.push_back({"CPU", cpu->text()});
+    for (const auto& [name, version] : p["libraries"].entries()) table.rows.push_back({name, version.text()});
+    for (const auto& scene : result["scenes"].items())
+        table.rows.push_back({scene["source"].text(), "hash " + scene["input_hash"].text()});
+    return table_json(table);
+}
+
+// Faults that were put into a copy of the code, and the alarm that rang first.
+json alarms(const Field& result) {
+    const auto found = result.find("alarms");
+    if (!found) return nullptr;
+    Table table{.caption = "Seeded faults, and the first alarm to ring",
+                .columns = {{"fault", true},
+                            {"in", true},
+                            {"what it simulates", true},
+                            {"first to ring", true},
+                            {"margin"},
+                            {"alarms"}},
+                .rows = {},
+                .folded = true};
+    int survived = 0;
+    for (const auto& fault : found->items()) {
+        const std::string first = fault["first"].text(), margin = fault["margin"].text();
+        survived += first.empty();
+        table.rows.push_back({fault["fault"].text(), fault["in"].text(), fault["simulates"].text(),
+                              first.empty() ? "survived" : first, margin.empty() ? "–" : margin,
+                              whole_number(fault["alarms"].whole())});
+    }
+    return {{"count", table.rows.size()},
+            {"survived", survived == 0 ? json("none") : json(survived)},
+            {"table", table_json(table)}};
+}
+
+}  // namespace
+
+std::string numbers_csv(const json& result, const std::string& file) {
+    std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
+    const Field root{&result, "", &file};
+    const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
+                         const char* quantity, double value, double tolerance) {
+        csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
+                           for_csv(fs::path(scene["source"].text()).stem().string()),
+                           for_csv(branch["name"].text()), for_csv(channel.name), for_csv(channel.unit),
+                           quantity, value, tolerance);
+    };
+    for (const auto& scene : root["scenes"].items())
+        for (const auto& branch : scene["branches"].items()) {
+            const LegCurve truth = curve_of(branch, "equilibrium");
+            for (const auto& channel : main_channels_of(scene)) {
+                const auto values = truth.channel(channel.name);
+                const auto load = branch["deviation"]["at_equal_load"]["channels"].find(channel.name);
+                if (values.empty() || !load) continue;
+                // The references agree to far better; a deviation carries the rounding of its many steps.
+                const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
+                row(scene, branch, channel, "equilibrium at full load", values.back(), fine);
+                row(scene, branch, channel, "published at equal load: deviation at full load",
+                    (*load)["end"].number(), coarse);
+                row(scene, branch, channel, "published at equal load: largest deviation",
+                    (*load)["max"].number(), coarse);
+                if (const auto travel = branch["deviation"]["at_equal_travel"]["channels"].find(channel.name))
+                    row(scene, branch, channel, "published at equal travel: largest deviation",
+                        (*travel)["max"].number(), coarse);
+            }
+        }
+    return csv;
+}
+
+json parse_result(std::string_view text, const std::string& file) {
+    json result;
+    const Field root{&result, "", &file};
+    try {
+        result = parse_json(text);
+    } catch (const JsonError& error) {
+        root.fail(error.what());
+    }
+    const Field schema = root["schema"];
+    if (schema.text() != result_schema)
+        schema.fail(
+            fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
+                        "that made it again",
+                        schema.text(), result_schema));
+    if (root["scenes"].items().empty()) root["scenes"].fail("there is no scene in it");
+    return result;
+}
+
+void write_report(const json& result, const std::string& file, const fs::path& folder,
+                  const ReportOptions& options) {
+    Staging staging(folder);
+    const Field root{&result, "", &file};
+    Page page;
+    std::list<ScenePart> parts;  // plots point into them
+    std::vector<Plot> plots;
+    for (const auto& scene : root["scenes"].items()) {
+        parts.push_back(page.part(scene));
+        plots.insert(plots.end(), parts.back().plots.begin(), parts.back().plots.end());
+    }
+    if (options.progress) options.progress(fmt::format("{} figures", plots.size()));
+    page.pictures = draw(plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    json scenes = json::array();
+    for (const auto& part : parts) scenes.push_back(page.scene(part));
+    json tints = json::array();
+    for (std::size_t k = 0; k < palette.size(); ++k)
+        tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
+    const json data = {
+        {"title", scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
+        {"several", scenes.size() > 1},
+        {"scenes", scenes},
+        {"summary", table_json(summary(parts))},
+        {"provenance", provenance(root)},
+        {"reproduce", for_terminal(root["reproduce"].text())},
+        {"alarms", alarms(root)},
+        {"tints", tints}};
+    const std::string markdown = render("markdown/page", data, Escape::markdown);
+    if (options.archive) {
+        fill(staging.path() / "README.md", markdown);
+        fill(staging.path() / "numbers.csv", numbers_csv(result, file));
+    } else {
+        fill(staging.path() / "report.html", render("html/page", data, Escape::html));
+        fill(staging.path() / "report.md", markdown);
+        fill(staging.path() / "result.json", result.dump(1) + "\n");
+        fill(staging.path() / "curves.csv", curves_csv(result, file));
+    }
+    staging.publish();
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,121 @@
+#include "reports/page/sections/common.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+
+namespace elastocheck::reports {
+
+std::string ChannelInfo::label() const {
+    std::string text = name;
+    std::ranges::replace(text, '_', ' ');
+    return text;
+}
+
+std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label(), unit); }
+
+std::vector<ChannelInfo> channels_of(const Field& scene) {
+    std::vector<ChannelInfo> all;
+    for (const auto& c : scene["channels"].items())
+        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(), c["unique"].truth()});
+    return all;
+}
+
+std::vector<ChannelInfo> main_channels_of(const Field& scene) {
+    auto all = channels_of(scene);
+    std::erase_if(all, [](const ChannelInfo& c) { return !c.main; });
+    return all;
+}
+
+LegCurve curve_of(const Field& branch, std::string_view leg) {
+    const Field legs = branch["legs"];
+    for (const auto& run : legs.items()) {
+        if (run["leg"].text() != leg) continue;
+        const Field curve = run["curve"];
+        LegCurve found{std::string(leg), curve["load"].numbers(), curve["travel_mm"].numbers(),
+                       curve["values"]};
+        if (!found.travel.empty() && found.travel.size() != found.load.size())
+            curve["travel_mm"].fail("not as many numbers as loads");
+        for (const auto& [name, values] : found.values.entries())
+            if (values.value->size() != found.load.size()) values.fail("not as many numbers as loads");
+        return found;
+    }
+    legs.fail(fmt::format("no leg '{}'", leg));
+}
+
+std::vector<Sweep> sweeps_of(const Field& scene) {
+    std::vector<Sweep> sweeps;
+    const auto same_load = [](const Field& a, const Field& b) {
+        return a["load_unit"].text() == b["load_unit"].text() && a["loads"].texts() == b["loads"].texts() &&
+               a["to"].number() * b["to"].number() < 0;
+    };
+    for (const auto& branch : scene["branches"].items()) {
+        Sweep* twin = nullptr;
+        for (auto& sweep : sweeps)
+            if (sweep.branches.size() == 1 && same_load(sweep.branches.front(), branch)) twin = &sweep;
+        const std::string name = branch["name"].text();
+        if (twin == nullptr) {
+            sweeps.push_back({name, branch["load_unit"].text(), {branch}});
+        } else {
+            twin->name += " and " + name;
+            twin->branches.push_back(branch);
+        }
+    }
+    return sweeps;
+}
+
+std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
+    std::vector<std::size_t> kept;
+    if (size == 0) return kept;
+    count = std::min(size, count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t at = count == 1 ? size - 1 : k * (size - 1) / (count - 1);
+        kept.push_back(at);
+    }
+    return kept;
+}
+
+double largest(const std::vector<double>& values) {
+    double most = 0;
+    for (const double value : values) {
+        if (!std::isfinite(value)) return value;
+        most = std::max(most, std::abs(value));
+    }
+    return most;
+}
+
+std::string enumerated(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t k = 0; k < words.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+    return text;
+}
+
+std::string configuration(const Field& chosen) {
+    const std::string method = chosen["method"].text();
+    if (const auto steps = chosen.find("steps"))
+        return fmt::format("{}, {} steps", method, whole_number(steps->whole()));
+    if (const auto own = chosen.find("own_tolerance_m"))
+        return fmt::format("{}, told {}", method, setting(1e3 * own->number(), "mm"));
+    return method + " leg";
+}
+
+std::string slug(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        const bool plain = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
+        if (plain)
+            result.push_back(lower);
+        else if (!result.empty() && result.back() != '-')
+            result.push_back('-');
+    }
+    if (result.size() > 40) result.resize(40);
+    while (!result.empty() && result.back() == '-') result.pop_back();
+    return result.empty() ? "x" : result;
+}
+
+}  // namespace elastocheck::reports

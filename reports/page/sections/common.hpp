@@ -1,0 +1,54 @@
+// What several sections need of a scene in result.json.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/document/field.hpp"
+#include "reports/page/page.hpp"
+
+namespace elastocheck::reports {
+
+struct ChannelInfo {
+    std::string name, unit;
+    bool main = true, unique = true;
+
+    bool angle() const { return unit == "deg"; }
+    std::string label() const;    // "wheel centre y"
+    std::string heading() const;  // "wheel centre y [mm]"
+};
+std::vector<ChannelInfo> channels_of(const Field& scene);
+std::vector<ChannelInfo> main_channels_of(const Field& scene);
+
+// One leg's curve over one branch.
+struct LegCurve {
+    std::string leg;
+    std::vector<double> load, travel;  // travel [mm], empty where there is none
+    Field values;
+
+    std::vector<double> channel(const std::string& name) const { return values[name].numbers(); }
+};
+LegCurve curve_of(const Field& branch, std::string_view leg);
+
+// Branches that are one sweep out from the design position both ways share a plot.
+struct Sweep {
+    std::string name;       // "jounce and rebound"
+    std::string load_unit;  // "N"
+    std::vector<Field> branches;
+};
+std::vector<Sweep> sweeps_of(const Field& scene);
+
+// Up to `count` positions evenly over 0 ... size - 1, both ends among them.
+std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
+
+double largest(const std::vector<double>& values);  // in size; NaN where one is
+
+// "a", "a and b", "a, b and c"
+std::string enumerated(const std::vector<std::string>& words);
+
+// "tangent, 60 steps"; "adaptive, told 0.1 mm"; "equilibrium leg". Of a point or a recommendation.
+std::string configuration(const Field& chosen);
+
+std::string slug(const std::string& text);  // for ids and file names: a-z, 0-9, -
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,161 @@
+// The outputs over the travel, all legs: the paper's Figs. 8-10, and the load with them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/measured.hpp"
+#include "reports/page/sections/sections.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+// What is drawn: an output, as it is or as its change since the design position.
+struct Output {
+    std::string id, title, axis, channel;
+    bool change = false;
+    bool load = false;  // the load itself
+};
+
+std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
+    std::vector<Output> outputs;
+    const auto channels = main_channels_of(scene);
+    const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.name == "toe"; });
+    const bool travel = !curve_of(sweep.branches.front(), "equilibrium").travel.empty();
+    if (wheel) {
+        outputs.push_back({"toe", "Toe angle", "toe angle [deg]", "toe"});
+        outputs.push_back({"camber", "Camber angle", "camber angle [deg]", "camber"});
+        outputs.push_back(
+            {"lateral", "Lateral movement", "wheel centre, change of y [mm]", "wheel_centre_y", true});
+    }
+    for (const auto& c : channels) {
+        if (wheel && (c.name.starts_with("wheel_centre") || c.angle())) continue;
+        outputs.push_back(
+            {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
+    }
+    if (travel)
+        outputs.push_back({"load", wheel ? "Wheel rate" : "Load", fmt::format("load [{}]", sweep.load_unit),
+                           "", false, true});
+    return outputs;
+}
+
+// Below 1e-9 of a mm or deg it is the arithmetic's.
+std::string value(double x, int digits = 5) { return std::abs(x) < 1e-9 ? "0" : number(x, digits); }
+
+std::vector<double> values_of(const LegCurve& curve, const Output& output) {
+    if (output.load) return curve.load;
+    auto values = curve.channel(output.channel);
+    if (output.change && !values.empty())
+        for (const double first = values.front(); double& v : values) v -= first;
+    return values;
+}
+
+std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const Output& output) {
+    Series reference{"equilibrium", Series::Style::wide, sky},
+        energy{"energy", Series::Style::points, ink, 6},
+        published{"published recursion", Series::Style::line, vermilion};
+    Table table;
+    table.folded = true;
+    std::vector<std::pair<double, std::vector<std::string>>> rows;
+    const auto measured = measured_series(scene, output.load ? "load" : output.channel, output.change);
+    const bool fourth = measured && !output.load;  // a column of its own
+    bool travel = false;
+    double most = 0;
+    for (const auto& branch : sweep.branches) {
+        for (auto* series : {&reference, &energy, &published}) {
+            const char* leg = series == &reference ? "equilibrium"
+                              : series == &energy  ? "energy"
+                                                   : "recursive";
+            const LegCurve curve = curve_of(branch, leg);
+            const auto values = values_of(curve, output);
+            const auto& x = curve.travel.empty() ? curve.load : curve.travel;
+            if (!series->rows.empty() && series != &energy) series->rows.emplace_back();
+            for (const auto k : thinned(values.size(), series == &energy ? 6 : 41))
+                series->rows.push_back({x[k], values[k]});
+            if (series == &reference && !values.empty()) most = std::max(most, largest(values));
+        }
+        const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
+                       e = curve_of(branch, "energy");
+        travel = travel || !a.travel.empty();
+        const auto va = values_of(a, output), vb = values_of(b, output), ve = values_of(e, output);
+        for (const auto k : thinned(a.load.size(), 6)) {
+            if (k == 0 && !rows.empty()) continue;
+            std::vector<std::string> row{number(a.load[k], 4)};
+            if (output.load) {
+                for (const auto* c : {&a, &e, &b})
+                    row.push_back(k < c->travel.size() ? number(c->travel[k], 5) : "–");
+            } else {
+                if (!a.travel.empty()) row.push_back(number(a.travel[k], 4));
+                for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
+                if (fourth)
+                    row.push_back(a.travel.empty() ? "–" : value(value_between(*measured, a.travel[k])));
+            }
+            rows.emplace_back(a.load[k], row);
+        }
+    }
+    if (rows.empty() || most < 1e-9) return std::nullopt;  // it does not move
+    std::ranges::sort(rows, {}, [](const auto& row) { return row.first; });
+    for (auto& [load, row] : rows) table.rows.push_back(std::move(row));
+    table.columns = {{fmt::format("load [{}]", sweep.load_unit)}};
+    if (travel && !output.load) table.columns.push_back({"travel [mm]"});
+    const std::string unit = output.load ? " travel [mm]" : "";
+    for (const char* leg : {"equilibrium", "energy", "published recursion"})
+        table.columns.push_back({leg + unit});
+    if (fourth) table.columns.push_back({"measured"});
+    table.caption = output.load ? fmt::format("Travel at equal load, {}", sweep.name)
+                                : fmt::format("{}, at equal load, {}", output.axis, sweep.name);
+
+    Figure figure{.id = fmt::format("{}-{}", output.id, slug(sweep.name)),
+                  .title = output.title,
+                  .description = {},
+                  .x = travel ? "travel [mm]" : fmt::format("load [{}]", sweep.load_unit),
+                  .y = output.axis};
+    figure.series = {reference, energy, published};
+    if (measured) figure.series.push_back(*measured);
+    const auto [low, high] = std::ranges::minmax_element(
+        reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
+    figure.description = fmt::format(
+        "{} over {}: by the equilibrium leg from {} to {}. The energy leg's points lie on its line; the "
+        "published recursion's line is drawn over it.",
+        output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
+        number(high->empty() ? 0 : (*high)[1], 3));
+    return FigureGroup{fmt::format("{} over {}, {}.", output.title, travel ? "travel" : "load", sweep.name),
+                       {figure},
+                       table};
+}
+
+// Every main output at the end of a branch, per leg.
+Table outputs(const Field& scene, const Field& branch) {
+    Table table{
+        .caption = fmt::format("Outputs at full load ({} {}), branch {}", number(branch["to"].number(), 4),
+                               branch["load_unit"].text(), branch["name"].text()),
+        .columns = {{"output", true}, {"published recursion"}, {"equilibrium"}, {"energy"}}};
+    for (const auto& channel : channels_of(scene)) {
+        if (!channel.main) continue;
+        std::vector<std::string> row{channel.heading()};
+        for (const char* leg : {"recursive", "equilibrium", "energy"}) {
+            const auto values = curve_of(branch, leg).channel(channel.name);
+            row.push_back(values.empty() ? "–" : value(values.back(), 7));
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+}  // namespace
+
+std::optional<Section> curves_section(const Field& scene) {
+    if (!scene.find("branches")) return std::nullopt;
+    Section section{.id = "curves", .title = "Outputs, all legs"};
+    for (const auto& sweep : sweeps_of(scene))
+        for (const auto& output : outputs_of(scene, sweep))
+            if (auto made = group(scene, sweep, output)) section.figures.push_back(std::move(*made));
+    for (const auto& branch : scene["branches"].items()) section.tables.push_back(outputs(scene, branch));
+    section.words["wheel"] =
+        std::ranges::any_of(main_channels_of(scene), [](const auto& c) { return c.name == "toe"; });
+    return section;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,257 @@
+// How far the recursion is off along the branches, against the tolerance and against what can be known.
+#include "compare/deviation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/sections.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+// Worst over some channels, point by point: of leg `b` from leg `a`. NaN where nothing can be compared.
+using Profile = std::vector<double>;
+
+void raise(double& worst, double value) {
+    value = std::abs(value);
+    if (std::isnan(worst) || std::isnan(value))
+        worst = NAN;
+    else
+        worst = std::max(worst, value);
+}
+
+Profile equal_load(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
+    Profile profile(std::min(a.load.size(), b.load.size()), 0.0);
+    for (const auto& channel : channels) {
+        const auto u = a.channel(channel.name), v = b.channel(channel.name);
+        for (std::size_t k = 0; k < profile.size(); ++k) raise(profile[k], v[k] - u[k]);
+    }
+    return profile;
+}
+
+bool monotone(const std::vector<double>& x) {
+    return x.size() >= 2 && (std::ranges::adjacent_find(x, std::greater_equal{}) == x.end() ||
+                             std::ranges::adjacent_find(x, std::less_equal{}) == x.end());
+}
+
+Profile equal_travel(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
+    if (!monotone(a.travel) || !monotone(b.travel)) return {};
+    const auto [low, high] = std::minmax(b.travel.front(), b.travel.back());
+    Profile profile(a.travel.size(), 0.0);
+    for (const auto& channel : channels) {
+        const auto u = a.channel(channel.name), v = b.channel(channel.name);
+        for (std::size_t k = 0; k < profile.size(); ++k) {
+            const bool reached = a.travel[k] >= low && a.travel[k] <= high;
+            raise(profile[k], reached ? compare::interpolate(b.travel, v, a.travel[k], 6) - u[k] : NAN);
+        }
+    }
+    return profile;
+}
+
+// A logarithm has no place for zero and NaN: the line is broken there. Ends are kept, the rest thinned.
+void append(Series& series, const std::vector<double>& load, const Profile& profile) {
+    if (!series.rows.empty()) series.rows.emplace_back();
+    for (const auto k : thinned(profile.size(), 60))
+        if (profile[k] >= 0) series.rows.push_back({load[k], profile[k]});
+}
+
+struct Curves {
+    Series load{"published, at equal load", Series::Style::line, vermilion};
+    Series travel{"published, at equal travel", Series::Style::line, blue};
+    Series recommended{"", Series::Style::line, green};
+    Series references{"references apart", Series::Style::thin, slate};
+};
+
+// Of what was compared; points that the other leg does not reach are NaN.
+void raise_peak(double& most, const Profile& profile) {
+    for (const double value : profile)
+        if (value > most) most = value;
+}
+
+// The worst deviation per unit: a figure with its table.
+std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::string_view unit) {
+    auto channels = main_channels_of(scene);
+    std::erase_if(channels, [&](const ChannelInfo& c) { return c.unit != unit; });
+    if (channels.empty()) return std::nullopt;
+    const bool angle = unit == "deg";
+    Curves curves;
+    Table table;
+    table.columns = {{fmt::format("load [{}]", sweep.load_unit)},
+                     {fmt::format("published, equal load [{}]", unit)},
+                     {fmt::format("published, equal travel [{}]", unit)}};
+    const auto recommended = scene.find("recommended");
+    if (recommended) {
+        curves.recommended.title = configuration(*recommended) + ", at equal load";
+        table.columns.push_back({fmt::format("{} [{}]", configuration(*recommended), unit)});
+    }
+    table.columns.push_back({fmt::format("references apart [{}]", unit)});
+
+    double high = 1e-9, load_peak = 0, travel_peak = 0, apart = 0;
+    bool complete = true;  // both references went all the way
+    std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
+    for (const auto& branch : sweep.branches) {
+        const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
+                       e = curve_of(branch, "energy");
+        const Profile by_load = equal_load(a, b, channels), by_travel = equal_travel(a, b, channels),
+                      doubt = equal_load(a, e, channels);
+        raise_peak(load_peak, by_load);
+        raise_peak(travel_peak, by_travel);
+        raise_peak(apart, doubt);
+        complete = complete && doubt.size() == by_load.size() && doubt.size() > 1;
+        append(curves.load, a.load, by_load);
+        append(curves.travel, a.load, by_travel);
+        append(curves.references, a.load, doubt);
+        Profile rung;
+        std::vector<double> rung_load;
+        if (recommended)
+            for (const auto& own : (*recommended)["branches"].items()) {
+                if (own["name"].text() != branch["name"].text()) continue;
+                rung_load = own["load"].numbers();
+                rung = own[angle ? "error_deg" : "error_mm"].numbers();
+                append(curves.recommended, rung_load, rung);
+            }
+        const auto rows = thinned(by_load.size(), 7);
+        for (const auto k : rows) {
+            if (k == 0 && !rows_by_load.empty()) continue;
+            std::vector<std::string> row{number(a.load[k], 4), number(by_load[k]),
+                                         k < by_travel.size() ? number(by_travel[k]) : "–"};
+            if (recommended) {
+                std::size_t nearest = 0;
+                for (std::size_t l = 0; l < rung.size(); ++l)
+                    if (std::abs(rung_load[l] - a.load[k]) < std::abs(rung_load[nearest] - a.load[k]))
+                        nearest = l;
+                const bool same = !rung.empty() &&
+                                  std::abs(rung_load[nearest] - a.load[k]) <= 1e-9 * std::abs(a.load.back());
+                row.push_back(same ? number(rung[nearest]) : "–");
+            }
+            row.push_back(k < doubt.size() ? number(doubt[k]) : "–");
+            rows_by_load.emplace_back(a.load[k], row);
+        }
+    }
+    std::ranges::sort(rows_by_load, {}, [](const auto& row) { return row.first; });
+    for (auto& [load, row] : rows_by_load) table.rows.push_back(std::move(row));
+    Figure figure{.id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
+                  .title = angle ? "Angles: worst deviation" : "Positions: worst deviation",
+                  .x = fmt::format("load [{}]", sweep.load_unit),
+                  .y = fmt::format("deviation from equilibrium [{}]", unit),
+                  .log_y = true,
+                  .height = 1.12};
+    std::vector<std::string> names;
+    names.reserve(channels.size());
+    for (const auto& c : channels) names.push_back(c.label());
+    for (const auto* series : {&curves.load, &curves.travel, &curves.recommended})
+        for (const auto& row : series->rows)
+            if (row.size() == 2) high = std::max(high, row[1]);
+    double tolerance = NAN;
+    if (const auto trade = scene.find("trade"))
+        if (const auto asked = (*trade)["tolerance"].find(std::string(unit))) tolerance = asked->number();
+    if (std::isfinite(tolerance)) high = std::max(high, tolerance);
+    // Six decades hold everything that matters; what is below touches the lower edge.
+    figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
+    double best = 0;  // what is recommended may be far better still, and belongs in the picture
+    for (const auto& row : curves.recommended.rows)
+        if (row.size() == 2 && std::isfinite(row[1])) best = std::max(best, row[1]);
+    if (best > 0) figure.y_low = std::min(figure.y_low, std::pow(10, std::floor(std::log10(best)) - 1));
+    for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
+        for (auto& row : series->rows)
+            if (row.size() == 2) row[1] = std::max(row[1], figure.y_low);
+        const bool seen = std::ranges::any_of(
+            series->rows, [&](const auto& row) { return row.size() == 2 && row[1] > figure.y_low; });
+        if (seen) figure.series.push_back(*series);
+    }
+    if (figure.series.empty()) return std::nullopt;
+    figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.5)));
+    if (std::isfinite(tolerance))
+        figure.bands.push_back({figure.y_low, tolerance, "within " + setting(tolerance, unit)});
+    const std::string agreement =
+        complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
+                 : "The references did not both go all the way.";
+    figure.description = fmt::format(
+        "Logarithmic plot over the load from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
+        "published at equal load up to {}{}{}. {}",
+        number(sweep.branches.back()["to"].number(), 4), number(sweep.branches.front()["to"].number(), 4),
+        sweep.load_unit, enumerated(names), quantity(load_peak, unit),
+        curves.travel.rows.empty() ? "" : ", at equal travel up to " + quantity(travel_peak, unit),
+        std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
+    table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
+    table.folded = true;
+    return FigureGroup{fmt::format("Worst of {}. {}", enumerated(names), agreement), {figure}, table};
+}
+
+// Below 1e-9 it is the arithmetic's.
+std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
+
+// One row per channel worth it: main ones, and of each joint the force and moment component that is worst.
+Table deviations(const Field& scene, const Field& branch) {
+    Table table{.caption =
+                    fmt::format("Deviation of the published recursion from the equilibrium leg, branch {}",
+                                branch["name"].text())};
+    const std::string load_unit = branch["load_unit"].text();
+    table.columns = {
+        {"output", true}, {"range"}, {"max at equal load"},   {fmt::format("at [{}]", load_unit)},
+        {"rms"},          {"share"}, {"max at equal travel"}, {"at [mm]"},
+        {"rms"},          {"share"}, {"references apart"}};
+    const Field load = branch["deviation"]["at_equal_load"]["channels"];
+    const Field travel = branch["deviation"]["at_equal_travel"]["channels"];
+    const Field doubt = branch["reference_uncertainty"]["at_equal_load"]["channels"];
+    struct Row {
+        ChannelInfo channel;
+        double max;
+    };
+    std::vector<Row> rows;
+    for (const auto& channel : channels_of(scene)) {
+        const auto d = load.find(channel.name);
+        if (!d) continue;
+        const double max = (*d)["max"].number();
+        const auto joint = channel.name.substr(0, channel.name.find('.'));
+        if (!channel.main && !rows.empty() && rows.back().channel.name.starts_with(joint + ".") &&
+            rows.back().channel.unit == channel.unit) {
+            if (max > rows.back().max) rows.back() = {channel, max};
+        } else {
+            rows.push_back({channel, max});
+        }
+    }
+    std::erase_if(rows, [](const Row& r) { return !r.channel.main && r.max < 1e-6; });
+    for (const auto& [channel, max] : rows) {
+        const Field d = load[channel.name];
+        std::vector<std::string> row{channel.heading(),
+                                     number(d["range"].number(), 4),
+                                     deviation_number(d["signed_max"].number()),
+                                     number(d["at"].number(), 4),
+                                     small(d["rms"].number()),
+                                     percent(max / d["range"].number())};
+        if (const auto t = travel.find(channel.name)) {
+            row.insert(row.end(),
+                       {deviation_number((*t)["signed_max"].number()), number((*t)["at"].number(), 4),
+                        small((*t)["rms"].number()), percent((*t)["max"].number() / (*t)["range"].number())});
+        } else {
+            row.insert(row.end(), {"–", "–", "–", "–"});
+        }
+        const auto u = doubt.find(channel.name);
+        row.push_back(u ? number((*u)["max"].number(), 2) : "–");
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+}  // namespace
+
+std::optional<Section> deviation_section(const Field& scene) {
+    if (!scene.find("branches")) return std::nullopt;
+    Section section{.id = "deviation", .title = "Deviation over the branch"};
+    for (const auto& sweep : sweeps_of(scene))
+        for (const char* unit : {"mm", "deg"})
+            if (auto made = group(scene, sweep, unit)) section.figures.push_back(std::move(*made));
+    for (const auto& branch : scene["branches"].items()) {
+        section.tables.push_back(deviations(scene, branch));
+        const std::string why = branch["deviation"]["at_equal_travel"]["not_compared"].text();
+        if (!why.empty()) section.words["notes"].push_back({{"branch", branch["name"].text()}, {"why", why}});
+    }
+    return section;
+}
+
+}  // namespace elastocheck::reports

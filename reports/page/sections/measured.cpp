@@ -1,0 +1,74 @@
+#include "reports/page/sections/measured.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/sections.hpp"
+
+namespace elastocheck::reports {
+
+std::optional<Series> measured_series(const Field& scene, const std::string& channel, bool change) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    const auto travel = (*measured)["columns"].find("travel_mm");
+    const auto column = (*measured)["columns"].find(channel == "load" ? "load_N" : channel);
+    if (!travel || !column) return std::nullopt;
+    const auto x = travel->numbers(), y = column->numbers();
+    if (x.size() != y.size()) column->fail("not as many numbers as travel_mm");
+    double first = 0;
+    if (change) {
+        const auto start = (*measured)["design"].find(channel);
+        if (start) first = start->number();
+    }
+    Series series{"measured", Series::Style::rings, purple, 5};
+    for (std::size_t k = 0; k < x.size(); ++k) series.rows.push_back({x[k], y[k] - first});
+    return series;
+}
+
+double value_between(const Series& measured, double x) {
+    auto rows = measured.rows;
+    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]) || !std::isfinite(row[1]); });
+    std::ranges::sort(rows);
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+        const auto &a = rows[k - 1], &b = rows[k];
+        if (a[0] <= x && x <= b[0] && a[0] < b[0]) return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+    }
+    return NAN;
+}
+
+std::optional<Section> measured_section(const Field& scene) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    Section section{.id = "measured", .title = "Against the measurement"};
+    section.words = {{"file", (*measured)["file"].text()},
+                     {"hash", (*measured)["hash"].text()},
+                     {"points", (*measured)["points"].whole()}};
+    for (const auto& reading : (*measured)["readings"].items()) {
+        Table table{.caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
+                    .columns = {{"output", true},
+                                {"points"},
+                                {"published recursion, max"},
+                                {"rms"},
+                                {"equilibrium, max"},
+                                {"rms"},
+                                {"energy, max"},
+                                {"rms"}}};
+        for (const auto& row : reading["channels"].items()) {
+            std::vector<std::string> cells{fmt::format("{} [{}]", row["channel"].text(), row["unit"].text()),
+                                           whole_number(row["compared"].whole())};
+            for (const char* leg : {"recursive", "equilibrium", "energy"}) {
+                cells.push_back(signed_number(row[leg]["signed_max"].number()));
+                cells.push_back(number(row[leg]["rms"].number(), 2));
+            }
+            table.rows.push_back(cells);
+        }
+        section.tables.push_back(std::move(table));
+    }
+    return section;
+}
+
+}  // namespace elastocheck::reports

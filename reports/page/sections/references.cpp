@@ -1,0 +1,86 @@
+// Why the references can be believed: what each one's states leave in the others' equations.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/sections.hpp"
+
+namespace elastocheck::reports {
+
+std::optional<Section> references_section(const Field& scene) {
+    if (!scene.find("branches")) return std::nullopt;
+    Section section{.id = "references", .title = "The references, certified"};
+    Table agreement{.caption = "How far the energy leg is from the equilibrium leg, worst over the branch",
+                    .columns = {{"branch", true},
+                                {"positions [mm]"},
+                                {"angles [deg]"},
+                                {"forces [N]"},
+                                {"moments [N·m]"},
+                                {"numbers compared"}}};
+    Table judged{.caption = "What a leg’s states leave in another leg’s equations, worst over the points",
+                 .columns = {{"branch", true},
+                             {"states of", true},
+                             {"judged by", true},
+                             {"force [N]"},
+                             {"moment [N·m]"},
+                             {"constraint [mm]"}}};
+    Table work{.caption = "How each leg ended, and its work",
+               .columns = {{"branch", true},
+                           {"leg", true},
+                           {"outcome", true},
+                           {"points"},
+                           {"factorisations"},
+                           {"iterations"},
+                           {"evaluations"}}};
+    bool times = false;
+    for (const auto& branch : scene["branches"].items())
+        for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
+    if (times) work.columns.push_back({"time [ms]"});
+    const auto channels = channels_of(scene);
+    for (const auto& branch : scene["branches"].items()) {
+        const std::string name = branch["name"].text();
+        const Field apart = branch["reference_uncertainty"]["at_equal_load"];
+        std::vector<std::string> row{name};
+        int compared = 0;
+        for (const char* unit : {"mm", "deg", "N", "N·m"}) {
+            double worst = -1;
+            for (const auto& channel : channels) {
+                const auto d = apart["channels"].find(channel.name);
+                if (channel.unit != unit || !d) continue;
+                compared += (*d)["compared"].whole();
+                const double max = (*d)["max"].number();
+                if (std::isnan(max) || max > worst) worst = max;
+                if (std::isnan(worst)) break;
+            }
+            row.push_back(worst < 0 ? "–" : number(worst, 2));
+        }
+        row.push_back(whole_number(compared));
+        agreement.rows.push_back(row);
+        for (const auto& leg : branch["legs"].items()) {
+            for (const auto& [by, residuals] : leg["residuals_by"].entries())
+                if (by != leg["leg"].text())
+                    judged.rows.push_back({name, leg["leg"].text(), by,
+                                           number(residuals["force_N"].number(), 2),
+                                           number(residuals["moment_Nm"].number(), 2),
+                                           number(residuals["constraint_mm"].number(), 2)});
+            const std::string detail = leg["detail"].text();
+            std::vector<std::string> cells{
+                name, leg["leg"].text(),
+                detail.empty() ? leg["outcome"].text() : fmt::format("{}: {}", leg["outcome"].text(), detail),
+                whole_number(static_cast<long>(leg["curve"]["load"].items().size()))};
+            for (const char* count : {"factorisations", "iterations", "evaluations"})
+                cells.push_back(whole_number(leg["counts"][count].whole()));
+            if (times) cells.push_back(number(1e3 * leg["seconds"].number()));
+            work.rows.push_back(cells);
+        }
+        for (const auto& reason : branch["inconclusive"].texts())
+            section.words["reasons"].push_back(fmt::format("{}: {}", name, reason));
+    }
+    judged.folded = true;
+    section.tables = {agreement, judged, work};
+    return section;
+}
+
+}  // namespace elastocheck::reports

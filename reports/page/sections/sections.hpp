@@ -1,0 +1,30 @@
+// The sections of a scene's report, in order. A later result becomes one more function here, one more text
+// template, and one more line in sections.cpp.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "reports/document/field.hpp"
+#include "reports/page/page.hpp"
+
+namespace elastocheck::reports {
+
+// Each makes its section from one scene of result.json, or nothing when the scene has nothing for it. Throws
+// ResultError where the document lacks something it should have.
+std::optional<Section> verdict_section(const Field& scene);
+std::optional<Section> deviation_section(const Field& scene);
+std::optional<Section> price_section(const Field& scene);
+std::optional<Section> drawing_section(const Field& scene);
+std::optional<Section> curves_section(const Field& scene);
+std::optional<Section> measured_section(const Field& scene);
+std::optional<Section> convergence_section(const Field& scene);
+std::optional<Section> attribution_section(const Field& scene);
+std::optional<Section> orders_section(const Field& scene);
+std::optional<Section> arithmetic_section(const Field& scene);
+std::optional<Section> references_section(const Field& scene);
+std::optional<Section> model_section(const Field& scene);
+
+std::vector<Section> sections_of(const Field& scene);
+
+}  // namespace elastocheck::reports

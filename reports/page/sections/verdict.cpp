@@ -1,0 +1,271 @@
+// The answer: sentences made of the numbers.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/sections.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double nothing = 1e-9;  // mm, deg: smaller deviations are the arithmetic's
+
+struct Worst {
+    std::string branch, channel, unit;
+    double max = -1, end = 0, range = 0;
+
+    double share() const { return max / range; }
+    std::string text() const { return quantity(max, unit); }
+    json words() const {
+        return {{"value", text()}, {"channel", channel}, {"branch", branch}, {"share", percent(share())}};
+    }
+};
+
+// Over all branches, of the main channels in this unit. A deviation that is not finite is the worst.
+std::optional<Worst> worst_of(const Field& scene, const char* reading, std::string_view unit) {
+    std::optional<Worst> worst;
+    for (const auto& branch : scene["branches"].items()) {
+        const Field deviations = branch["deviation"][reading]["channels"];
+        for (const auto& channel : main_channels_of(scene)) {
+            const auto d = deviations.find(channel.name);
+            if (channel.unit != unit || !d) continue;
+            const double max = (*d)["max"].number();
+            if (worst && (std::isnan(worst->max) || max <= worst->max)) continue;
+            worst = Worst{branch["name"].text(), channel.label(),       channel.unit, max,
+                          (*d)["end"].number(),  (*d)["range"].number()};
+        }
+    }
+    return worst;
+}
+
+// How far the recursion's full load over travel is off the reference's, where it is worst.
+struct Rate {
+    std::string branch;
+    double off = 0;          // share of the reference's rate, signed
+    double travel = 0;       // difference of travel at full load [mm], signed
+    bool everywhere = true;  // it could be read on every branch
+};
+std::optional<Rate> rate_of(const Field& scene) {
+    std::optional<Rate> worst;
+    bool everywhere = true;
+    for (const auto& branch : scene["branches"].items()) {
+        const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive");
+        const bool whole = !a.travel.empty() && a.travel.size() == b.travel.size();
+        const double off = whole ? a.travel.back() / b.travel.back() - 1 : NAN;
+        everywhere = everywhere && std::isfinite(off);
+        if (!std::isfinite(off)) continue;
+        if (!worst || std::abs(off) > std::abs(worst->off))
+            worst = Rate{branch["name"].text(), off, b.travel.back() - a.travel.back()};
+    }
+    if (worst) worst->everywhere = everywhere;
+    return worst;
+}
+
+// Branches that the recursion did not get through.
+json failures(const Field& scene) {
+    json list = json::array();
+    for (const auto& branch : scene["branches"].items())
+        for (const auto& leg : branch["legs"].items())
+            if (leg["leg"].text() == "recursive" && leg["outcome"].text() != "converged")
+                list.push_back({{"branch", branch["name"].text()}, {"outcome", leg["outcome"].text()}});
+    return list;
+}
+
+// What part of the deviation at full load is the formulation's, of the position that is worst there.
+json gap_words(const Field& scene) {
+    const auto study = scene.find("convergence");
+    if (!study) return nullptr;
+    double worst = nothing, gap = NAN, band = NAN;
+    std::string unit, label;
+    for (const auto& branch : (*study)["branches"].items())
+        for (const auto& method : branch["methods"].items()) {
+            if (method["method"].text() != "published") continue;
+            for (const auto& entry : method["at_equal_load"].items()) {
+                for (const auto& compared : scene["branches"].items()) {
+                    if (compared["name"].text() != branch["name"].text()) continue;
+                    const auto d =
+                        compared["deviation"]["at_equal_load"]["channels"].find(entry["channel"].text());
+                    if (!d || entry["unit"].text() != "mm") continue;
+                    const double end = (*d)["end"].number();
+                    if (!(std::abs(end) > std::abs(worst))) continue;
+                    worst = end;
+                    gap = entry["gap"].number();
+                    band = entry["band"].number();
+                    unit = entry["unit"].text();
+                }
+            }
+        }
+    if (!std::isfinite(gap)) return nullptr;
+    const double share = gap / worst;
+    json words = {
+        {"value", quantity(std::abs(gap), unit)}, {"share", percent(share)}, {"share_number", share}};
+    if (std::abs(gap) <= std::max(band, nothing))
+        words["none"] = true;
+    else if (share < 0)
+        words["opposite"] = true;
+    else if (share > 1.1)
+        words["hidden"] = true;
+    else if (share > 0.9)
+        words["nearly_all"] = true;
+    else if (share < 0.1)
+        words["hardly_any"] = true;
+    else
+        words["part"] = true;
+    return words;
+}
+
+// What it was off at most, on the ladder and when it was run again, and what the references leave open.
+std::string held(const Field& chosen) {
+    std::string text;
+    for (const char* unit : {"mm", "deg"}) {
+        const auto found = chosen["expected_error"].find(unit), again = chosen["confirmed_error"].find(unit);
+        if (!found || !again) continue;
+        if (!text.empty()) text += " and ";
+        text += quantity(std::max(found->number(), again->number()), unit);
+    }
+    return text;
+}
+
+// "1/86" of the reference's time, or "1.4 times" it.
+std::string time_ratio(double ratio) {
+    if (ratio < 0.7) return fmt::format("1/{:.0f} of", 1 / ratio);
+    return fmt::format("{} times", number(ratio, 2));
+}
+
+json recommendation_words(const Field& scene, std::vector<json>& tiles) {
+    const auto trade = scene.find("trade");
+    if (!trade) return nullptr;
+    const Field tolerance = (*trade)["tolerance"];
+    std::vector<std::string> asked;
+    for (const char* unit : {"mm", "deg"})
+        if (const auto t = tolerance.find(unit)) asked.push_back(setting(t->number(), unit));
+    json words = {{"asked", enumerated(asked)}};
+    const auto chosen = trade->find("recommendation");
+    if (!chosen) {
+        words[(*trade)["inconclusive"].items().empty() ? "none" : "unjudged"] = true;
+        return words;
+    }
+    words["found"] = {{"text", configuration(*chosen)},
+                      {"method", (*chosen)["method"].text()},
+                      {"holds", held(*chosen)},
+                      {"numbers", whole_number((*chosen)["confirmed_numbers"].whole())}};
+    if (const auto steps = chosen->find("steps"))
+        words["found"]["steps"] = whole_number(steps->whole());
+    else if (const auto own = chosen->find("own_tolerance_m"))
+        words["found"]["own"] = setting(1e3 * own->number(), "mm");
+    words["found"]["factorisations"] = [&] {
+        const auto all = (*trade)["points"].items();
+        const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
+        if (at >= all.size()) (*chosen)["position"].fail("no such point");
+        return whole_number(all[at]["factorisations"].whole());
+    }();
+    const double ratio = (*chosen)["time_ratio"].number();
+    if (std::isfinite(ratio)) words["found"]["time"] = time_ratio(ratio);
+    tiles.push_back(
+        {{"key", "chosen"},
+         {"value", configuration(*chosen)},
+         {"label", fmt::format("cheapest within {}: holds {}", enumerated(asked), held(*chosen))}});
+    return words;
+}
+
+// How far the references disagree, over all branches, where they could be compared.
+std::optional<double> disagreement(const Field& scene, std::string_view unit) {
+    std::optional<double> worst;
+    for (const auto& branch : scene["branches"].items()) {
+        const Field found = branch["reference_uncertainty"]["at_equal_load"]["channels"];
+        for (const auto& channel : main_channels_of(scene)) {
+            const auto d = found.find(channel.name);
+            if (channel.unit != unit || !d) continue;
+            const double max = (*d)["max"].number();
+            if (!worst || std::isnan(max) || max > *worst) worst = max;
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+std::optional<Section> verdict_section(const Field& scene) {
+    Section section{.id = "verdict", .title = "Verdict"};
+    json& words = section.words;
+    std::vector<json> tiles;
+    const Field verdict = scene["verdict"];
+    words["conclusive"] = verdict["conclusive"].truth();
+    words["reasons"] = verdict["reasons"].texts();
+    words["numbers"] = whole_number(verdict["numbers_compared"].whole());
+    if (scene.find("branches")) {
+        json published = nullptr;
+        std::vector<int> steps;
+        for (const auto& branch : scene["branches"].items()) {
+            const auto points = curve_of(branch, "recursive").load.size();
+            const int count = points > 0 ? static_cast<int>(points) - 1 : 0;
+            if (std::ranges::find(steps, count) == steps.end()) steps.push_back(count);
+        }
+        const bool wheel = [&] {
+            for (const auto& c : main_channels_of(scene))
+                if (c.name == "toe") return true;
+            return false;
+        }();
+        const auto load_mm = worst_of(scene, "at_equal_load", "mm");
+        const auto load_deg = worst_of(scene, "at_equal_load", "deg");
+        const auto travel_mm = worst_of(scene, "at_equal_travel", "mm");
+        const auto travel_deg = worst_of(scene, "at_equal_travel", "deg");
+        if (load_mm || load_deg) {
+            std::vector<std::string> counts;
+            counts.reserve(steps.size());
+            for (const int count : steps) counts.push_back(whole_number(count));
+            published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
+            const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
+            published["exact"] = exact;
+            const auto rate = rate_of(scene);
+            if (!exact && published["failed"].empty()) {
+                const auto& travel = travel_deg ? travel_deg : travel_mm;
+                const auto& load = load_mm ? load_mm : load_deg;
+                published["load"] = load->words();
+                if (travel && rate) {
+                    published["travel"] = travel->words();
+                    published["travel"]["exact"] = travel->max < nothing;
+                    published["but"] = !(std::abs(rate->off) <= 10 * travel->share());
+                    published["rate"] = {{"value", percent(std::abs(rate->off))},
+                                         {"soft", rate->off < 0},
+                                         {"only", rate->everywhere ? json(nullptr) : json(rate->branch)},
+                                         {"travel", quantity(std::abs(rate->travel), "mm")}};
+                }
+                published["gap"] = gap_words(scene);
+            }
+            if (travel_deg && travel_deg->max >= nothing)
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_deg->text()},
+                                 {"label", fmt::format("{}, worst at equal travel", travel_deg->channel)}});
+            else if (travel_mm && travel_mm->max >= nothing)
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_mm->text()},
+                                 {"label", fmt::format("{}, worst at equal travel", travel_mm->channel)}});
+            if (load_mm)
+                tiles.push_back({{"key", "load"},
+                                 {"value", load_mm->text()},
+                                 {"label", fmt::format("{}, worst at equal load", load_mm->channel)}});
+            if (rate)
+                tiles.push_back({{"key", "rate"},
+                                 {"value", percent(rate->off)},
+                                 {"label", wheel ? "wheel rate (full load over travel), error"
+                                                 : "full load over travel, error"}});
+        }
+        words["published"] = published;
+        std::vector<std::string> agreement;
+        for (const char* unit : {"mm", "deg"})
+            if (const auto d = disagreement(scene, unit)) agreement.push_back(quantity(*d, unit));
+        if (!agreement.empty()) words["agreement"] = enumerated(agreement);
+    }
+    words["recommendation"] = recommendation_words(scene, tiles);
+    if (const auto measured = scene.find("measured"))
+        words["measured"] = {{"file", (*measured)["file"].text()}, {"points", (*measured)["points"].whole()}};
+    words["tiles"] = tiles;
+    return section;
+}
+
+}  // namespace elastocheck::reports

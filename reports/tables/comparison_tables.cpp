@@ -1,0 +1,153 @@
+#include "reports/tables/comparison_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Channel;
+using compare::Leg;
+
+// A share of the channel's range; none where the channel does not move.
+std::string share(double value, double range) {
+    if (!(range > 1e-9)) return "-";
+    if (value < 1e-9) return "0";
+    const double percent = 100 * value / range;
+    if (percent < 0.001) return "<0.001 %";
+    return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
+}
+
+// A deviation with its sign; below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's.
+std::string signed_value(double value) {
+    return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3g}", value);
+}
+std::string value_or_zero(double value) {
+    return std::abs(value) < 1e-9 ? "0"
+           : value < 10           ? fmt::format("{:.2g}", value)
+                                  : fmt::format("{:.0f}", value);
+}
+
+// The channels worth a line: every main one, and of each joint the force and the moment component that
+// deviates most.
+std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Reading& reading) {
+    std::vector<std::size_t> rows;
+    for (std::size_t c = 0; c < all.channels.size(); ++c)
+        if (all.channels[c].main) rows.push_back(c);
+    for (std::size_t c = 0; c < all.channels.size(); ++c) {
+        const Channel& channel = all.channels[c];
+        if (channel.main || !all.unique[c]) continue;
+        if (!rows.empty() && all.channels[rows.back()].joint == channel.joint &&
+            all.channels[rows.back()].unit == channel.unit) {
+            if (reading.channels[c].max > reading.channels[rows.back()].max) rows.back() = c;
+        } else {
+            rows.push_back(c);
+        }
+    }
+    std::erase_if(rows,
+                  [&](std::size_t c) { return !all.channels[c].main && reading.channels[c].max < 1e-6; });
+    return rows;
+}
+
+void deviation_table(const compare::Comparison& all, const compare::BranchComparison& branch,
+                     const char* load_unit, std::string& text) {
+    const auto out = std::back_inserter(text);
+    const auto& load = branch.deviation.equal_load;
+    const auto& travel = branch.deviation.equal_travel;
+    const auto& doubt = branch.uncertainty.equal_load;
+    if (load.channels.empty() || doubt.channels.empty()) {
+        fmt::format_to(out, "  nothing compared: {}\n",
+                       load.channels.empty() ? load.not_compared : doubt.not_compared);
+        return;
+    }
+    fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal load",
+                   "at equal travel", "the references'");
+    fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
+                   "deviation", "range", "max", fmt::format("at {}", load_unit), "rms", "share", "max",
+                   "at mm", "rms", "share", "uncertainty");
+    for (const std::size_t c : shown(all, load)) {
+        const auto& d = load.channels[c];
+        fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
+                       fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range,
+                       signed_value(d.signed_max), d.at, value_or_zero(d.rms), share(d.max, d.range));
+        if (travel.channels.empty()) {
+            fmt::format_to(out, "{:<36}", "-");
+        } else {
+            const auto& t = travel.channels[c];
+            fmt::format_to(out, "{:>9}{:>9.4g}{:>9}{:>9}", signed_value(t.signed_max), t.at,
+                           value_or_zero(t.rms), share(t.max, t.range));
+        }
+        fmt::format_to(out, "   {:>11.1e}\n", doubt.channels[c].max);
+    }
+    if (!travel.not_compared.empty())
+        fmt::format_to(out, "  at equal travel: not compared, {}\n", travel.not_compared);
+    if (travel.outside > 0)
+        fmt::format_to(out,
+                       "  at equal travel: {} points of the reference lie beyond the recursion's travel and "
+                       "are not compared\n",
+                       travel.outside);
+}
+
+void legs_table(const compare::BranchComparison& branch, std::string& text) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10}   {}\n", "leg", "outcome", "points",
+                   "factor.", "iter.", "eval.", "ms",
+                   "its states in the others' equations: force N, moment N·m, constraint mm");
+    for (const auto& run : branch.runs) {
+        fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ",
+                       run.method.empty() || run.method == "published" ? name(run.leg) : run.method,
+                       elastocheck::name(run.path.outcome), run.path.points.size(),
+                       run.path.counts.factorisations, run.path.counts.iterations,
+                       run.path.counts.evaluations, 1e3 * run.seconds);
+        for (const Leg by : compare::legs) {
+            if (by == run.leg) continue;
+            const auto& r = run.judged[static_cast<std::size_t>(by)];
+            fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment, 1e3 * r.length);
+        }
+        text.erase(text.find_last_not_of(' ') + 1);
+        fmt::format_to(out, "\n");
+    }
+}
+
+}  // namespace
+
+std::string tables(const Model& model, const compare::Comparison& comparison) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out,
+                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is eq. (29), read against "
+                   "the equilibrium leg;\n"
+                   "share: of the channel's range over the branch; uncertainty: the energy leg against the "
+                   "equilibrium leg.\n",
+                   model.name, coordinates(model), constraint_rows(model),
+                   coordinates(model) + constraint_rows(model));
+    for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
+        const auto& branch = comparison.branches[k];
+        const auto& definition = model.branches[k];
+        bool force = false;
+        for (const auto& load : definition.loads)
+            force = force || std::holds_alternative<DeadForce>(load.kind);
+        const char* load_unit = force ? "N" : "N·m";
+        const auto& steps = branch.runs.front().curve.load;
+        fmt::format_to(out, "\nbranch '{}': 0 to {:g} {}", branch.branch, definition.to, load_unit);
+        if (!steps.empty()) fmt::format_to(out, " in {} steps", steps.size() - 1);
+        const auto& travel = branch.runs[1].curve.travel;
+        if (!travel.empty()) fmt::format_to(out, ", travel {:.2f} mm", travel.back());
+        fmt::format_to(out, "\n\n");
+        deviation_table(comparison, branch, load_unit, text);
+        fmt::format_to(out, "\n");
+        legs_table(branch, text);
+        for (const auto& reason : branch.inconclusive) fmt::format_to(out, "  inconclusive: {}\n", reason);
+    }
+    if (std::ranges::find(comparison.unique, false) != comparison.unique.end())
+        fmt::format_to(
+            out,
+            "\nJoint reactions are not compared: constraints are redundant, so reactions are not unique.\n");
+    fmt::format_to(out, "\n{}: {} numbers compared.\n",
+                   comparison.conclusive() ? "conclusive" : "INCONCLUSIVE", comparison.compared);
+    return text;
+}
+
+}  // namespace elastocheck::reports

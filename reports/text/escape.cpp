@@ -1,0 +1,152 @@
+#include "reports/text/escape.hpp"
+
+#include <fmt/format.h>
+
+namespace elastocheck::reports {
+namespace {
+
+// One character of UTF-8, or a byte that is none.
+struct Character {
+    std::string_view bytes;
+    char32_t code = 0;
+    bool valid = false;
+
+    bool control() const {
+        return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x2028 || code == 0x2029;
+    }
+    bool turns_writing() const {
+        return code == 0x061C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
+               (code >= 0x2066 && code <= 0x2069);
+    }
+    bool plain() const { return valid && !control() && !turns_writing(); }
+};
+
+// RFC 3629: no overlong forms, no surrogates, nothing above U+10FFFF.
+Character first_of(std::string_view text) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+    const Character broken{text.substr(0, 1), byte(0), false};
+    if (byte(0) < 0x80) return {text.substr(0, 1), byte(0), true};
+    const std::size_t length = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 0;
+    if (length == 0 || byte(0) > 0xF4 || text.size() < length) return broken;
+    char32_t code = byte(0) & (0xFFU >> (length + 1));
+    for (std::size_t k = 1; k < length; ++k) {
+        if ((byte(k) & 0xC0U) != 0x80U) return broken;
+        code = code << 6U | (byte(k) & 0x3FU);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    if (overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF) return broken;
+    return {text.substr(0, length), code, true};
+}
+
+// `put` sees every character and says what stands for it.
+template <class Put>
+std::string translated(std::string_view text, Put&& put) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const Character c = first_of(text);
+        result += put(c);
+        text.remove_prefix(c.bytes.size());
+    }
+    return result;
+}
+
+constexpr std::string_view stand_in = "\uFFFD";  // for what no page can show
+
+}  // namespace
+
+std::string flaw(std::string_view text) {
+    while (!text.empty()) {
+        const Character c = first_of(text);
+        const auto code = static_cast<unsigned>(c.code);
+        if (!c.valid) return fmt::format("byte {:#04x} is not UTF-8", code);
+        if (c.control()) return fmt::format("it has the control character U+{:04X}", code);
+        if (c.turns_writing())
+            return fmt::format("it has U+{:04X}, which turns the direction of writing", code);
+        text.remove_prefix(c.bytes.size());
+    }
+    return "";
+}
+
+std::string for_terminal(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        if (c.plain()) return std::string(c.bytes);
+        const auto code = static_cast<unsigned>(c.code);
+        if (c.code == '\n') return "\\n";
+        return c.code < 0x100 ? fmt::format("\\x{:02x}", code) : fmt::format("\\x{{{:x}}}", code);
+    });
+}
+
+std::string for_html(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        if (!c.plain()) return std::string(c.code == '\n' || c.code == '\t' ? " " : stand_in);
+        switch (c.code) {
+            case '&': return "&amp;";
+            case '<': return "&lt;";
+            case '>': return "&gt;";
+            case '"': return "&quot;";
+            case '\'': return "&apos;";
+            default: return std::string(c.bytes);
+        }
+    });
+}
+
+std::string for_markdown(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        if (!c.plain())
+            return std::string(c.code == '\n' || c.code == '\r' || c.code == '\t' ? " " : stand_in);
+        const bool markup = std::string_view("\\`*_[]<>#|~&").find(c.bytes) != std::string_view::npos;
+        return fmt::format("{}{}", markup ? "\\" : "", c.bytes);
+    });
+}
+
+std::string for_gnuplot(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        if (!c.plain()) return " ";
+        return c.code == '\'' ? "''" : std::string(c.bytes);
+    });
+}
+
+std::string for_csv(std::string_view text) {
+    bool quoted = false;
+    std::string field = translated(text, [&](const Character& c) -> std::string {
+        if (!c.plain()) return " ";
+        quoted = quoted || c.code == ',' || c.code == '"';
+        return c.code == '"' ? "\"\"" : std::string(c.bytes);
+    });
+    return quoted ? fmt::format("\"{}\"", field) : field;
+}
+
+std::string for_xml(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        return c.plain() || c.code == '\n' ? std::string(c.bytes) : "?";
+    });
+}
+
+std::string for_github(std::string_view text) {
+    return translated(text, [](const Character& c) -> std::string {
+        if (c.code == '\n') return "%0A";
+        if (c.code == '\r') return "%0D";
+        if (!c.plain()) return "?";
+        return c.code == '%' ? "%25" : std::string(c.bytes);
+    });
+}
+
+std::string for_github_property(std::string_view text) {
+    return translated(for_github(text), [](const Character& c) -> std::string {
+        return c.code == ':' ? "%3A" : c.code == ',' ? "%2C" : std::string(c.bytes);
+    });
+}
+
+std::string for_shell(std::string_view text) {
+    const bool plain = !text.empty() && text.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyz"
+                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                            "-_./=,:+@%") == text.npos;
+    if (plain) return std::string(text);
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
+    return quoted + "'";
+}
+
+}  // namespace elastocheck::reports
