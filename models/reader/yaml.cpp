@@ -151,11 +151,8 @@ class TreeBuilder final : public YAML::EventHandler {
     std::vector<Open> open;
 };
 
-<<<<<<< HEAD:models/reader/yaml.cpp
 // Length of the UTF-8 sequence at the beginning of `text`,
 // 0 if there is none (RFC 3629, table of well-formed sequences).
-=======
->>>>>>> refs/heads/reports:models/reader/yaml.cpp
 std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) {
         return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;

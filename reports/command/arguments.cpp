@@ -31,4 +31,17 @@ CLI::Validator a_name() {
     return CLI::Validator([](const std::string& word) { return word.empty() ? "'' is no name" : ""; }, "");
 }
 
+void add_settings(CLI::App& command, Settings& settings) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&settings](const std::vector<std::string>& texts) {
+                for (const auto& text : texts) settings.push_back(parse_setting(text));
+            },
+            "change a value of the scene, in the file's units: --set points.tie_rod_inner.z=-0.055")
+        ->take_all()
+        ->type_name("PATH=VALUE")
+        ->expected(1);
+}
+
 }  // namespace elastocheck::reports

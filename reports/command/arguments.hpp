@@ -3,6 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
+
+#include "models/reader/scene_file.hpp"
 
 namespace elastocheck::reports {
 
@@ -12,6 +15,10 @@ void check_words(int argc, char** argv);
 
 // The command as it was given, for a shell.
 std::string command_line(int argc, char** argv);
+
+// --set PATH=VALUE, any number of times: numbers of the scene file changed before it is read.
+using Settings = std::vector<Setting>;
+void add_settings(CLI::App& command, Settings& settings);
 
 // Of an option that names a file or a folder: it names one.
 CLI::Validator a_name();

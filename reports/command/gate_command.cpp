@@ -28,6 +28,7 @@ using compare::ToleranceClass;
 
 struct GateOptions {
     std::vector<std::string> scenes;
+    Settings settings;
     std::string folder, junit, summary, kind, from, reason;
     bool accept = false;
     std::function<void(std::string_view)> progress;
@@ -84,7 +85,7 @@ std::vector<Task> tasks(const GateOptions& options) {
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
-    const Model model = compile(read_scene(task.scene));
+    const Model model = compile(read_scene(task.scene, options.settings));
     check_memory(model, 0, static_cast<int>(compare::legs.size()), false);
     compare::Options how;
     if (options.progress)
@@ -163,7 +164,7 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
                     scene.verdict.reasons.push_back(
                         fmt::format("nobody can have reviewed {}: {}", task.baseline.string(), why));
         } else {
-            compile(read_scene(task.scene));  // a bad scene is to be told apart from a missing baseline
+            compile(read_scene(task.scene, options.settings));  // a bad scene is to be told apart from a missing baseline
         }
     } catch (const std::invalid_argument& error) {  // more than there is memory for
         scene.bad_input = true;
@@ -242,6 +243,8 @@ int accept(const GateOptions& options) {
         throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
     if (!options.from.empty())
         throw std::invalid_argument("--accept: only what was measured here, not --from");
+    if (!options.settings.empty())
+        throw std::invalid_argument("--accept: only the scene as its file says, not with --set");
     int code = fine;
     const auto all = tasks(options);
     for (const auto& task : all) {
@@ -284,6 +287,7 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
     auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
     command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
         ->check(a_name());
+    add_settings(*command, options->settings);
     command
         ->add_option("--baseline", options->folder,
                      "folder of the baselines (default: baselines/ beside each SCENE, or here)")

@@ -92,8 +92,11 @@ int run(int argc, char** argv) {
     auto* trade_command = app.add_subcommand(
         "trade", "What accuracy costs: every method against both references, and a recommendation");
     const GateCommand gate_command = add_gate(app, progress);
-    for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command})
+    Settings settings;
+    for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command}) {
         command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_name());
+        add_settings(*command, settings);
+    }
     for (auto* command : {solve_command, compare_command}) add_recursion_options(*command, recursion_request);
     solve_command
         ->add_option(
@@ -118,7 +121,7 @@ int run(int argc, char** argv) {
 
     std::vector<std::string> rungs{"published"}, known_rungs{"all"};
     for (const auto& rung : recursive::methods)
-        if (!rung.adaptive) known_rungs.emplace_back(rung.name);
+        if (!std::holds_alternative<recursive::Adaptive>(rung.kind)) known_rungs.emplace_back(rung.name);
     std::vector<int> levels;
     converge_command
         ->add_option("--method", rungs,
@@ -147,21 +150,21 @@ int run(int argc, char** argv) {
         const std::string command = command_line(argc, argv);
         app.parse(argc, argv);
         if (*report_command) return report(request, command, progress);
-        if (*inspect_command) return inspect(scene);
+        if (*inspect_command) return inspect(scene, settings);
         if (*solve_command || *compare_command) {
             const auto leg =
                 std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });
             const bool reference = leg != compare::legs.end() && *leg != compare::Leg::recursive;
             if (leg == compare::legs.end()) recursion_request.method = method;
             const recursive::Options how = recursion(recursion_request);
-            if (!rates.empty() && !how.method.series)
+            if (!rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
-            if (*compare_command) return compare_legs(scene, how, output, command);
-            return solve(scene, reference ? *leg : compare::Leg::recursive, how, rates, output);
+            if (*compare_command) return compare_legs(scene, settings, how, output, command);
+            return solve(scene, settings, reference ? *leg : compare::Leg::recursive, how, rates, output);
         }
         if (*gate_command.parsed) return gate_command.run();
-        if (*converge_command) return converge(scene, rungs, levels, output, command);
-        return trade(scene, tolerance, output, command);
+        if (*converge_command) return converge(scene, settings, rungs, levels, output, command);
+        return trade(scene, settings, tolerance, output, command);
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {

@@ -42,11 +42,11 @@ json recommended(const Model& model, const compare::Trade& trade) {
     const auto& point = trade.points[trade.recommendation->point];
     json branches = json::array();
     for (const auto& branch : model.branches) {
-        const auto profile = compare::profile(model, branch, point);
-        branches.push_back({{"name", branch.name},
-                            {"load", profile.load},
-                            {"error_mm", profile.mm},
-                            {"error_deg", profile.deg}});
+        const auto profile = compare::profile(model, branch, point).profile;
+        json mm = json::array(), deg = json::array();
+        for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
+        branches.push_back(
+            {{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
     }
     json result = {{"method", point.method}};
     if (point.steps > 0) result["steps"] = point.steps;
@@ -56,7 +56,7 @@ json recommended(const Model& model, const compare::Trade& trade) {
 }
 
 json solve_scene(const std::string& file, const ReportRequest& request, const Progress& progress) {
-    const Scene scene = read_scene(file);
+    const Scene scene = read_scene(file, request.settings);
     const Model model = compile(scene);
     const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
     json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
@@ -124,6 +124,7 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
     auto* command = app.add_subcommand(
         "report", "Everything about one or more scenes as a page: verdict, figures, tables");
     command->add_option("SCENE", request.scenes, "scene files (YAML)")->check(a_name());
+    add_settings(*command, request.settings);
     command->add_option("--from", request.from, "draw from this result.json, without solving")
         ->check(a_name());
     command
@@ -158,7 +159,7 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance);
     for (const auto& scene : request.scenes)
-        check_memory(compile(read_scene(scene)), 0, static_cast<int>(compare::legs.size()), true);
+        check_memory(compile(read_scene(scene, request.settings)), 0, static_cast<int>(compare::legs.size()), true);
     if (!request.measured.empty()) (void)read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");

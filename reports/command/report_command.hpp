@@ -7,10 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/command/arguments.hpp"
+
 namespace elastocheck::reports {
 
 struct ReportRequest {
     std::vector<std::string> scenes;
+    Settings settings;
     std::string from;  // a result.json, in place of scenes
     std::string folder;
     std::string measured;  // CSV

@@ -47,27 +47,31 @@ void write_results(const std::string& folder, const std::string& command, json p
     print("Written: {}\n", written);
 }
 
-// The rates of a polynomial branch beside its curve: travel and main channels per unit of the load factor.
+// The rates of a polynomial branch beside its curve: positions and angles per unit of the parameter.
 std::string rates_csv(const Model& model, const recursive::Options& how) {
-    std::string csv = "branch,load factor,travel [mm per unit]";
-    for (const auto& channel : compare::channels(model))
-        if (channel.main)
-            csv += fmt::format(",{}",
-                               for_csv(fmt::format("{} [{} per unit]", channel.name, symbol(channel.unit))));
+    auto channels = compare::channels(model);
+    std::erase_if(channels, [](const auto& channel) { return !channel.kinematic(); });
+    std::string csv = "branch,parameter,parameter unit";
+    for (const auto& channel : channels)
+        csv += fmt::format(
+            ",{}", for_csv(fmt::format("{} [{} per parameter unit]", channel.name, symbol(channel.unit))));
     csv += "\n";
-    for (const auto& branch : model.branches) {
-        const auto path = recursive::series::follow(model, branch, how.series);
-        const int steps = how.steps > 0 ? how.steps : branch.steps;
-        for (int k = 0; k <= steps; ++k) {
-            const double load = branch.to * k / steps;
-            const auto place = recursive::series::find(path, load);
-            if (!place) break;
-            const auto rates = compare::channel_rates(model, branch, path, *place);
-            csv += fmt::format("{},{:.17g},{:.17g}", for_csv(branch.name), load, rates.travel);
-            for (const double slope : rates.slope) csv += fmt::format(",{:.17g}", slope);
-            csv += "\n";
+    for (const auto& branch : model.branches)
+        for (const auto& way : compare::ways_of(model, branch, how.steps)) {
+            const auto path = recursive::series::follow(way.model, way.branch,
+                                                        std::get<recursive::Series>(how.method.kind));
+            const compare::Unit unit = compare::unit_of(branch.unit);
+            for (int k = 0; k <= way.branch.steps; ++k) {
+                const double a = way.branch.to * k / way.branch.steps;
+                const auto place = recursive::series::find(path, a);
+                if (!place) break;
+                csv += fmt::format("{},{:.17g},{}", for_csv(way.name), in_unit(unit) * a, symbol(unit));
+                for (const double slope :
+                     compare::channel_rates(way.model, channels, way.branch, path, *place))
+                    csv += fmt::format(",{:.17g}", slope);
+                csv += "\n";
+            }
         }
-    }
     return csv;
 }
 
@@ -82,17 +86,17 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
 
 }  // namespace
 
-int inspect(const std::string& file) {
-    const Model model = compile(read_scene(file));
+int inspect(const std::string& file, const Settings& settings) {
+    const Model model = compile(read_scene(file, settings));
     print(inspection(model, recursive::diagnose(model)));
     return fine;
 }
 
-int solve(const std::string& file, compare::Leg leg, const recursive::Options& how, const std::string& rates,
+int solve(const std::string& file, const Settings& settings, compare::Leg leg, const recursive::Options& how, const std::string& rates,
           const std::string& output) {
     if (!output.empty()) check_may_write(output, curves_file);
     if (!rates.empty()) check_may_write(rates, rates_file);
-    const Model model = compile(read_scene(file));
+    const Model model = compile(read_scene(file, settings));
     check_memory(model, how.steps, 1, false);
     std::string csv = curves_header(compare::channels(model));
     int code = fine;
@@ -115,10 +119,10 @@ int solve(const std::string& file, compare::Leg leg, const recursive::Options& h
     return code;
 }
 
-int compare_legs(const std::string& file, const recursive::Options& how, const std::string& folder,
+int compare_legs(const std::string& file, const Settings& settings, const recursive::Options& how, const std::string& folder,
                  const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file);
+    const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);
     check_memory(model, how.steps, static_cast<int>(compare::legs.size()), !folder.empty());
     compare::Options options;
@@ -136,10 +140,10 @@ int compare_legs(const std::string& file, const recursive::Options& how, const s
     return comparison.conclusive() ? fine : could_not_judge;
 }
 
-int converge(const std::string& file, const std::vector<std::string>& names, const std::vector<int>& steps,
+int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names, const std::vector<int>& steps,
              const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file);
+    const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);
     if (!steps.empty()) check_memory(model, *std::ranges::max_element(steps), 1, false);
     compare::StudyOptions options;
@@ -180,10 +184,10 @@ int converge(const std::string& file, const std::vector<std::string>& names, con
     return conclusive ? fine : could_not_judge;
 }
 
-int trade(const std::string& file, const std::string& tolerance, const std::string& folder,
+int trade(const std::string& file, const Settings& settings, const std::string& tolerance, const std::string& folder,
           const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file);
+    const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);
     compare::TradeOptions options;
     options.tolerance = compare::parse_tolerance(tolerance);

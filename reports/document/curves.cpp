@@ -8,24 +8,24 @@
 namespace elastocheck::reports {
 
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file) {
-    std::string csv = "scene,branch,leg,load factor,travel [mm],output,unit,value\n";
+    std::string csv = "scene,branch,leg,parameter,parameter unit,output,unit,value\n";
     for (const auto& scene : Field{&result, "", &file}["scenes"].items()) {
         if (!scene.find("branches")) continue;
         for (const auto& branch : scene["branches"].items())
             for (const auto& leg : branch["legs"].items()) {
                 const Field curve = leg["curve"], columns = curve["values"];
-                const auto load = curve["load"].numbers(), travel = curve["travel_mm"].numbers();
+                const auto a = curve["a"].numbers();
+                const std::string unit = for_csv(branch["unit"].text());
                 const std::string whose = for_csv(scene["name"].text()) + "," +
                                           for_csv(branch["name"].text()) + "," + for_csv(leg["leg"].text());
                 for (const auto& channel : scene["channels"].items()) {
                     const std::string name = channel["name"].text();
                     const std::string what = for_csv(name) + "," + for_csv(channel["unit"].text());
                     const auto values = columns[name].numbers();
-                    if (values.size() != load.size()) columns[name].fail("not as many numbers as loads");
+                    if (values.size() != a.size())
+                        columns[name].fail("not as many numbers as parameters");
                     for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format("{},{:.17g},{},{},{:.17g}\n", whose, load[k],
-                                           k < travel.size() ? fmt::format("{:.17g}", travel[k]) : "", what,
-                                           values[k]);
+                        csv += fmt::format("{},{:.17g},{},{},{:.17g}\n", whose, a[k], unit, what, values[k]);
                 }
             }
     }

@@ -1,5 +1,7 @@
 #include "reports/document/document.hpp"
 
+#include "compare/findings.hpp"
+#include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
 
 namespace elastocheck::reports {
@@ -66,18 +68,18 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
             {"seconds", run.seconds},
             {"residuals_by", judged},
             {"curve",
-             {{"load", run.curve.load},
-              {"travel_mm", run.curve.travel},
+             {{"a", run.curve.a},
               {"constraint_error", constraint_error},
               {"values", values}}}};
 }
 
-json reading_json(const compare::Reading& reading, const compare::Comparison& all) {
+json reading_json(const compare::Reading& reading, const compare::Comparison& all,
+                  const std::vector<bool>& determined) {
     json result = {{"not_compared", reading.not_compared},
                    {"points_outside", reading.outside},
                    {"channels", json::object()}};
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
-        if (!all.unique[c]) continue;
+        if (!determined[c]) continue;
         const auto& d = reading.channels[c];
         result["channels"][all.channels[c].name] = {{"unit", symbol(all.channels[c].unit)},
                                                     {"max", d.max},
@@ -92,20 +94,46 @@ json reading_json(const compare::Reading& reading, const compare::Comparison& al
     return result;
 }
 
-const char* load_unit(const Branch& branch) {
-    for (const auto& load : branch.loads)
-        if (std::holds_alternative<DeadForce>(load.kind)) return "N";
-    return "N·m";
-}
-
-json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
+json pair_json(const compare::Pair& pair, const compare::Comparison& all,
+               const std::vector<bool>& determined) {
     return {{"of", name(pair.b)},
             {"from", name(pair.a)},
-            {"at_equal_load", reading_json(pair.equal_load, all)},
-            {"at_equal_travel", reading_json(pair.equal_travel, all)}};
+            {"at_equal_parameter", reading_json(pair.equal_parameter, all, determined)},
+            {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
+}
+
+// What moves on the branch, and what is held.
+json drivers_json(const Model& model, const Branch& branch) {
+    json moved = json::array(), held = json::array();
+    for (const auto& driver : branch.drivers)
+        (driver.rate != 0 ? moved : held).push_back(driven_name(model, driver.what));
+    return {{"moved", moved}, {"held", held}};
+}
+
+json rate_errors_json(const std::vector<compare::RateError>& rates) {
+    json list = json::array();
+    for (const auto& rate : rates)
+        list.push_back({{"branch", rate.branch},
+                        {"wheel", rate.wheel},
+                        {"to", rate.to},
+                        {"unit", symbol(rate.unit)},
+                        {"off", rate.off},
+                        {"travel_mm", rate.travel},
+                        {"force_N", rate.force}});
+    return list;
 }
 
 }  // namespace
+
+std::string driven_name(const Model& model, const Driven& what) {
+    const auto element = [&](int k) { return model.elastics[static_cast<std::size_t>(k)].name; };
+    return std::visit(
+        overloaded{[](const Load& load) { return load.name; },
+                   [&](const Motion& m) { return model.joints[static_cast<std::size_t>(m.joint)].name; },
+                   [&](const FreeLength& f) { return "free length of " + element(f.elastic); },
+                   [&](const Preload& p) { return "preload of " + element(p.elastic); }},
+        what);
+}
 
 json provenance_json(const Provenance& p) {
     json libraries = json::object();
@@ -138,33 +166,41 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         channels.push_back({{"name", channel.name},
                             {"unit", symbol(channel.unit)},
                             {"main", channel.main},
-                            {"unique", static_cast<bool>(comparison.unique[c])}});
+                            {"kinematic", channel.kinematic()},
+                            {"definition", channel.definition}});
     }
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const auto& branch = comparison.branches[b];
         json legs = json::array();
         for (const auto& run : branch.runs) legs.push_back(run_json(run, comparison.channels));
-        json load_names = json::array();
-        for (const auto& load : model.branches[b].loads) load_names.push_back(load.name);
-        branches.push_back({{"name", branch.branch},
-                            {"to", model.branches[b].to},
-                            {"load_unit", load_unit(model.branches[b])},
-                            {"loads", load_names},
-                            {"legs", legs},
-                            {"deviation", pair_json(branch.deviation, comparison)},
-                            {"cross_check", pair_json(branch.cross_check, comparison)},
-                            {"reference_uncertainty", pair_json(branch.uncertainty, comparison)},
-                            {"inconclusive", branch.inconclusive}});
+        const Branch& walked = model.branches[b];
+        const auto pair = [&](const compare::Pair& p) { return pair_json(p, comparison, branch.determined); };
+        branches.push_back(
+            {{"name", branch.branch},
+             {"from", in_unit(branch.unit) * walked.from},
+             {"to", in_unit(branch.unit) * walked.to},
+             {"unit", symbol(branch.unit)},
+             {"drivers", drivers_json(model, walked)},
+             {"abscissa", branch.abscissa < 0
+                              ? json(nullptr)
+                              : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
+             {"legs", legs},
+             {"deviation", pair(branch.deviation)},
+             {"cross_check", pair(branch.cross_check)},
+             {"reference_uncertainty", pair(branch.uncertainty)},
+             {"bounds", compare::describe(branch.bounds)},
+             {"inconclusive", branch.inconclusive.texts()}});
     }
     scene_document["channels"] = channels;
     scene_document["branches"] = branches;
+    scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 
 std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
     std::vector<std::string> reasons;
     for (const auto& branch : comparison.branches)
-        for (const auto& reason : branch.inconclusive) reasons.push_back(branch.branch + ": " + reason);
+        for (const auto& reason : branch.inconclusive.texts()) reasons.push_back(branch.branch + ": " + reason);
     if (comparison.compared == 0) reasons.emplace_back("nothing was compared");
     return reasons;
 }

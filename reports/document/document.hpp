@@ -12,7 +12,10 @@
 namespace elastocheck::reports {
 
 // Raised when a field changes its meaning or vanishes; new fields may appear without.
-inline constexpr const char* result_schema = "elastocheck/result/2";
+inline constexpr const char* result_schema = "elastocheck/result/3";
+
+// "vertical", "left.jack", "free length of coil"
+std::string driven_name(const Model& model, const Driven& what);
 
 // Who made it, with what: commit, compiler, flags, processor, libraries.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);

@@ -1,7 +1,11 @@
 #include "reports/document/drawing.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
+
+#include "models/overloaded.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -91,8 +95,8 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     json points = json::array();
     for (const auto& point : sketch.points) points.push_back(millimetres(sketch.at(point, poses)));
     json result = {{"points_mm", points}};
-    if (const auto& wheel = sketch.model->wheel)
-        result["wheel_mm"] = circle(*wheel, poses[static_cast<std::size_t>(wheel->body)]);
+    for (const auto& wheel : sketch.model->wheels)
+        result["wheels_mm"].push_back(circle(wheel, poses[static_cast<std::size_t>(wheel.body)]));
     return result;
 }
 
@@ -103,39 +107,37 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     json bushings = json::array();
     for (const auto& constraint : model.constraints) {
         const std::string& name = model.joints[static_cast<std::size_t>(constraint.joint)].name;
-        std::visit(
-            [&](const auto& kind) {
-                using Kind = std::decay_t<decltype(kind)>;
-                if constexpr (std::is_same_v<Kind, PerpendicularDirections>) {
-                    return;
-                } else {
-                    const auto i = sketch.add(kind.i, name);
-                    if constexpr (std::is_same_v<Kind, DistanceBetween>)
-                        sketch.link("rod", name, i, sketch.add(kind.j, name));
-                    if constexpr (std::is_same_v<Kind, CoincidentPoints>) sketch.add(kind.j, name);
-                }
-            },
-            constraint.kind);
+        std::visit(overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, name), sketch.add(c.j, name); },
+                              [&](const PointInPlane& c) { sketch.add(c.i, name); },
+                              [](const PerpendicularDirections&) {},
+                              [&](const DistanceBetween& c) {
+                                  const auto i = sketch.add(c.i, name);
+                                  sketch.link("rod", name, i, sketch.add(c.j, name));
+                              },
+                              [](const DirectionAtAngle&) {}},
+                   constraint.kind);
     }
-    for (const auto& elastic : model.elastics) {
-        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
-            const auto i = sketch.add(spring->i, elastic.name), j = sketch.add(spring->j, elastic.name);
-            sketch.link("spring", elastic.name, i, j);
-        } else {
-            const auto& bushing = std::get<Bushing>(elastic.kind);
-            const auto i = sketch.add({bushing.i.body, bushing.i.s_local}, elastic.name);
-            const auto j = sketch.add({bushing.j.body, bushing.j.s_local}, elastic.name);
-            bushings.push_back(bushing.i.body == ground ? j : i);
-        }
-    }
+    for (const auto& elastic : model.elastics)
+        std::visit(overloaded{[&](const AxialSpring& e) {
+                                  const auto i = sketch.add(e.i, elastic.name);
+                                  sketch.link("spring", elastic.name, i, sketch.add(e.j, elastic.name));
+                              },
+                              [&](const Bushing& e) {
+                                  const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
+                                  const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
+                                  bushings.push_back(e.i.body == ground ? j : i);
+                              }},
+                   elastic.kind);
     for (const auto& probe : model.probes) sketch.add(probe.at, probe.name);
-    std::optional<std::size_t> hub;
-    if (model.wheel) {
-        hub = sketch.add({model.wheel->body, model.wheel->centre_local}, "wheel centre");
-        sketch.add({model.wheel->body, model.wheel->contact_local}, "contact patch");
+    std::vector<std::optional<std::size_t>> hubs(model.bodies.size());
+    for (const auto& wheel : model.wheels) {
+        const std::string whose = wheel.name.empty() ? "" : wheel.name + " ";
+        hubs[static_cast<std::size_t>(wheel.body)] =
+            sketch.add({wheel.body, wheel.centre_local}, whose + "wheel centre");
+        sketch.add({wheel.body, wheel.contact_local}, whose + "contact patch");
     }
     for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body)
-        outline(sketch, body, model.wheel && model.wheel->body == body ? hub : std::nullopt);
+        outline(sketch, body, hubs[static_cast<std::size_t>(body)]);
 
     json points = json::array(), along = json::array();
     const auto design = sketch.design();
@@ -149,14 +151,18 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     for (const auto& branch : comparison.branches) {
         const auto& path = branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].path.points;
         if (path.empty()) continue;
-        for (const auto& [where, k] :
-             {std::pair{"middle", path.size() / 2}, std::pair{"end", path.size() - 1}}) {
+        const auto& a = branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].curve.a;
+        const auto put = [&](const std::string& name, const char* where, std::size_t k) {
             json entry = positions(sketch, path[k].poses);
-            entry["branch"] = branch.branch;
+            entry["branch"] = name;
             entry["where"] = where;
-            entry["load"] = path[k].load;
+            entry["a"] = a[k];
             along.push_back(entry);
-        }
+        };
+        put(branch.branch, "middle", path.size() / 2);
+        if (a.front() * a.back() < 0)  // walked both ways
+            put(fmt::format("{} to {:.4g} {}", branch.branch, a.front(), symbol(branch.unit)), "end", 0);
+        put(branch.branch, "end", path.size() - 1);
     }
     json result = {{"points", points}, {"links", sketch.links}, {"bushings", bushings}};
     result["design"] = positions(sketch, design);

@@ -142,7 +142,7 @@ Series series_of(const Field& field) {
 
 compare::Limit limit_of(const Field& field) {
     expect_fields(field, {"of", "channel", "max"});
-    constexpr std::array deviations{Quantity::deviation_at_equal_load, Quantity::deviation_at_equal_travel};
+    constexpr std::array deviations{Quantity::deviation_at_equal_parameter, Quantity::deviation_at_equal_abscissa};
     return {named(at(field, "of"), deviations), text(at(field, "channel")), number(at(field, "max"))};
 }
 
@@ -177,8 +177,9 @@ BaselineFile parse(const json& whole) {
     std::set<std::string> branches;
     for (const auto& entry : array(at(top, "branches"))) {
         const Field branch{entry, "branches"};
-        expect_fields(branch, {"name", "loads"});
-        file.baseline.accepted.branches.push_back({text(at(branch, "name")), numbers(at(branch, "loads"))});
+        expect_fields(branch, {"name", "unit", "parameter"});
+        file.baseline.accepted.branches.push_back(
+            {text(at(branch, "name")), text(at(branch, "unit")), numbers(at(branch, "parameter"))});
         if (!branches.insert(file.baseline.accepted.branches.back().name).second)
             refuse(branch, "a branch is there twice");
     }
@@ -210,7 +211,7 @@ std::string baseline_text(const BaselineFile& file) {
     for (const auto& limit : b.limits)
         limits.push_back({{"of", name(limit.deviation)}, {"channel", limit.channel}, {"max", limit.max}});
     for (const auto& branch : b.accepted.branches)
-        branches.push_back({{"name", branch.name}, {"loads", branch.loads}});
+        branches.push_back({{"name", branch.name}, {"unit", branch.unit}, {"parameter", branch.a}});
     for (const auto& s : b.accepted.series)
         series.push_back({{"branch", s.branch},
                           {"of", name(s.quantity)},

@@ -52,7 +52,7 @@ std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
     return all;
 }
 
-std::string where(const Offence& o) { return o.has_load ? fmt::format("{:g}", o.load) : ""; }
+std::string where(const Offence& o) { return o.a ? fmt::format("{:g} {}", *o.a, o.a_unit) : ""; }
 std::string what(const Offence& o) {
     return o.of_limit ? fmt::format("limit on {}", name(o.quantity)) : name(o.quantity);
 }
@@ -177,7 +177,7 @@ int exit_code(const std::vector<GatedScene>& scenes) {
 
 std::string story(const Offence& o) {
     std::string line = fmt::format("branch '{}', {}: {}", o.branch, name(o.quantity), o.channel);
-    if (o.has_load) line += fmt::format(" at load {:g}", o.load);
+    if (o.a) line += fmt::format(" at {:g} {}", *o.a, o.a_unit);
     if (o.of_limit)
         return line + fmt::format(": {:.6g} {} is over its limit of {:g} {}", o.is, o.unit, o.was, o.unit);
     line += fmt::format(": accepted {:.10g} {}, measured {:.10g} {}, difference {:+.3g}", o.was, o.unit, o.is,
@@ -194,7 +194,7 @@ std::string gate_table(const GatedScene& scene) {
     if (!worst.empty())
         out +=
             fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>8}\n", "branch", "what",
-                        "channel", "at load", "accepted", "measured", "difference", "tolerances", "numbers");
+                        "channel", "at", "accepted", "measured", "difference", "tolerances", "numbers");
     for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
         const Offence& o = *worst[k].offence;
         out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10.3g} {:>8}\n",

@@ -216,7 +216,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
             const LegCurve truth = curve_of(branch, "equilibrium");
             for (const auto& channel : main_channels_of(scene)) {
                 const auto values = truth.channel(channel.name);
-                const auto load = branch["deviation"]["at_equal_load"]["channels"].find(channel.name);
+                const auto load = branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
                 if (values.empty() || !load) continue;
                 // The references agree to far better; a deviation carries the rounding of its many steps.
                 const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
@@ -225,7 +225,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
                     (*load)["end"].number(), coarse);
                 row(scene, branch, channel, "published at equal load: largest deviation",
                     (*load)["max"].number(), coarse);
-                if (const auto travel = branch["deviation"]["at_equal_travel"]["channels"].find(channel.name))
+                if (const auto travel = branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
                     row(scene, branch, channel, "published at equal travel: largest deviation",
                         (*travel)["max"].number(), coarse);
             }

@@ -32,14 +32,16 @@ std::string value_or_zero(double value) {
 
 // The channels worth a line: every main one, and of each joint the force and the moment component that
 // deviates most.
-std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Reading& reading) {
+std::vector<std::size_t> shown(const compare::Comparison& all, const compare::BranchComparison& branch,
+                               const compare::Reading& reading) {
     std::vector<std::size_t> rows;
     for (std::size_t c = 0; c < all.channels.size(); ++c)
-        if (all.channels[c].main) rows.push_back(c);
+        if (all.channels[c].main && branch.determined[c]) rows.push_back(c);
     for (std::size_t c = 0; c < all.channels.size(); ++c) {
         const Channel& channel = all.channels[c];
-        if (channel.main || !all.unique[c]) continue;
-        if (!rows.empty() && all.channels[rows.back()].joint == channel.joint &&
+        if (channel.main || channel.kinematic() || !branch.determined[c]) continue;
+        if (!rows.empty() && !all.channels[rows.back()].main &&
+            all.channels[rows.back()].joints() == channel.joints() &&
             all.channels[rows.back()].unit == channel.unit) {
             if (reading.channels[c].max > reading.channels[rows.back()].max) rows.back() = c;
         } else {
@@ -52,22 +54,27 @@ std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Re
 }
 
 void deviation_table(const compare::Comparison& all, const compare::BranchComparison& branch,
-                     const char* load_unit, std::string& text) {
+                     std::string& text) {
     const auto out = std::back_inserter(text);
-    const auto& load = branch.deviation.equal_load;
-    const auto& travel = branch.deviation.equal_travel;
-    const auto& doubt = branch.uncertainty.equal_load;
+    const bool loaded = branch.unit == compare::Unit::newton || branch.unit == compare::Unit::newton_metre;
+    const std::string parameter = loaded ? "load" : "parameter";
+    const Channel* by =
+        branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
+    const std::string abscissa = by == nullptr ? "abscissa" : by->name;
+    const auto& load = branch.deviation.equal_parameter;
+    const auto& travel = branch.deviation.equal_abscissa;
+    const auto& doubt = branch.uncertainty.equal_parameter;
     if (load.channels.empty() || doubt.channels.empty()) {
         fmt::format_to(out, "  nothing compared: {}\n",
                        load.channels.empty() ? load.not_compared : doubt.not_compared);
         return;
     }
-    fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal load",
-                   "at equal travel", "the references'");
+    fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal " + parameter,
+                   "at equal " + abscissa, "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
-                   "deviation", "range", "max", fmt::format("at {}", load_unit), "rms", "share", "max",
-                   "at mm", "rms", "share", "uncertainty");
-    for (const std::size_t c : shown(all, load)) {
+                   "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
+                   fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share", "uncertainty");
+    for (const std::size_t c : shown(all, branch, load)) {
         const auto& d = load.channels[c];
         fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
                        fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range,
@@ -82,12 +89,12 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
         fmt::format_to(out, "   {:>11.1e}\n", doubt.channels[c].max);
     }
     if (!travel.not_compared.empty())
-        fmt::format_to(out, "  at equal travel: not compared, {}\n", travel.not_compared);
+        fmt::format_to(out, "  at equal {}: not compared, {}\n", abscissa, travel.not_compared);
     if (travel.outside > 0)
         fmt::format_to(out,
-                       "  at equal travel: {} points of the reference lie beyond the recursion's travel and "
-                       "are not compared\n",
-                       travel.outside);
+                       "  at equal {}: {} points of the reference lie beyond the recursion's and are not "
+                       "compared\n",
+                       abscissa, travel.outside);
 }
 
 void legs_table(const compare::BranchComparison& branch, std::string& text) {
@@ -126,25 +133,25 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
         const auto& definition = model.branches[k];
-        bool force = false;
-        for (const auto& load : definition.loads)
-            force = force || std::holds_alternative<DeadForce>(load.kind);
-        const char* load_unit = force ? "N" : "N·m";
-        const auto& steps = branch.runs.front().curve.load;
-        fmt::format_to(out, "\nbranch '{}': 0 to {:g} {}", branch.branch, definition.to, load_unit);
+        const double unit = in_unit(branch.unit);
+        const auto& steps = branch.runs.front().curve.a;
+        fmt::format_to(out, "\nbranch '{}': {:g} to {:g} {}", branch.branch, unit * definition.from,
+                       unit * definition.to, symbol(branch.unit));
         if (!steps.empty()) fmt::format_to(out, " in {} steps", steps.size() - 1);
-        const auto& travel = branch.runs[1].curve.travel;
-        if (!travel.empty()) fmt::format_to(out, ", travel {:.2f} mm", travel.back());
+        const auto& reference = branch.runs[1].curve;
+        if (branch.abscissa >= 0 && !reference.values.empty()) {
+            const auto c = static_cast<std::size_t>(branch.abscissa);
+            fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name,
+                           reference.values.front()[c], reference.values.back()[c],
+                           symbol(comparison.channels[c].unit));
+        }
         fmt::format_to(out, "\n\n");
-        deviation_table(comparison, branch, load_unit, text);
+        deviation_table(comparison, branch, text);
         fmt::format_to(out, "\n");
         legs_table(branch, text);
-        for (const auto& reason : branch.inconclusive) fmt::format_to(out, "  inconclusive: {}\n", reason);
+        fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
+        for (const auto& reason : branch.inconclusive.texts()) fmt::format_to(out, "  inconclusive: {}\n", reason);
     }
-    if (std::ranges::find(comparison.unique, false) != comparison.unique.end())
-        fmt::format_to(
-            out,
-            "\nJoint reactions are not compared: constraints are redundant, so reactions are not unique.\n");
     fmt::format_to(out, "\n{}: {} numbers compared.\n",
                    comparison.conclusive() ? "conclusive" : "INCONCLUSIVE", comparison.compared);
     return text;

@@ -6,7 +6,7 @@
 
 namespace elastocheck::reports {
 std::string curves_header(const std::vector<compare::Channel>& channels) {
-    std::string line = "branch,leg,load factor,travel [mm]";
+    std::string line = "branch,leg,parameter,unit";
     for (const auto& channel : channels)
         line += fmt::format(",{}", for_csv(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
     return line + "\n";
@@ -14,9 +14,9 @@ std::string curves_header(const std::vector<compare::Channel>& channels) {
 
 std::string curves_rows(const std::string& branch, const compare::LegRun& run) {
     std::string rows;
-    for (std::size_t k = 0; k < run.curve.load.size(); ++k) {
-        rows += fmt::format("{},{},{:.17g},", for_csv(branch), name(run.leg), run.curve.load[k]);
-        if (!run.curve.travel.empty()) rows += fmt::format("{:.17g}", run.curve.travel[k]);
+    for (std::size_t k = 0; k < run.curve.a.size(); ++k) {
+        rows += fmt::format("{},{},{:.17g},{}", for_csv(branch), name(run.leg), run.curve.a[k],
+                            symbol(run.curve.unit));
         for (const double value : run.curve.values[k]) rows += fmt::format(",{:.17g}", value);
         rows += "\n";
     }

@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-// Header and rows: branch, leg, load factor, travel [mm],
+// Header and rows: branch, leg, parameter and its unit,
 // then every channel with its unit; 17 significant digits.
 std::string curves_header(const std::vector<compare::Channel>& channels);
 std::string curves_rows(const std::string& branch, const compare::LegRun& run);

@@ -4,6 +4,11 @@
 
 #include <iterator>
 
+#include "compare/channels.hpp"
+#include "compare/legs.hpp"
+#include "models/overloaded.hpp"
+#include "reports/document/document.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -12,9 +17,13 @@ std::string body_name(const Model& model, BodyId body) {
 }
 
 std::string constraint_name(const ConstraintKind& kind) {
-    constexpr const char* names[] = {"coincident points", "point in plane", "perpendicular directions",
-                                     "distance between points"};
-    return names[kind.index()];
+    return std::visit(
+        overloaded{[](const CoincidentPoints&) { return "coincident points"; },
+                   [](const PointInPlane&) { return "point in plane"; },
+                   [](const PerpendicularDirections&) { return "perpendicular directions"; },
+                   [](const DistanceBetween&) { return "distance between points"; },
+                   [](const DirectionAtAngle&) { return "direction at an angle"; }},
+        kind);
 }
 
 }  // namespace
@@ -55,15 +64,23 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
                 return std::pair{e.i.body, e.j.body};
             },
             elastic.kind);
-        const bool spring = std::holds_alternative<AxialSpring>(elastic.kind);
+        const char* kind = std::visit(overloaded{[](const AxialSpring&) { return "axial spring"; },
+                                                 [](const Bushing&) { return "bushing"; }},
+                                      elastic.kind);
         line("  {:<20} {} - {}: {}", elastic.name, body_name(model, i), body_name(model, j),
-             spring ? "axial spring" : "bushing");
+             kind);
     }
     line("\nbranches");
     for (const auto& branch : model.branches) {
-        std::string loads;
-        for (const auto& load : branch.loads) loads += (loads.empty() ? "" : " + ") + load.name;
-        line("  {:<20} {} to {:g} in {} steps", branch.name, loads, branch.to, branch.steps);
+        std::string moved, held;
+        for (const auto& driver : branch.drivers)
+            (driver.rate != 0 ? moved : held) +=
+                ((driver.rate != 0 ? moved : held).empty() ? "" : " + ") + driven_name(model, driver.what);
+        const compare::Unit unit = compare::unit_of(branch.unit);
+        const std::string range = fmt::format("{:g} to {:g} {}", compare::in_unit(unit) * branch.from,
+                                              compare::in_unit(unit) * branch.to, symbol(unit));
+        const std::string under = held.empty() ? "" : ", held: " + held;
+        line("  {:<20} {}, {} in {} steps{}", branch.name, moved, range, branch.steps, under);
     }
     line("\nredundant constraints");
     for (const auto& r : d.redundant)
@@ -77,12 +94,33 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
     line("\nleft out, because no output depends on it");
     for (const auto& o : model.left_out) line("  {}: {}", o.what, o.why);
     if (model.left_out.empty()) line("  nothing");
-    line("\nbalance at the design position, load factor 0");
+    line("\noutputs");
+    const auto channels = compare::channels(model);
+    for (const auto& channel : channels)
+        if (channel.main || channel.kinematic()) {
+            const char* unit = symbol(channel.unit);
+            line("  {:<20} [{}] {}", channel.name, unit, channel.definition);
+        }
+    line("  JOINT.force_x ... moment_z of every joint: its wrench on its first body about its point, ground axes");
+    line("\nbalance at the design position, parameter 0");
     if (d.imbalance <= 1e-6)
         line("  in equilibrium");
     else
-        line("  out of balance by {:.4g} N: the first point of every branch is the settled position",
-             d.imbalance);
+        line("  out of balance by {:.4g} N: every branch begins where the scene settles", d.imbalance);
+    for (const auto& branch : model.branches) {
+        const compare::Settled settled = compare::settled(model, channels, branch);
+        if (settled.outcome != Outcome::converged) {
+            const char* outcome = name(settled.outcome);
+            line("  branch '{}' does not settle: {}: {}", branch.name, outcome, settled.detail);
+            continue;
+        }
+        std::string where;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (channels[c].main && channels[c].kinematic() && std::abs(settled.displacement[c]) >= 1e-6)
+                where += fmt::format("{}{} {:+.4g} {}", where.empty() ? "" : ", ", channels[c].name,
+                                     settled.displacement[c], symbol(channels[c].unit));
+        if (!where.empty()) line("  branch '{}' settles: {}", branch.name, where);
+    }
     return text;
 }
 

@@ -41,7 +41,7 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
         return;
     }
     for (const bool load : readings) {
-        const auto& reading = load ? method.equal_load : method.equal_travel;
+        const auto& reading = load ? method.equal_parameter : method.equal_abscissa;
         if (reading.empty()) continue;
         fmt::format_to(out,
                        "\n  method '{}' {}: step error (largest over the branch), its order, and what no "
@@ -79,7 +79,7 @@ void attribution_table(const compare::Study& study, const BranchAttribution& att
         return;
     }
     for (const bool load : readings) {
-        const auto& shares = load ? attribution.equal_load : attribution.equal_travel;
+        const auto& shares = load ? attribution.equal_parameter : attribution.equal_abscissa;
         if (shares.empty()) continue;
         fmt::format_to(
             out, "\n  what the gap of the recursion is made of, {}: whole = lever + axis + load + rest\n",
@@ -160,7 +160,7 @@ std::string study_csv(const compare::Study& study) {
     for (const auto& branch : study.branches)
         for (const auto& method : branch.methods)
             for (const bool load : readings) {
-                const auto& reading = load ? method.equal_load : method.equal_travel;
+                const auto& reading = load ? method.equal_parameter : method.equal_abscissa;
                 for (std::size_t c = 0; c < reading.size(); ++c)
                     for (std::size_t l = 0; l < study.steps.size(); ++l) {
                         const ChannelStudy& s = reading[c];
@@ -183,7 +183,7 @@ std::string attribution_csv(const compare::Study& study, const std::vector<Branc
     std::string csv = "branch,reading,channel,unit,whole,lever,axis,load,rest,band\n";
     for (const auto& branch : attribution)
         for (const bool load : readings) {
-            const auto& shares = load ? branch.equal_load : branch.equal_travel;
+            const auto& shares = load ? branch.equal_parameter : branch.equal_abscissa;
             for (std::size_t c = 0; c < shares.size(); ++c) {
                 const GapShare& s = shares[c];
                 csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
@@ -202,28 +202,28 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
         for (const auto& m : branch.methods) {
             json outcomes = json::array(), load = json::array(), travel = json::array();
             for (const auto outcome : m.outcomes) outcomes.push_back(elastocheck::name(outcome));
-            for (std::size_t c = 0; c < m.equal_load.size(); ++c)
-                load.push_back(channel_json(study.channels[c], m.equal_load[c]));
-            for (std::size_t c = 0; c < m.equal_travel.size(); ++c)
-                travel.push_back(channel_json(study.channels[c], m.equal_travel[c]));
+            for (std::size_t c = 0; c < m.equal_parameter.size(); ++c)
+                load.push_back(channel_json(study.channels[c], m.equal_parameter[c]));
+            for (std::size_t c = 0; c < m.equal_abscissa.size(); ++c)
+                travel.push_back(channel_json(study.channels[c], m.equal_abscissa[c]));
             methods.push_back({{"method", m.method},
                                {"outcomes", outcomes},
                                {"not_studied", m.not_studied},
                                {"constraint_error", m.constraint_error},
                                {"constraint_order", m.constraint_order.order},
-                               {"at_equal_load", load},
-                               {"at_equal_travel", travel}});
+                               {"at_equal_parameter", load},
+                               {"at_equal_abscissa", travel}});
         }
         json shares = {{"not_attributed", "not asked for"},
-                       {"at_equal_load", json::array()},
-                       {"at_equal_travel", json::array()}};
+                       {"at_equal_parameter", json::array()},
+                       {"at_equal_abscissa", json::array()}};
         for (const auto& a : attribution) {
             if (a.branch != branch.branch) continue;
             shares["not_attributed"] = a.not_attributed;
-            for (std::size_t c = 0; c < a.equal_load.size(); ++c)
-                shares["at_equal_load"].push_back(share_json(study.channels[c], a.equal_load[c]));
-            for (std::size_t c = 0; c < a.equal_travel.size(); ++c)
-                shares["at_equal_travel"].push_back(share_json(study.channels[c], a.equal_travel[c]));
+            for (std::size_t c = 0; c < a.equal_parameter.size(); ++c)
+                shares["at_equal_parameter"].push_back(share_json(study.channels[c], a.equal_parameter[c]));
+            for (std::size_t c = 0; c < a.equal_abscissa.size(); ++c)
+                shares["at_equal_abscissa"].push_back(share_json(study.channels[c], a.equal_abscissa[c]));
         }
         branches.push_back({{"name", branch.branch}, {"methods", methods}, {"gap_attribution", shares}});
     }

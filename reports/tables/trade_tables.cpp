@@ -96,7 +96,7 @@ std::string trade_table(const Model& model, const compare::Trade& trade) {
     fmt::format_to(out,
                    "{}\nEvery row produces the same {} output points on each of {} branches. Error: the "
                    "worst over branches, points\n"
-                   "and main channels, at equal load, from the equilibrium leg. Reference uncertainty: {}.\n"
+                   "and main channels, at equal parameter, from the equilibrium leg. Reference uncertainty: {}.\n"
                    "Time: of the whole solve call as a ratio to the equilibrium leg, median of {} "
                    "interleaved rounds; noise {:.1f} %.\n"
                    "Front: no other row is as good for fewer (s) solves, (f) factorisations + evaluations, "

@@ -24,7 +24,7 @@ TEST(Compare, ReferencesAgreeOnTheMcPhersonAtEveryPointOfTheSweep) {
         ASSERT_EQ(branch.runs[1].curve.load.size(), 301u);
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c) {
             const auto& channel = mcpherson().channels[c];
-            const auto& d = branch.uncertainty.equal_load.channels[c];
+            const auto& d = branch.uncertainty.equal_parameter.channels[c];
             EXPECT_EQ(d.compared, 301);
             const double bound = channel.main ? 1e-6 : 1e-5;
             EXPECT_TRUE(std::isfinite(d.max) && d.max <= bound)
@@ -87,8 +87,8 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
 TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
     // What is known of the published method: percents at equal load, a small part of it at equal travel.
     for (const auto& branch : mcpherson().branches) {
-        const auto& load = branch.deviation.equal_load.channels;
-        const auto& travel = branch.deviation.equal_travel.channels;
+        const auto& load = branch.deviation.equal_parameter.channels;
+        const auto& travel = branch.deviation.equal_abscissa.channels;
         for (const std::size_t c : {0u, 1u, 3u, 4u})
             EXPECT_LT(travel[c].max, load[c].max / 10) << mcpherson().channels[c].name;
         EXPECT_GT(load[2].max / load[2].range, 0.01);
@@ -98,8 +98,8 @@ TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
 TEST(Compare, DeviationFromOneReferenceIsTheDeviationFromTheOther) {
     for (const auto& branch : mcpherson().branches)
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            EXPECT_NEAR(branch.deviation.equal_load.channels[c].max,
-                        branch.cross_check.equal_load.channels[c].max, 1e-5);
+            EXPECT_NEAR(branch.deviation.equal_parameter.channels[c].max,
+                        branch.cross_check.equal_parameter.channels[c].max, 1e-5);
 }
 
 TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
@@ -160,7 +160,7 @@ TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
         EXPECT_EQ(branch.deviation.a, Leg::equilibrium);
         EXPECT_EQ(branch.deviation.b, Leg::recursive);
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            EXPECT_EQ(branch.deviation.equal_load.channels[c].end,
+            EXPECT_EQ(branch.deviation.equal_parameter.channels[c].end,
                       branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
                 << mcpherson().channels[c].name;
     }

@@ -27,7 +27,7 @@ Curve made(double rate, F&& shape, int points = 41) {
 TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
     const auto shape = [](double x) { return std::sin(0.2 * x) + 0.01 * x * x; };
     const Curve a = made(1, shape), b = made(1.04, shape);
-    const auto load = at_equal_load(a, b), travel = at_equal_travel(a, b);
+    const auto load = at_equal_parameter(a, b), travel = at_equal_abscissa(a, b);
     EXPECT_NEAR(load.channels[0].max, 0.4, 1e-12);
     EXPECT_NEAR(load.channels[0].signed_max, 0.4, 1e-12);
     EXPECT_EQ(load.channels[0].at, 10);
@@ -41,14 +41,14 @@ TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
 
 TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
     const auto shape = [](double x) { return x; };
-    const auto reading = at_equal_travel(made(1, shape), made(0.9, shape));
+    const auto reading = at_equal_abscissa(made(1, shape), made(0.9, shape));
     EXPECT_EQ(reading.outside, 4);
     EXPECT_EQ(reading.channels[1].compared, 37);
 }
 
 TEST(Deviation, FallingTravelIsReadAsWell) {
     const auto shape = [](double x) { return x * x; };
-    const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));
+    const auto reading = at_equal_abscissa(made(-1, shape), made(-1.1, shape));
     EXPECT_TRUE(reading.not_compared.empty());
     EXPECT_LE(reading.channels[1].max, 1e-12);
 }
@@ -59,7 +59,7 @@ TEST(Deviation, RmsAndSignAreOfTheDifference) {
           b = a;
     b.values[1][1] = -3;
     b.values[2][1] = 1;
-    const auto d = at_equal_load(a, b).channels[1];
+    const auto d = at_equal_parameter(a, b).channels[1];
     EXPECT_DOUBLE_EQ(d.rms, std::sqrt(10.0 / 4));
     EXPECT_EQ(d.signed_max, -3);
     EXPECT_EQ(d.max, 3);
@@ -70,33 +70,33 @@ TEST(Deviation, ANaNAnywhereIsNeverSmall) {
     for (const std::size_t where : {0u, 20u, 40u}) {
         Curve a = made(1, [](double x) { return x; }), b = a;
         b.values[where][1] = nan;
-        const auto load = at_equal_load(a, b).channels[1];
+        const auto load = at_equal_parameter(a, b).channels[1];
         EXPECT_TRUE(std::isnan(load.max)) << where;
         EXPECT_TRUE(std::isnan(load.rms)) << where;
-        EXPECT_TRUE(std::isnan(at_equal_travel(a, b).channels[1].max)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_abscissa(a, b).channels[1].max)) << where;
         b = a;
         a.values[where][1] = nan;
-        EXPECT_TRUE(std::isnan(at_equal_load(a, b).channels[1].max)) << where;
-        EXPECT_TRUE(std::isnan(at_equal_load(a, b).channels[1].range)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].max)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].range)) << where;
         b.travel[where] = nan;
-        EXPECT_FALSE(at_equal_travel(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
+        EXPECT_FALSE(at_equal_abscissa(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
     }
 }
 
 TEST(Deviation, NothingComparedSaysWhy) {
     const Curve a = made(1, [](double x) { return x; });
-    EXPECT_FALSE(at_equal_load(a, {}).not_compared.empty());
-    EXPECT_FALSE(at_equal_load({}, a).not_compared.empty());
-    EXPECT_FALSE(at_equal_travel(a, {}).not_compared.empty());
+    EXPECT_FALSE(at_equal_parameter(a, {}).not_compared.empty());
+    EXPECT_FALSE(at_equal_parameter({}, a).not_compared.empty());
+    EXPECT_FALSE(at_equal_abscissa(a, {}).not_compared.empty());
     Curve other = a;
     other.load[7] += 1e-9;
-    EXPECT_FALSE(at_equal_load(a, other).not_compared.empty());
+    EXPECT_FALSE(at_equal_parameter(a, other).not_compared.empty());
     Curve folded = a;
     std::swap(folded.travel[5], folded.travel[6]);
-    EXPECT_FALSE(at_equal_travel(a, folded).not_compared.empty());
+    EXPECT_FALSE(at_equal_abscissa(a, folded).not_compared.empty());
     Curve elsewhere = made(1, [](double x) { return x; });
     for (auto& t : elsewhere.travel) t += 100;
-    const auto reading = at_equal_travel(a, elsewhere);
+    const auto reading = at_equal_abscissa(a, elsewhere);
     EXPECT_EQ(reading.channels[1].compared, 0);
     EXPECT_TRUE(std::isnan(reading.channels[1].max));
 }

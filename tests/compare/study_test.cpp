@@ -35,7 +35,7 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
     const Study s = study(compile(support::scene("pinned_bar")), options());
     const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
                  truth = std::atan(0.5);
-    const auto& z = s.branches[0].methods[0].equal_load[2];
+    const auto& z = s.branches[0].methods[0].equal_parameter[2];
     EXPECT_EQ(s.channels[2].name, "tip_z");
     EXPECT_EQ(z.end.behaviour, Behaviour::converging);
     EXPECT_NEAR(z.end.order, 1, 0.05);
@@ -44,13 +44,13 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
     EXPECT_NEAR(z.gap, gap, 1e-3 * std::abs(gap));
     EXPECT_NEAR(z.step_error_end[0] / z.step_error_end[1], 2, 0.1);
     // At equal travel a bar has nothing left to be wrong about.
-    EXPECT_LE(std::abs(s.branches[0].methods[0].equal_travel[0].gap), 1e-6);
+    EXPECT_LE(std::abs(s.branches[0].methods[0].equal_abscissa[0].gap), 1e-6);
 }
 
 TEST(Study, APublishedRecursionWithoutStoredLeversHasNoGap) {
     const Study s = study(compile(support::scene("pendulum")), options());
     for (const auto& branch : s.branches)
-        for (const auto& channel : branch.methods[0].equal_load)
+        for (const auto& channel : branch.methods[0].equal_parameter)
             EXPECT_LE(std::abs(channel.gap), channel.end.band + 1e-9);
 }
 
@@ -59,7 +59,7 @@ TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
                           options({"published", "balanced", "tangent", "chord", "midpoint"}));
     const double orders[] = {1, 1, 2, 3, 3};
     for (std::size_t m = 0; m < 5; ++m) {
-        const auto& nose = s.branches[0].methods[m].equal_load[2];
+        const auto& nose = s.branches[0].methods[m].equal_parameter[2];
         if (nose.end.behaviour == Behaviour::converging) {
             EXPECT_NEAR(nose.end.order, orders[m], 0.15) << s.branches[0].methods[m].method;
         } else {
@@ -69,7 +69,7 @@ TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
             EXPECT_LE(std::abs(nose.gap), nose.end.band + 1e-9) << s.branches[0].methods[m].method;
         }
     }
-    EXPECT_GT(std::abs(s.branches[0].methods[0].equal_load[2].gap), 0.05);
+    EXPECT_GT(std::abs(s.branches[0].methods[0].equal_parameter[2].gap), 0.05);
 }
 
 TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
@@ -78,9 +78,9 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
         const auto& m = branch.methods[0];
         EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
         EXPECT_LT(m.constraint_error.back(), 1e-4);     // [m]: falling with the steps
-        EXPECT_GT(std::abs(m.equal_load[2].gap), 1.0);  // [mm]: not falling
-        EXPECT_LE(m.equal_load[2].uncertainty, 1e-6);
-        EXPECT_GT(m.equal_load[2].gap_exponent, 1.2);
+        EXPECT_GT(std::abs(m.equal_parameter[2].gap), 1.0);  // [mm]: not falling
+        EXPECT_LE(m.equal_parameter[2].uncertainty, 1e-6);
+        EXPECT_GT(m.equal_parameter[2].gap_exponent, 1.2);
     }
 }
 
@@ -88,7 +88,7 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
     for (const char* name : {"mcpherson", "bushing_pair", "pinned_bar", "two_spring_arch"}) {
         for (const auto& branch : attribute_gap(compile(support::scene(name)))) {
             ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
-            for (const auto* reading : {&branch.equal_load, &branch.equal_travel})
+            for (const auto* reading : {&branch.equal_parameter, &branch.equal_abscissa})
                 for (const auto& share : *reading) {
                     EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10)
                         << name;
@@ -100,9 +100,9 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
 
 TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
-    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_load)
+    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_parameter)
         EXPECT_LE(std::abs(share.load), 1e-9);
-    EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_load[2].load), 1.0);
+    EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_parameter[2].load), 1.0);
 }
 
 TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
@@ -112,7 +112,7 @@ TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
     for (const auto& branch : s.branches) {
         EXPECT_NE(branch.methods[0].not_studied.find("diverged"), std::string::npos)
             << branch.methods[0].not_studied;
-        EXPECT_TRUE(branch.methods[0].equal_load.empty());
+        EXPECT_TRUE(branch.methods[0].equal_parameter.empty());
     }
     EXPECT_FALSE(s.conclusive());
 }
@@ -142,8 +142,8 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
     const Model model = compile(support::scene("bushing_pair"));
     StudyOptions other = options();
     other.steps = {37, 61, 100, 173, 300, 555};
-    const auto a = study(model, options()).branches[0].methods[0].equal_load[2],
-               b = study(model, other).branches[0].methods[0].equal_load[2];
+    const auto a = study(model, options()).branches[0].methods[0].equal_parameter[2],
+               b = study(model, other).branches[0].methods[0].equal_parameter[2];
     EXPECT_NEAR(a.end.limit, b.end.limit, a.end.band + b.end.band);
     EXPECT_NEAR(a.gap, b.gap, 1e-4 * std::abs(a.gap));
 }
@@ -152,9 +152,9 @@ TEST(Study, IsTheSameFromRunToRun) {
     const Model model = compile(support::scene("mcpherson"));
     const auto a = study(model, options()), b = study(model, options());
     for (std::size_t c = 0; c < a.channels.size(); ++c) {
-        EXPECT_EQ(a.branches[0].methods[0].equal_load[c].gap, b.branches[0].methods[0].equal_load[c].gap);
-        EXPECT_EQ(a.branches[0].methods[0].equal_travel[c].end.limit,
-                  b.branches[0].methods[0].equal_travel[c].end.limit);
+        EXPECT_EQ(a.branches[0].methods[0].equal_parameter[c].gap, b.branches[0].methods[0].equal_parameter[c].gap);
+        EXPECT_EQ(a.branches[0].methods[0].equal_abscissa[c].end.limit,
+                  b.branches[0].methods[0].equal_abscissa[c].end.limit);
     }
 }
 

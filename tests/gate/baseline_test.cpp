@@ -55,7 +55,7 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     file.scene_file = "../s.yaml";
     for (const auto kind : compare::tolerance_classes)
         file.baseline.tolerances[kind] = compare::default_tolerances(kind);
-    file.baseline.limits = {{Quantity::deviation_at_equal_load, "bob_x", 0.1}};
+    file.baseline.limits = {{Quantity::deviation_at_equal_parameter, "bob_x", 0.1}};
     const BaselineFile again = parse_baseline(baseline_text(file), "s");
     EXPECT_EQ(baseline_text(again), baseline_text(file));
     ASSERT_EQ(again.baseline.accepted.series.size(), measurement.series.size());

@@ -78,7 +78,7 @@ TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
         "2 times the tolerance of 0.25");
     compare::Offence limit = offence(0.007);
     limit.of_limit = true, limit.has_load = false, limit.was = limit.tolerance = 0.005;
-    limit.quantity = Quantity::deviation_at_equal_travel;
+    limit.quantity = Quantity::deviation_at_equal_abscissa;
     EXPECT_EQ(story(limit),
               "branch 'jounce', deviation at equal travel: toe: 0.007 deg is over its limit of 0.005 deg");
     const std::string table = gate_table(failed());

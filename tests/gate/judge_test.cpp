@@ -21,7 +21,7 @@ Measurement measurement() {
         m.branches.push_back({branch, {0, 10, 20}});
         m.series.push_back({branch, Quantity::recursive, "toe", "deg", {0, 1, 4}});
         m.series.push_back({branch, Quantity::equilibrium, "toe", "deg", {0, 1, 2}});
-        m.series.push_back({branch, Quantity::deviation_at_equal_travel, "toe", "deg", {0.5}});
+        m.series.push_back({branch, Quantity::deviation_at_equal_abscissa, "toe", "deg", {0.5}});
         m.series.push_back({branch, Quantity::recursive, "travel", "mm", {0, 16, 32}});
         m.series.push_back({branch, Quantity::work_recursive, "steps", "count", {100}});
     }
@@ -61,7 +61,7 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
     for (const auto& [quantity, channel, k, was, tolerance] :
          {Edge{Quantity::recursive, "toe", 1, 1, 0.125},  // atol
           Edge{Quantity::recursive, "travel", 0, 0, 8},   // rtol × range 32
-          Edge{Quantity::deviation_at_equal_travel, "toe", 0, 0.5, 0.125},
+          Edge{Quantity::deviation_at_equal_abscissa, "toe", 0, 0.5, 0.125},
           Edge{Quantity::work_recursive, "steps", 0, 100, 12.5}}) {  // rtol × 100
         for (const double sign : {1.0, -1.0}) {
             Measurement m = measurement();
@@ -89,9 +89,9 @@ TEST(Gate, ADeviationsRelativeToleranceIsAShareOfTheReferencesRange) {
     Baseline b = baseline();
     b.tolerances[ToleranceClass::same_build]["deg"] = {0, 0.25};  // the equilibrium leg's toe spans 2
     Measurement m = measurement();
-    value(m, Quantity::deviation_at_equal_travel, "toe", 0) = 1;
+    value(m, Quantity::deviation_at_equal_abscissa, "toe", 0) = 1;
     EXPECT_EQ(judged(b, m).judgement(), Judgement::passed);
-    value(m, Quantity::deviation_at_equal_travel, "toe", 0) = 1.001;
+    value(m, Quantity::deviation_at_equal_abscissa, "toe", 0) = 1.001;
     EXPECT_EQ(judged(b, m).judgement(), Judgement::failed);
 }
 
@@ -157,19 +157,19 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
          [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build]["mm"].atol = -1; }},
         {"nothing of that name was measured",
          [](auto& b, auto&) {
-             b.limits.push_back({Quantity::deviation_at_equal_travel, "to", 1});
+             b.limits.push_back({Quantity::deviation_at_equal_abscissa, "to", 1});
          }},
         {"nothing of that name was measured",
          [](auto& b, auto&) {
-             b.limits.push_back({Quantity::deviation_at_equal_load, "toe", 1});
+             b.limits.push_back({Quantity::deviation_at_equal_parameter, "toe", 1});
          }},
         {"nothing finite to compare",
          [](auto& b, auto&) {
-             b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", nan});
+             b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", nan});
          }},
         {"nothing finite to compare",
          [](auto& b, auto&) {
-             b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", infinity});
+             b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", infinity});
          }},
     };
     for (const auto& [what, inflict] : damages) {
@@ -221,7 +221,7 @@ TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
 
 TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
     Baseline b = baseline();
-    b.limits.push_back({Quantity::deviation_at_equal_travel, "toe", 0.5});
+    b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", 0.5});
     Verdict verdict = judged(b, measurement());
     EXPECT_EQ(verdict.judgement(), Judgement::passed);
     EXPECT_EQ(verdict.compared, 2 * 11 + 2);

@@ -69,7 +69,7 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const auto result = nlohmann::json::parse(text_of(folder.path / "compared/result.json"));
     const auto& leg = result["scenes"][0]["branches"][0]["legs"][0];
     EXPECT_EQ(leg["method"], "series");
-    const auto& deviation = result["scenes"][0]["branches"][0]["deviation"]["at_equal_load"]["channels"];
+    const auto& deviation = result["scenes"][0]["branches"][0]["deviation"]["at_equal_parameter"]["channels"];
     EXPECT_LE(deviation["toe"]["max"], 1e-9);
 
     const Said studied =
@@ -194,7 +194,7 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_load"].size(),
+    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_parameter"].size(),
               6u);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,320,"));

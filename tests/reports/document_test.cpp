@@ -63,24 +63,24 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
             EXPECT_EQ(leg["residuals_by"].size(), 3u);
         }
         for (const char* pair : {"deviation", "cross_check", "reference_uncertainty"})
-            for (const char* reading : {"at_equal_load", "at_equal_travel"})
+            for (const char* reading : {"at_equal_parameter", "at_equal_abscissa"})
                 EXPECT_EQ(branch[pair][reading]["channels"].size(), s["channels"].size()) << pair << reading;
     }
-    const auto& toe = s["branches"][0]["deviation"]["at_equal_load"]["channels"]["toe"];
-    EXPECT_EQ(toe["max"], made.comparison.branches[0].deviation.equal_load.channels[3].max);
+    const auto& toe = s["branches"][0]["deviation"]["at_equal_parameter"]["channels"]["toe"];
+    EXPECT_EQ(toe["max"], made.comparison.branches[0].deviation.equal_parameter.channels[3].max);
     EXPECT_EQ(toe["unit"], "deg");
 }
 
 TEST(Document, NumbersThatAreNotFiniteAreNull) {
     Made made;
     made.comparison.branches[0].runs[0].curve.values[3][0] = std::numeric_limits<double>::quiet_NaN();
-    made.comparison.branches[0].deviation.equal_load.channels[0].max =
+    made.comparison.branches[0].deviation.equal_parameter.channels[0].max =
         std::numeric_limits<double>::infinity();
     const json d = json::parse(made.document().dump());
     const json& s = d["scenes"][0];
     EXPECT_TRUE(s["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
     EXPECT_TRUE(
-        s["branches"][0]["deviation"]["at_equal_load"]["channels"]["wheel_centre_x"]["max"].is_null());
+        s["branches"][0]["deviation"]["at_equal_parameter"]["channels"]["wheel_centre_x"]["max"].is_null());
 }
 
 TEST(Document, InputHashIsFnv1a) {

@@ -64,7 +64,7 @@ TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecur
                     << row;  // six decimals in the file
         }
     const auto& load = m["readings"][0]["channels"][0];
-    const auto& expected = solved().comparison.branches[0].deviation.equal_load.channels[3];
+    const auto& expected = solved().comparison.branches[0].deviation.equal_parameter.channels[3];
     EXPECT_NEAR(std::abs(load["recursive"]["signed_max"].get<double>()), expected.max, 1e-5);
 }
 

@@ -293,7 +293,7 @@ TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {
     write_report(small_result("old"), "result.json", folder.path / "r");
     const Contents before = contents_of(folder.path / "r");
     json broken = small_result("new");
-    broken["scenes"][0]["branches"][1]["deviation"].erase("at_equal_load");
+    broken["scenes"][0]["branches"][1]["deviation"].erase("at_equal_parameter");
     EXPECT_THROW(write_report(broken, "result.json", folder.path / "r"), ResultError);
     EXPECT_EQ(contents_of(folder.path / "r"), before);
 }

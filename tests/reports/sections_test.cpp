@@ -113,7 +113,7 @@ TEST(Verdict, IsMadeOfTheNumbers) {
     EXPECT_TRUE(contains(before, "in wheel rate at full load")) << before;
     for (auto& branch : branches)
         for (const char* name : {"toe", "camber"})
-            branch["deviation"]["at_equal_travel"]["channels"][name]["max"] = 0.25;
+            branch["deviation"]["at_equal_abscissa"]["channels"][name]["max"] = 0.25;
     EXPECT_TRUE(contains(said(result), "within 0.25\u00a0deg (toe) at equal travel")) << said(result);
     // The reference's last travel moved away from the recursion's: another rate.
     for (auto& branch : branches) {
@@ -137,8 +137,8 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
         json result = sample_result();
         auto& scene = result["scenes"][0];
         for (std::size_t b = 0; b < 2; ++b)
-            for (auto& entry : scene["convergence"]["branches"][b]["methods"][0]["at_equal_load"]) {
-                const double end = scene["branches"][b]["deviation"]["at_equal_load"]["channels"]
+            for (auto& entry : scene["convergence"]["branches"][b]["methods"][0]["at_equal_parameter"]) {
+                const double end = scene["branches"][b]["deviation"]["at_equal_parameter"]["channels"]
                                         [entry["channel"].get<std::string>()]["end"];
                 entry["gap"] = share * end;
                 entry["band"] = 1e-6;
@@ -177,7 +177,7 @@ TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
         curve["load"] = json::array();
         curve["travel_mm"] = json::array();
         for (auto& [name, values] : curve["values"].items()) values = json::array();
-        branch["reference_uncertainty"]["at_equal_load"]["channels"] = json::object();
+        branch["reference_uncertainty"]["at_equal_parameter"]["channels"] = json::object();
     }
     EXPECT_FALSE(contains(said(result), "agree to")) << said(result);
     for (const auto& section : sections(result))
@@ -209,7 +209,7 @@ TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
 TEST(Verdict, NaNIsNeverASmallDeviation) {
     json result = sample_result();
     for (auto& branch : result["scenes"][0]["branches"])
-        branch["deviation"]["at_equal_travel"]["channels"]["camber"]["max"] = nullptr;
+        branch["deviation"]["at_equal_abscissa"]["channels"]["camber"]["max"] = nullptr;
     EXPECT_TRUE(contains(said(result), "within – deg") || contains(said(result), "within –\u00a0deg"))
         << said(result);
 }

@@ -21,14 +21,14 @@ constexpr Term terms[] = {{"lever", "stored force’s lever", vermilion},
 // The range of a channel over the branch, as the study knows it.
 double range_of(const Field& branch, const std::string& channel) {
     for (const auto& method : branch["methods"].items())
-        for (const auto& entry : method["at_equal_load"].items())
+        for (const auto& entry : method["at_equal_parameter"].items())
             if (entry["channel"].text() == channel) return entry["range"].number();
     return NAN;
 }
 
 std::optional<FigureGroup> group(const Field& branch) {
     const Field attribution = branch["gap_attribution"];
-    const auto shares = attribution["at_equal_load"].items();
+    const auto shares = attribution["at_equal_parameter"].items();
     if (shares.empty()) return std::nullopt;
     const std::string name = branch["name"].text();
     Figure figure{.id = fmt::format("gap-{}", slug(name)),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/curve.hpp"
 #include "reports/page/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -20,7 +21,7 @@ std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label()
 std::vector<ChannelInfo> channels_of(const Field& scene) {
     std::vector<ChannelInfo> all;
     for (const auto& c : scene["channels"].items())
-        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(), c["unique"].truth()});
+        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(), c["kinematic"].truth(), c["definition"].text()});
     return all;
 }
 
@@ -30,37 +31,67 @@ std::vector<ChannelInfo> main_channels_of(const Field& scene) {
     return all;
 }
 
+std::size_t LegCurve::start() const {
+    std::size_t nearest = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        if (std::abs(a[k]) < std::abs(a[nearest])) nearest = k;
+    return nearest;
+}
+
 LegCurve curve_of(const Field& branch, std::string_view leg) {
     const Field legs = branch["legs"];
     for (const auto& run : legs.items()) {
         if (run["leg"].text() != leg) continue;
         const Field curve = run["curve"];
-        LegCurve found{std::string(leg), curve["load"].numbers(), curve["travel_mm"].numbers(),
-                       curve["values"]};
-        if (!found.travel.empty() && found.travel.size() != found.load.size())
-            curve["travel_mm"].fail("not as many numbers as loads");
+        LegCurve found{std::string(leg), curve["a"].numbers(), {}, curve["values"]};
         for (const auto& [name, values] : found.values.entries())
-            if (values.value->size() != found.load.size()) values.fail("not as many numbers as loads");
+            if (values.value->size() != found.a.size()) values.fail("not as many numbers as parameters");
+        if (const auto abscissa = branch.find("abscissa")) {
+            found.x = found.channel(abscissa->text());
+            if (!compare::trend(found.x).monotonic()) found.x.clear();
+        }
         return found;
     }
     legs.fail(fmt::format("no leg '{}'", leg));
 }
 
+std::string parameter_word(const std::string& unit) {
+    return unit == "N" || unit == "N·m" ? "load" : "parameter";
+}
+
+std::string Sweep::parameter() const { return fmt::format("{} [{}]", parameter_word(unit), unit); }
+
+std::string Sweep::at_equal_parameter() const { return "at equal " + parameter_word(unit); }
+std::string Sweep::at_equal_abscissa() const {
+    return "at equal " + (abscissa.empty() ? "abscissa" : abscissa.substr(0, abscissa.find(" [")));
+}
+
+std::string abscissa_of(const Field& scene, const Field& branch) {
+    const auto abscissa = branch.find("abscissa");
+    if (!abscissa) return {};
+    for (const auto& channel : channels_of(scene))
+        if (channel.name == abscissa->text()) return channel.heading();
+    abscissa->fail("no such channel");
+}
+
 std::vector<Sweep> sweeps_of(const Field& scene) {
     std::vector<Sweep> sweeps;
-    const auto same_load = [](const Field& a, const Field& b) {
-        return a["load_unit"].text() == b["load_unit"].text() && a["loads"].texts() == b["loads"].texts() &&
-               a["to"].number() * b["to"].number() < 0;
+    const auto same_drive = [](const Field& a, const Field& b) {
+        return a["unit"].text() == b["unit"].text() &&
+               a["drivers"]["moved"].texts() == b["drivers"]["moved"].texts() &&
+               a["drivers"]["held"].texts() == b["drivers"]["held"].texts() && a["from"].number() == 0 &&
+               b["from"].number() == 0 && a["to"].number() * b["to"].number() < 0;
     };
     for (const auto& branch : scene["branches"].items()) {
         Sweep* twin = nullptr;
         for (auto& sweep : sweeps)
-            if (sweep.branches.size() == 1 && same_load(sweep.branches.front(), branch)) twin = &sweep;
+            if (sweep.branches.size() == 1 && same_drive(sweep.branches.front(), branch)) twin = &sweep;
         const std::string name = branch["name"].text();
         if (twin == nullptr) {
-            sweeps.push_back({name, branch["load_unit"].text(), {branch}});
+            sweeps.push_back({name, branch["unit"].text(), abscissa_of(scene, branch), {branch}});
         } else {
             twin->name += " and " + name;
+            if (twin->abscissa != abscissa_of(scene, branch)) twin->abscissa.clear();
             twin->branches.push_back(branch);
         }
     }

@@ -11,7 +11,8 @@ namespace elastocheck::reports {
 
 struct ChannelInfo {
     std::string name, unit;
-    bool main = true, unique = true;
+    bool main = true, kinematic = true;  // kinematic: a position or an angle, no force
+    std::string definition = {};
 
     bool angle() const { return unit == "deg"; }
     std::string label() const;    // "wheel centre y"
@@ -23,18 +24,31 @@ std::vector<ChannelInfo> main_channels_of(const Field& scene);
 // One leg's curve over one branch.
 struct LegCurve {
     std::string leg;
-    std::vector<double> load, travel;  // travel [mm], empty where there is none
+    std::vector<double> a;  // the branch's parameter
+    std::vector<double> x;  // what else it is read over, empty where it cannot be
     Field values;
 
     std::vector<double> channel(const std::string& name) const { return values[name].numbers(); }
+    std::size_t start() const;  // the point nearest to a = 0; 0 of an empty curve
 };
 LegCurve curve_of(const Field& branch, std::string_view leg);
 
+// "load" of a parameter in N or N·m, "parameter" of another.
+std::string parameter_word(const std::string& unit);
+
+// Name and unit of what a branch is read over besides its parameter: "travel [mm]"; empty where there is nothing.
+std::string abscissa_of(const Field& scene, const Field& branch);
+
 // Branches that are one sweep out from the design position both ways share a plot.
 struct Sweep {
-    std::string name;       // "jounce and rebound"
-    std::string load_unit;  // "N"
+    std::string name;  // "jounce and rebound"
+    std::string unit;  // of the parameter, "N"
+    std::string abscissa;  // what else they are read over, "travel [mm]"; empty where there is nothing
     std::vector<Field> branches;
+
+    std::string parameter() const;  // "load [N]", "parameter [mm]"
+    std::string at_equal_parameter() const;  // "at equal load"
+    std::string at_equal_abscissa() const;   // "at equal travel"
 };
 std::vector<Sweep> sweeps_of(const Field& scene);
 

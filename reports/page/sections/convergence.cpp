@@ -50,7 +50,7 @@ std::optional<FigureGroup> group(const std::string& branch, const Field& method,
     for (double& value : phi) value *= 1e3;
     std::vector<Levels> both;
     for (const auto& [key, name] :
-         {std::pair{"at_equal_load", "at equal load"}, std::pair{"at_equal_travel", "at equal travel"}}) {
+         {std::pair{"at_equal_parameter", "at equal load"}, std::pair{"at_equal_abscissa", "at equal travel"}}) {
         if (method[key].items().empty()) continue;
         const Levels levels = levels_of(method[key], steps.size());
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
@@ -115,7 +115,7 @@ Table orders(const Field& branch) {
             continue;
         }
         bool first = true;
-        for (const auto& entry : method["at_equal_load"].items()) {
+        for (const auto& entry : method["at_equal_parameter"].items()) {
             const auto errors = entry["step_error_max"].numbers();
             ChannelInfo channel{entry["channel"].text(), entry["unit"].text()};
             table.rows.push_back({first ? method["method"].text() : "", channel.heading(), order(entry),

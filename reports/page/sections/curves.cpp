@@ -16,28 +16,34 @@ namespace {
 struct Output {
     std::string id, title, axis, channel;
     bool change = false;
-    bool load = false;  // the load itself
+    bool load = false;  // the parameter itself, over the abscissa
 };
 
 std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     std::vector<Output> outputs;
     const auto channels = main_channels_of(scene);
-    const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.name == "toe"; });
-    const bool travel = !curve_of(sweep.branches.front(), "equilibrium").travel.empty();
-    if (wheel) {
-        outputs.push_back({"toe", "Toe angle", "toe angle [deg]", "toe"});
-        outputs.push_back({"camber", "Camber angle", "camber angle [deg]", "camber"});
-        outputs.push_back(
-            {"lateral", "Lateral movement", "wheel centre, change of y [mm]", "wheel_centre_y", true});
+    const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.angle(); });
+    for (const auto& c : channels) {
+        const auto names = [&](std::string_view what) { return c.name == what || c.name.ends_with("." + std::string(what)); };
+        const std::string whose = c.name.find('.') == std::string::npos ? "" : c.name.substr(0, c.name.find('.')) + ": ";
+        if (names("toe")) {
+            outputs.push_back({slug(c.name), whose + "Toe angle", "toe angle [deg]", c.name});
+        } else if (names("camber")) {
+            outputs.push_back({slug(c.name), whose + "Camber angle", "camber angle [deg]", c.name});
+        } else if (names("wheel_centre_y")) {
+            outputs.push_back({whose.empty() ? "lateral" : slug(c.name), whose + "Lateral movement",
+                               "wheel centre, change of y [mm]", c.name, true});
+        }
     }
     for (const auto& c : channels) {
-        if (wheel && (c.name.starts_with("wheel_centre") || c.angle())) continue;
+        if (wheel && (c.name.find("wheel_centre") != std::string::npos || c.angle())) continue;
         outputs.push_back(
             {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
-    if (travel)
-        outputs.push_back({"load", wheel ? "Wheel rate" : "Load", fmt::format("load [{}]", sweep.load_unit),
-                           "", false, true});
+    if (!sweep.abscissa.empty()) {
+        const bool load = parameter_word(sweep.unit) == "load";
+        outputs.push_back({"load", load ? "Load" : "Parameter", sweep.parameter(), "", false, true});
+    }
     return outputs;
 }
 
@@ -45,10 +51,10 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
 std::string value(double x, int digits = 5) { return std::abs(x) < 1e-9 ? "0" : number(x, digits); }
 
 std::vector<double> values_of(const LegCurve& curve, const Output& output) {
-    if (output.load) return curve.load;
+    if (output.load) return curve.a;
     auto values = curve.channel(output.channel);
     if (output.change && !values.empty())
-        for (const double first = values.front(); double& v : values) v -= first;
+        for (const double first = values[curve.start()]; double& v : values) v -= first;
     return values;
 }
 
@@ -59,9 +65,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     Table table;
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
-    const auto measured = measured_series(scene, output.load ? "load" : output.channel, output.change);
+    const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
     const bool fourth = measured && !output.load;  // a column of its own
-    bool travel = false;
+    const bool travel = !sweep.abscissa.empty();
     double most = 0;
     for (const auto& branch : sweep.branches) {
         for (auto* series : {&reference, &energy, &published}) {
@@ -70,7 +76,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                                                    : "recursive";
             const LegCurve curve = curve_of(branch, leg);
             const auto values = values_of(curve, output);
-            const auto& x = curve.travel.empty() ? curve.load : curve.travel;
+            const auto& x = travel && !curve.x.empty() ? curve.x : curve.a;
             if (!series->rows.empty() && series != &energy) series->rows.emplace_back();
             for (const auto k : thinned(values.size(), series == &energy ? 6 : 41))
                 series->rows.push_back({x[k], values[k]});
@@ -78,39 +84,38 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         }
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
-        travel = travel || !a.travel.empty();
         const auto va = values_of(a, output), vb = values_of(b, output), ve = values_of(e, output);
-        for (const auto k : thinned(a.load.size(), 6)) {
+        for (const auto k : thinned(a.a.size(), 6)) {
             if (k == 0 && !rows.empty()) continue;
-            std::vector<std::string> row{number(a.load[k], 4)};
+            std::vector<std::string> row{number(a.a[k], 4)};
             if (output.load) {
                 for (const auto* c : {&a, &e, &b})
-                    row.push_back(k < c->travel.size() ? number(c->travel[k], 5) : "–");
+                    row.push_back(k < c->x.size() ? number(c->x[k], 5) : "–");
             } else {
-                if (!a.travel.empty()) row.push_back(number(a.travel[k], 4));
+                if (travel) row.push_back(k < a.x.size() ? number(a.x[k], 4) : "–");
                 for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
                 if (fourth)
-                    row.push_back(a.travel.empty() ? "–" : value(value_between(*measured, a.travel[k])));
+                    row.push_back(value(value_between(*measured, travel && k < a.x.size() ? a.x[k] : a.a[k])));
             }
-            rows.emplace_back(a.load[k], row);
+            rows.emplace_back(a.a[k], row);
         }
     }
     if (rows.empty() || most < 1e-9) return std::nullopt;  // it does not move
     std::ranges::sort(rows, {}, [](const auto& row) { return row.first; });
     for (auto& [load, row] : rows) table.rows.push_back(std::move(row));
-    table.columns = {{fmt::format("load [{}]", sweep.load_unit)}};
-    if (travel && !output.load) table.columns.push_back({"travel [mm]"});
-    const std::string unit = output.load ? " travel [mm]" : "";
+    table.columns = {{sweep.parameter()}};
+    if (travel && !output.load) table.columns.push_back({sweep.abscissa});
+    const std::string unit = output.load ? ", " + sweep.abscissa : "";
     for (const char* leg : {"equilibrium", "energy", "published recursion"})
         table.columns.push_back({leg + unit});
     if (fourth) table.columns.push_back({"measured"});
-    table.caption = output.load ? fmt::format("Travel at equal load, {}", sweep.name)
-                                : fmt::format("{}, at equal load, {}", output.axis, sweep.name);
+    table.caption = output.load ? fmt::format("{} at equal {}, {}", sweep.abscissa, parameter_word(sweep.unit), sweep.name)
+                                : fmt::format("{}, at equal {}, {}", output.axis, parameter_word(sweep.unit), sweep.name);
 
     Figure figure{.id = fmt::format("{}-{}", output.id, slug(sweep.name)),
                   .title = output.title,
                   .description = {},
-                  .x = travel ? "travel [mm]" : fmt::format("load [{}]", sweep.load_unit),
+                  .x = travel ? sweep.abscissa : sweep.parameter(),
                   .y = output.axis};
     figure.series = {reference, energy, published};
     if (measured) figure.series.push_back(*measured);
@@ -121,7 +126,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         "published recursion's line is drawn over it.",
         output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
         number(high->empty() ? 0 : (*high)[1], 3));
-    return FigureGroup{fmt::format("{} over {}, {}.", output.title, travel ? "travel" : "load", sweep.name),
+    return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name),
                        {figure},
                        table};
 }
@@ -129,8 +134,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
 // Every main output at the end of a branch, per leg.
 Table outputs(const Field& scene, const Field& branch) {
     Table table{
-        .caption = fmt::format("Outputs at full load ({} {}), branch {}", number(branch["to"].number(), 4),
-                               branch["load_unit"].text(), branch["name"].text()),
+        .caption = fmt::format("Outputs at the end ({} {}) of branch {}", number(branch["to"].number(), 4),
+                               branch["unit"].text(), branch["name"].text()),
         .columns = {{"output", true}, {"published recursion"}, {"equilibrium"}, {"energy"}}};
     for (const auto& channel : channels_of(scene)) {
         if (!channel.main) continue;
@@ -154,7 +159,7 @@ std::optional<Section> curves_section(const Field& scene) {
             if (auto made = group(scene, sweep, output)) section.figures.push_back(std::move(*made));
     for (const auto& branch : scene["branches"].items()) section.tables.push_back(outputs(scene, branch));
     section.words["wheel"] =
-        std::ranges::any_of(main_channels_of(scene), [](const auto& c) { return c.name == "toe"; });
+        std::ranges::any_of(main_channels_of(scene), [](const auto& c) { return c.angle(); });
     return section;
 }
 

@@ -24,8 +24,8 @@ void raise(double& worst, double value) {
         worst = std::max(worst, value);
 }
 
-Profile equal_load(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
-    Profile profile(std::min(a.load.size(), b.load.size()), 0.0);
+Profile equal_parameter(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
+    Profile profile(std::min(a.a.size(), b.a.size()), 0.0);
     for (const auto& channel : channels) {
         const auto u = a.channel(channel.name), v = b.channel(channel.name);
         for (std::size_t k = 0; k < profile.size(); ++k) raise(profile[k], v[k] - u[k]);
@@ -33,20 +33,15 @@ Profile equal_load(const LegCurve& a, const LegCurve& b, const std::vector<Chann
     return profile;
 }
 
-bool monotone(const std::vector<double>& x) {
-    return x.size() >= 2 && (std::ranges::adjacent_find(x, std::greater_equal{}) == x.end() ||
-                             std::ranges::adjacent_find(x, std::less_equal{}) == x.end());
-}
-
-Profile equal_travel(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
-    if (!monotone(a.travel) || !monotone(b.travel)) return {};
-    const auto [low, high] = std::minmax(b.travel.front(), b.travel.back());
-    Profile profile(a.travel.size(), 0.0);
+Profile equal_abscissa(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
+    if (a.x.empty() || b.x.empty()) return {};
+    const auto [low, high] = std::minmax(b.x.front(), b.x.back());
+    Profile profile(a.x.size(), 0.0);
     for (const auto& channel : channels) {
         const auto u = a.channel(channel.name), v = b.channel(channel.name);
         for (std::size_t k = 0; k < profile.size(); ++k) {
-            const bool reached = a.travel[k] >= low && a.travel[k] <= high;
-            raise(profile[k], reached ? compare::interpolate(b.travel, v, a.travel[k], 6) - u[k] : NAN);
+            const bool reached = a.x[k] >= low && a.x[k] <= high;
+            raise(profile[k], reached ? compare::interpolate(b.x, v, a.x[k], 6) - u[k] : NAN);
         }
     }
     return profile;
@@ -60,8 +55,8 @@ void append(Series& series, const std::vector<double>& load, const Profile& prof
 }
 
 struct Curves {
-    Series load{"published, at equal load", Series::Style::line, vermilion};
-    Series travel{"published, at equal travel", Series::Style::line, blue};
+    Series load{"", Series::Style::line, vermilion};
+    Series travel{"", Series::Style::line, blue};
     Series recommended{"", Series::Style::line, green};
     Series references{"references apart", Series::Style::thin, slate};
 };
@@ -78,14 +73,17 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     std::erase_if(channels, [&](const ChannelInfo& c) { return c.unit != unit; });
     if (channels.empty()) return std::nullopt;
     const bool angle = unit == "deg";
+    const std::string at_parameter = sweep.at_equal_parameter(), at_abscissa = sweep.at_equal_abscissa();
     Curves curves;
+    curves.load.title = "published, " + at_parameter;
+    curves.travel.title = "published, " + at_abscissa;
     Table table;
-    table.columns = {{fmt::format("load [{}]", sweep.load_unit)},
-                     {fmt::format("published, equal load [{}]", unit)},
-                     {fmt::format("published, equal travel [{}]", unit)}};
+    table.columns = {{sweep.parameter()},
+                     {fmt::format("{} [{}]", curves.load.title, unit)},
+                     {fmt::format("{} [{}]", curves.travel.title, unit)}};
     const auto recommended = scene.find("recommended");
     if (recommended) {
-        curves.recommended.title = configuration(*recommended) + ", at equal load";
+        curves.recommended.title = configuration(*recommended) + ", " + at_parameter;
         table.columns.push_back({fmt::format("{} [{}]", configuration(*recommended), unit)});
     }
     table.columns.push_back({fmt::format("references apart [{}]", unit)});
@@ -96,47 +94,47 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
-        const Profile by_load = equal_load(a, b, channels), by_travel = equal_travel(a, b, channels),
-                      doubt = equal_load(a, e, channels);
+        const Profile by_load = equal_parameter(a, b, channels), by_travel = equal_abscissa(a, b, channels),
+                      doubt = equal_parameter(a, e, channels);
         raise_peak(load_peak, by_load);
         raise_peak(travel_peak, by_travel);
         raise_peak(apart, doubt);
         complete = complete && doubt.size() == by_load.size() && doubt.size() > 1;
-        append(curves.load, a.load, by_load);
-        append(curves.travel, a.load, by_travel);
-        append(curves.references, a.load, doubt);
+        append(curves.load, a.a, by_load);
+        append(curves.travel, a.a, by_travel);
+        append(curves.references, a.a, doubt);
         Profile rung;
         std::vector<double> rung_load;
         if (recommended)
             for (const auto& own : (*recommended)["branches"].items()) {
                 if (own["name"].text() != branch["name"].text()) continue;
-                rung_load = own["load"].numbers();
+                rung_load = own["a"].numbers();
                 rung = own[angle ? "error_deg" : "error_mm"].numbers();
                 append(curves.recommended, rung_load, rung);
             }
         const auto rows = thinned(by_load.size(), 7);
         for (const auto k : rows) {
             if (k == 0 && !rows_by_load.empty()) continue;
-            std::vector<std::string> row{number(a.load[k], 4), number(by_load[k]),
+            std::vector<std::string> row{number(a.a[k], 4), number(by_load[k]),
                                          k < by_travel.size() ? number(by_travel[k]) : "–"};
             if (recommended) {
                 std::size_t nearest = 0;
                 for (std::size_t l = 0; l < rung.size(); ++l)
-                    if (std::abs(rung_load[l] - a.load[k]) < std::abs(rung_load[nearest] - a.load[k]))
+                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k]))
                         nearest = l;
                 const bool same = !rung.empty() &&
-                                  std::abs(rung_load[nearest] - a.load[k]) <= 1e-9 * std::abs(a.load.back());
+                                  std::abs(rung_load[nearest] - a.a[k]) <= 1e-9 * std::abs(a.a.back());
                 row.push_back(same ? number(rung[nearest]) : "–");
             }
             row.push_back(k < doubt.size() ? number(doubt[k]) : "–");
-            rows_by_load.emplace_back(a.load[k], row);
+            rows_by_load.emplace_back(a.a[k], row);
         }
     }
     std::ranges::sort(rows_by_load, {}, [](const auto& row) { return row.first; });
     for (auto& [load, row] : rows_by_load) table.rows.push_back(std::move(row));
     Figure figure{.id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
                   .title = angle ? "Angles: worst deviation" : "Positions: worst deviation",
-                  .x = fmt::format("load [{}]", sweep.load_unit),
+                  .x = sweep.parameter(),
                   .y = fmt::format("deviation from equilibrium [{}]", unit),
                   .log_y = true,
                   .height = 1.12};
@@ -171,11 +169,15 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
                  : "The references did not both go all the way.";
     figure.description = fmt::format(
-        "Logarithmic plot over the load from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
-        "published at equal load up to {}{}{}. {}",
-        number(sweep.branches.back()["to"].number(), 4), number(sweep.branches.front()["to"].number(), 4),
-        sweep.load_unit, enumerated(names), quantity(load_peak, unit),
-        curves.travel.rows.empty() ? "" : ", at equal travel up to " + quantity(travel_peak, unit),
+        "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
+        "published {} up to {}{}{}. {}",
+        parameter_word(sweep.unit),
+        number(sweep.branches.size() > 1 ? sweep.branches.back()["to"].number()
+                                         : sweep.branches.front()["from"].number(),
+               4),
+        number(sweep.branches.front()["to"].number(), 4), sweep.unit, enumerated(names), at_parameter,
+        quantity(load_peak, unit),
+        curves.travel.rows.empty() ? "" : fmt::format(", {} up to {}", at_abscissa, quantity(travel_peak, unit)),
         std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
@@ -190,14 +192,21 @@ Table deviations(const Field& scene, const Field& branch) {
     Table table{.caption =
                     fmt::format("Deviation of the published recursion from the equilibrium leg, branch {}",
                                 branch["name"].text())};
-    const std::string load_unit = branch["load_unit"].text();
-    table.columns = {
-        {"output", true}, {"range"}, {"max at equal load"},   {fmt::format("at [{}]", load_unit)},
-        {"rms"},          {"share"}, {"max at equal travel"}, {"at [mm]"},
-        {"rms"},          {"share"}, {"references apart"}};
-    const Field load = branch["deviation"]["at_equal_load"]["channels"];
-    const Field travel = branch["deviation"]["at_equal_travel"]["channels"];
-    const Field doubt = branch["reference_uncertainty"]["at_equal_load"]["channels"];
+    const Sweep alone{branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
+    table.columns = {{"output", true},
+                     {"range"},
+                     {"max " + alone.at_equal_parameter()},
+                     {fmt::format("at [{}]", alone.unit)},
+                     {"rms"},
+                     {"share"},
+                     {"max " + alone.at_equal_abscissa()},
+                     {alone.abscissa.empty() ? "at" : "at" + alone.abscissa.substr(alone.abscissa.find(" ["))},
+                     {"rms"},
+                     {"share"},
+                     {"references apart"}};
+    const Field load = branch["deviation"]["at_equal_parameter"]["channels"];
+    const Field travel = branch["deviation"]["at_equal_abscissa"]["channels"];
+    const Field doubt = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];
     struct Row {
         ChannelInfo channel;
         double max;
@@ -205,7 +214,7 @@ Table deviations(const Field& scene, const Field& branch) {
     std::vector<Row> rows;
     for (const auto& channel : channels_of(scene)) {
         const auto d = load.find(channel.name);
-        if (!d) continue;
+        if (!d || (channel.kinematic && !channel.main)) continue;  // travel is wheel_centre_z once more
         const double max = (*d)["max"].number();
         const auto joint = channel.name.substr(0, channel.name.find('.'));
         if (!channel.main && !rows.empty() && rows.back().channel.name.starts_with(joint + ".") &&
@@ -248,8 +257,11 @@ std::optional<Section> deviation_section(const Field& scene) {
             if (auto made = group(scene, sweep, unit)) section.figures.push_back(std::move(*made));
     for (const auto& branch : scene["branches"].items()) {
         section.tables.push_back(deviations(scene, branch));
-        const std::string why = branch["deviation"]["at_equal_travel"]["not_compared"].text();
-        if (!why.empty()) section.words["notes"].push_back({{"branch", branch["name"].text()}, {"why", why}});
+        const std::string why = branch["deviation"]["at_equal_abscissa"]["not_compared"].text();
+        const Sweep alone{"", branch["unit"].text(), abscissa_of(scene, branch), {}};
+        if (!why.empty())
+            section.words["notes"].push_back(
+                {{"branch", branch["name"].text()}, {"reading", alone.at_equal_abscissa()}, {"why", why}});
     }
     return section;
 }

@@ -78,7 +78,7 @@ std::optional<Section> drawing_section(const Field& scene) {
     if (!drawing) return std::nullopt;
     Section section{.id = "drawing", .title = "The mechanism"};
     for (const auto& channel : main_channels_of(scene))
-        if (channel.name == "toe") section.title = "The suspension";
+        if (channel.angle()) section.title = "The suspension";
     const Field named = (*drawing)["points"];
     const std::size_t count = named.items().size();
     std::vector<Line> lines;
@@ -92,23 +92,26 @@ std::optional<Section> drawing_section(const Field& scene) {
     }
     struct Snapshot {
         std::string branch;
-        double load;
-        Points points, wheel;
+        Points points;
+        std::vector<Points> wheels;
     };
-    const auto circle_of = [](const Field& at) {
-        const auto wheel = at.find("wheel_mm");
-        return wheel ? points_of(*wheel) : Points{};
+    const auto circles_of = [](const Field& at) {
+        std::vector<Points> circles;
+        if (const auto wheels = at.find("wheels_mm"))
+            for (const auto& wheel : wheels->items()) circles.push_back(points_of(wheel));
+        return circles;
     };
     const auto checked = [&](const Field& at) {
         Points points = points_of(at["points_mm"]);
         if (points.size() != count) at["points_mm"].fail("not as many points as in the drawing");
         return points;
     };
-    const Points design = checked((*drawing)["design"]), design_wheel = circle_of((*drawing)["design"]);
+    const Points design = checked((*drawing)["design"]);
+    const auto design_wheels = circles_of((*drawing)["design"]);
     std::vector<Snapshot> ends;
     for (const auto& at : (*drawing)["positions"].items())
         if (at["where"].text() == "end")
-            ends.push_back({at["branch"].text(), at["load"].number(), checked(at), circle_of(at)});
+            ends.push_back({at["branch"].text(), checked(at), circles_of(at)});
 
     FigureGroup group;
     constexpr Colour moved[] = {vermilion, blue, purple, ochre};
@@ -124,15 +127,15 @@ std::optional<Section> drawing_section(const Field& scene) {
                       .width = 0.75,
                       .height = 1.3};
         for (std::size_t e = 0; e < ends.size() && e < std::size(moved); ++e) {
-            Series series{fmt::format("{}, full load", ends[e].branch), Series::Style::thin, moved[e]};
+            Series series{fmt::format("end of {}", ends[e].branch), Series::Style::thin, moved[e]};
             for (const auto& line : lines) add(series, ends[e].points, line, view);
-            add_circle(series, ends[e].wheel, view);
+            for (const auto& wheel : ends[e].wheels) add_circle(series, wheel, view);
             figure.series.push_back(std::move(series));
         }
         Series bodies{"design position", Series::Style::line, ink};
         Series rods{"rods and springs", Series::Style::dashed, slate}, wheel{"", Series::Style::thin, slate};
         for (const auto& line : lines) add(line.kind == "body" ? bodies : rods, design, line, view);
-        add_circle(wheel, design_wheel, view);
+        for (const auto& circle : design_wheels) add_circle(wheel, circle, view);
         Series joints{"", Series::Style::points, ink, 6};
         for (const auto& p : design)
             joints.rows.push_back(
@@ -144,15 +147,15 @@ std::optional<Section> drawing_section(const Field& scene) {
         names.reserve(ends.size());
         for (const auto& end : ends) names.push_back(end.branch);
         figure.description = fmt::format(
-            "{} at the design position, with the positions at full load in {} drawn over "
+            "{} at the design position, with the positions at the end of {} drawn over "
             "it. "
             "The coordinates are in the table.",
             view.title, enumerated(names));
         group.figures.push_back(std::move(figure));
     }
-    group.caption = "Design position in full lines, positions at full load over it, to scale.";
+    group.caption = "Design position in full lines, positions at the ends of the branches over it, to scale.";
     Table& table = group.table;
-    table.caption = "Points at the design position, and how far the equilibrium leg moves them at full load";
+    table.caption = "Points at the design position, and how far the equilibrium leg moves them to the end of the branch";
     table.columns = {{"point", true}, {"on", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}};
     for (const auto& end : ends)
         for (const char* axis : {"Δx", "Δy", "Δz"})

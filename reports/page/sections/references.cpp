@@ -41,7 +41,7 @@ std::optional<Section> references_section(const Field& scene) {
     const auto channels = channels_of(scene);
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
-        const Field apart = branch["reference_uncertainty"]["at_equal_load"];
+        const Field apart = branch["reference_uncertainty"]["at_equal_parameter"];
         std::vector<std::string> row{name};
         int compared = 0;
         for (const char* unit : {"mm", "deg", "N", "N·m"}) {
@@ -69,7 +69,7 @@ std::optional<Section> references_section(const Field& scene) {
             std::vector<std::string> cells{
                 name, leg["leg"].text(),
                 detail.empty() ? leg["outcome"].text() : fmt::format("{}: {}", leg["outcome"].text(), detail),
-                whole_number(static_cast<long>(leg["curve"]["load"].items().size()))};
+                whole_number(static_cast<long>(leg["curve"]["a"].items().size()))};
             for (const char* count : {"factorisations", "iterations", "evaluations"})
                 cells.push_back(whole_number(leg["counts"][count].whole()));
             if (times) cells.push_back(number(1e3 * leg["seconds"].number()));

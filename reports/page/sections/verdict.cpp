@@ -42,27 +42,18 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, std::stri
     return worst;
 }
 
-// How far the recursion's full load over travel is off the reference's, where it is worst.
-struct Rate {
-    std::string branch;
-    double off = 0;          // share of the reference's rate, signed
-    double travel = 0;       // difference of travel at full load [mm], signed
-    bool everywhere = true;  // it could be read on every branch
-};
-std::optional<Rate> rate_of(const Field& scene) {
-    std::optional<Rate> worst;
-    bool everywhere = true;
-    for (const auto& branch : scene["branches"].items()) {
-        const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive");
-        const bool whole = !a.travel.empty() && a.travel.size() == b.travel.size();
-        const double off = whole ? a.travel.back() / b.travel.back() - 1 : NAN;
-        everywhere = everywhere && std::isfinite(off);
+// The recursion's wheel rate, branch by branch where something vertical moves a wheel: "2.9 % too soft".
+json rate_words(const Field& scene) {
+    json list = json::array();
+    for (const auto& rate : scene["rate_errors"].items()) {
+        const double off = rate["off"].number();
         if (!std::isfinite(off)) continue;
-        if (!worst || std::abs(off) > std::abs(worst->off))
-            worst = Rate{branch["name"].text(), off, b.travel.back() - a.travel.back()};
+        list.push_back({{"value", percent(std::abs(off))},
+                        {"soft", off < 0},
+                        {"branch", rate["branch"].text()},
+                        {"comma", !list.empty()}});
     }
-    if (worst) worst->everywhere = everywhere;
-    return worst;
+    return list;
 }
 
 // Branches that the recursion did not get through.
@@ -84,11 +75,11 @@ json gap_words(const Field& scene) {
     for (const auto& branch : (*study)["branches"].items())
         for (const auto& method : branch["methods"].items()) {
             if (method["method"].text() != "published") continue;
-            for (const auto& entry : method["at_equal_load"].items()) {
+            for (const auto& entry : method["at_equal_parameter"].items()) {
                 for (const auto& compared : scene["branches"].items()) {
                     if (compared["name"].text() != branch["name"].text()) continue;
                     const auto d =
-                        compared["deviation"]["at_equal_load"]["channels"].find(entry["channel"].text());
+                        compared["deviation"]["at_equal_parameter"]["channels"].find(entry["channel"].text());
                     if (!d || entry["unit"].text() != "mm") continue;
                     const double end = (*d)["end"].number();
                     if (!(std::abs(end) > std::abs(worst))) continue;
@@ -176,7 +167,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
 std::optional<double> disagreement(const Field& scene, std::string_view unit) {
     std::optional<double> worst;
     for (const auto& branch : scene["branches"].items()) {
-        const Field found = branch["reference_uncertainty"]["at_equal_load"]["channels"];
+        const Field found = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];
         for (const auto& channel : main_channels_of(scene)) {
             const auto d = found.find(channel.name);
             if (channel.unit != unit || !d) continue;
@@ -201,19 +192,19 @@ std::optional<Section> verdict_section(const Field& scene) {
         json published = nullptr;
         std::vector<int> steps;
         for (const auto& branch : scene["branches"].items()) {
-            const auto points = curve_of(branch, "recursive").load.size();
+            const auto points = curve_of(branch, "recursive").a.size();
             const int count = points > 0 ? static_cast<int>(points) - 1 : 0;
             if (std::ranges::find(steps, count) == steps.end()) steps.push_back(count);
         }
         const bool wheel = [&] {
             for (const auto& c : main_channels_of(scene))
-                if (c.name == "toe") return true;
+                if (c.angle()) return true;
             return false;
         }();
-        const auto load_mm = worst_of(scene, "at_equal_load", "mm");
-        const auto load_deg = worst_of(scene, "at_equal_load", "deg");
-        const auto travel_mm = worst_of(scene, "at_equal_travel", "mm");
-        const auto travel_deg = worst_of(scene, "at_equal_travel", "deg");
+        const auto load_mm = worst_of(scene, "at_equal_parameter", "mm");
+        const auto load_deg = worst_of(scene, "at_equal_parameter", "deg");
+        const auto travel_mm = worst_of(scene, "at_equal_abscissa", "mm");
+        const auto travel_deg = worst_of(scene, "at_equal_abscissa", "deg");
         if (load_mm || load_deg) {
             std::vector<std::string> counts;
             counts.reserve(steps.size());
@@ -221,39 +212,36 @@ std::optional<Section> verdict_section(const Field& scene) {
             published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
             const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
             published["exact"] = exact;
-            const auto rate = rate_of(scene);
+            const json rates = rate_words(scene);
             if (!exact && published["failed"].empty()) {
                 const auto& travel = travel_deg ? travel_deg : travel_mm;
                 const auto& load = load_mm ? load_mm : load_deg;
                 published["load"] = load->words();
-                if (travel && rate) {
+                if (travel) {
                     published["travel"] = travel->words();
                     published["travel"]["exact"] = travel->max < nothing;
-                    published["but"] = !(std::abs(rate->off) <= 10 * travel->share());
-                    published["rate"] = {{"value", percent(std::abs(rate->off))},
-                                         {"soft", rate->off < 0},
-                                         {"only", rate->everywhere ? json(nullptr) : json(rate->branch)},
-                                         {"travel", quantity(std::abs(rate->travel), "mm")}};
+                    if (!rates.empty()) published["rates"] = {{"each", rates}};
                 }
                 published["gap"] = gap_words(scene);
             }
             if (travel_deg && travel_deg->max >= nothing)
                 tiles.push_back({{"key", "travel"},
                                  {"value", travel_deg->text()},
-                                 {"label", fmt::format("{}, worst at equal travel", travel_deg->channel)}});
+                                 {"label", fmt::format("{}, worst at equal abscissa", travel_deg->channel)}});
             else if (travel_mm && travel_mm->max >= nothing)
                 tiles.push_back({{"key", "travel"},
                                  {"value", travel_mm->text()},
-                                 {"label", fmt::format("{}, worst at equal travel", travel_mm->channel)}});
+                                 {"label", fmt::format("{}, worst at equal abscissa", travel_mm->channel)}});
             if (load_mm)
                 tiles.push_back({{"key", "load"},
                                  {"value", load_mm->text()},
-                                 {"label", fmt::format("{}, worst at equal load", load_mm->channel)}});
-            if (rate)
-                tiles.push_back({{"key", "rate"},
-                                 {"value", percent(rate->off)},
-                                 {"label", wheel ? "wheel rate (full load over travel), error"
-                                                 : "full load over travel, error"}});
+                                 {"label", fmt::format("{}, worst at equal parameter", load_mm->channel)}});
+            for (const auto& rate : scene["rate_errors"].items())
+                if (const double off = rate["off"].number(); std::isfinite(off))
+                    tiles.push_back({{"key", "rate"},
+                                     {"value", percent(off)},
+                                     {"label", fmt::format("wheel rate at the end of {}, error",
+                                                           rate["branch"].text())}});
         }
         words["published"] = published;
         std::vector<std::string> agreement;
