@@ -60,7 +60,7 @@ std::vector<Term> terms(const Cursor& at, const std::string& what) {
             terms.push_back({name, item});
         }
     }
-    if (terms.empty()) at.fail(fmt::format("empty; at least {} is needed", what));
+    if (terms.empty()) at.fail(fmt::format("empty; {} is needed", what));
     return terms;
 }
 
@@ -70,6 +70,8 @@ const Load& look_up_load(const Term& term, const Loads& loads) {
     if (const auto found = loads.find(term.name); found != loads.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& entry : loads) names.push_back(entry.first);
+    if (names.empty())
+        term.at.fail(fmt::format("no load is called {}; the scene has no loads", quote(term.name)));
     term.at.fail(
         fmt::format("no load is called {}{}", quote(term.name), did_you_mean(term.name, names, "defined")));
 }

@@ -47,7 +47,8 @@ void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k,
     const double length = 0.5;
     const Point p_i{i, Vector3d::Zero()},
         p_j{j, origin(scene, i) - origin(scene, j) + Vector3d(0, 0, length)};
-    scene.elastics.push_back({name, AxialSpring{p_i, p_j, LinearRate{k}, k > 0 ? length + preload / k : length}});
+    scene.elastics.push_back(
+        {name, AxialSpring{p_i, p_j, LinearRate{k}, k > 0 ? length + preload / k : length}});
 }
 
 Matrix6& K_of(Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
@@ -197,14 +198,8 @@ struct Reason {
 
 TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
     const Reason reasons[] = {
-        {"a load",
-         [](Scene& s) {
-             s.branches = {branch("up", {push("p", 2)})};
-         }},
-        {"a moment",
-         [](Scene& s) {
-             s.branches = {branch("up", {twist("t", 2)})};
-         }},
+        {"a load", [](Scene& s) { s.branches = {branch("up", {push("p", 2)})}; }},
+        {"a moment", [](Scene& s) { s.branches = {branch("up", {twist("t", 2)})}; }},
         {"a load in the second branch",
          [](Scene& s) {
              s.branches = {branch("one", {push("q", 0)}), branch("two", {push("p", 2)})};
@@ -281,6 +276,130 @@ TEST(Compile, IsQuickForThousandsOfBodies) {
         EXPECT_EQ(kept(compile(*scene)), "a");
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
         EXPECT_LT(time.count(), 2.0);
+    }
+}
+
+// ---- What branches drive.
+
+// A jack under a body: its origin stays in a plane of ground.
+int jack(Scene& scene, const std::string& name, BodyId body, bool only_where_driven = true) {
+    scene.joints.push_back({name,
+                            InPlane{.i = {body, Vector3d::Zero()},
+                                    .j = {ground, origin(scene, body)},
+                                    .normal_j = {ground, Vector3d::UnitZ()}},
+                            only_where_driven});
+    return static_cast<int>(scene.joints.size()) - 1;
+}
+
+Branch driven(const std::string& name, const Driven& what, double start = 0, double rate = 1) {
+    Branch result = branch(name, {});
+    result.drivers.push_back({what, start, rate});
+    return result;
+}
+
+TEST(Compile, KeepsAFollowerOnAJackThatIsDrivenOrHeld) {
+    for (const auto& [start, rate] : {std::pair(0.0, 1.0), {0.1, 0.0}, {0.0, 0.0}}) {
+        Scene scene = chain(4);
+        scene.branches = {branch("up", {push("p", 0)}),
+                          driven("jacked", Motion{jack(scene, "jack", 2)}, start, rate)};
+        const Model model = compile(scene);
+        EXPECT_EQ(kept(model), "abc") << start << " " << rate;
+        ASSERT_EQ(model.joints.size(), 4U);
+        EXPECT_EQ(model.joints[3].name, "jack");
+        EXPECT_TRUE(model.joints[3].only_where_driven);
+        const int constraint = model.joints[3].driven;
+        ASSERT_GE(constraint, 0);
+        EXPECT_EQ(model.constraints[static_cast<std::size_t>(constraint)].joint, 3);
+        EXPECT_EQ(std::get<Motion>(model.branches[1].drivers.at(0).what).joint, 3);
+    }
+}
+
+TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
+    Scene scene = chain(4);
+    jack(scene, "jack", 2);
+    scene.branches = {branch("up", {push("p", 0)})};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "a");
+    EXPECT_EQ(left_out(model).at("joint 'jack'"), "no branch drives it");
+
+    Scene held = chain(4);
+    jack(held, "support", 2, false);
+    EXPECT_EQ(kept(compile(held)), "abc") << "what stands always, holds always";
+}
+
+TEST(Compile, KeepsAFollowerBetweenWhichAndItsNeighbourADriverMoves) {
+    Scene scene = chain(3);
+    spring(scene, "coil", 2, 1, 1e3);
+    scene.branches = {driven("trim", FreeLength{0})};
+    EXPECT_EQ(kept(compile(scene)), "abc");
+
+    Scene rubber = chain(3);
+    bushing(rubber, "rubber", 2, 1, 0);
+    rubber.branches = {driven("trim", Preload{0, Vector6::Unit(2)})};
+    const Model model = compile(rubber);
+    EXPECT_EQ(kept(model), "abc");
+    EXPECT_EQ(model.elastics.size(), 1U) << "zero until its preload is driven";
+
+    Scene rod = chain(2);
+    rod.joints.push_back({"rod", Distance{{1, Vector3d(0, 0.3, 0)}, {0, Vector3d(1, 0, 0)}, 0.3}});
+    EXPECT_EQ(kept(compile(rod)), "a");
+    rod.branches = {driven("length", Motion{2})};
+    EXPECT_EQ(kept(compile(rod)), "ab");
+    rod.branches.clear();
+    std::get<Distance>(rod.joints[2].kind).length = 0.31;
+    EXPECT_EQ(kept(compile(rod)), "ab") << "another length than drawn moves something";
+}
+
+TEST(Compile, RenumbersWhatDriversSpeakOf) {
+    Scene scene = bodies(3);
+    ball(scene, "gone", 2, ground);  // c is unconnected
+    spring(scene, "gone_too", 2, ground, 1e3);
+    const int first = jack(scene, "jack", 1);
+    ball(scene, "ab", 1, 0);
+    spring(scene, "coil", 0, ground, 1e3);
+    bushing(scene, "rubber", 0, ground, 1e3);
+    scene.branches = {driven("jacked", Motion{first}), driven("coil", FreeLength{1}, 0.1, 0.2),
+                      driven("rubber", Preload{2, Vector6::Unit(4)})};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "ab");
+    const auto motion = std::get<Motion>(model.branches[0].drivers.at(0).what);
+    EXPECT_EQ(model.joints.at(static_cast<std::size_t>(motion.joint)).name, "jack");
+    const auto length = std::get<FreeLength>(model.branches[1].drivers.at(0).what);
+    EXPECT_EQ(model.elastics.at(static_cast<std::size_t>(length.elastic)).name, "coil");
+    EXPECT_EQ(model.branches[1].drivers[0].start, 0.1);
+    EXPECT_EQ(model.branches[1].drivers[0].rate, 0.2);
+    const auto preload = std::get<Preload>(model.branches[2].drivers.at(0).what);
+    EXPECT_EQ(model.elastics.at(static_cast<std::size_t>(preload.elastic)).name, "rubber");
+    EXPECT_EQ(preload.direction, Vector6(Vector6::Unit(4)));
+}
+
+TEST(Compile, NamesABranchOfWhichNothingIsLeft) {
+    Scene scene = bodies(2);
+    ball(scene, "a_ground", 0, ground);
+    ball(scene, "b_ground", 1, ground);
+    spring(scene, "coil", 0, ground, 0);
+    spring(scene, "far", 1, ground, 1e3);
+    bushing(scene, "rubber", 0, ground, 1e3);
+    const int moved = jack(scene, "jack", 1);
+    scene.branches = {branch("load", {push("far", 1)}),
+                      driven("jacked", Motion{moved}),
+                      driven("ball", Motion{0}),
+                      driven("coil", FreeLength{0}),
+                      driven("far", FreeLength{1}),
+                      driven("rubber", Preload{2, Vector6::Zero()}),
+                      driven("held", FreeLength{0}, 0.1, 0),
+                      driven("still", Preload{2, Vector6::Unit(0)}, 0, 0),
+                      branch("none", {}),
+                      branch("sound", {push("near", 0)})};
+    const Model model = compile(scene);
+    ASSERT_EQ(model.branches.size(), scene.branches.size());
+    std::map<std::string, int> named;
+    for (const Omission& omission : model.left_out)
+        if (omission.what.starts_with("branch")) ++named[omission.what];
+    for (const Branch& b : model.branches) {
+        const bool is_sound = b.name == "sound";
+        EXPECT_EQ(b.drivers.size(), is_sound ? 1U : 0U) << b.name;
+        EXPECT_EQ(named["branch '" + b.name + "'"], is_sound ? 0 : 1) << b.name;
     }
 }
 
@@ -444,10 +563,12 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
         const auto kept_parts =
             model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
         const auto is_branch = [](const Omission& omission) { return omission.what.starts_with("branch"); };
-        const auto branches = std::ranges::count_if(model.left_out, is_branch);  // kept, though with no driver
+        const auto branches =
+            std::ranges::count_if(model.left_out, is_branch);  // kept, though with no driver
         EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.left_out.size());
         for (const Branch& left : model.branches)
-            EXPECT_EQ(left_out(model).contains("branch '" + left.name + "'"), left.drivers.empty());
+            EXPECT_EQ(std::ranges::count(model.left_out, "branch '" + left.name + "'", &Omission::what),
+                      left.drivers.empty() ? 1 : 0);
         for (const ModelJoint& joint : model.joints)
             for (const auto& constraint : lower(find(scene.joints, joint.name)->kind, scene.bodies))
                 joint_rows += static_cast<std::size_t>(rows(constraint));
@@ -468,13 +589,23 @@ std::string kept_by_the_rule(const Scene& scene) {
     const auto connect = [&](const auto& kind, bool loaded) {
         std::visit([&](const auto& s) { edges.push_back({s.i.body, s.j.body, loaded}); }, kind);
     };
-    for (const auto& joint : scene.joints) connect(joint.kind, false);
+    const auto at = [&](const Point& p) -> Vector3d { return origin(scene, p.body) + p.s_local; };
+    for (const auto& joint : scene.joints) {
+        bool strained = false;  // the bodies of random scenes are parallel to ground
+        if (const auto* d = std::get_if<Distance>(&joint.kind))
+            strained = std::abs((at(d->i) - at(d->j)).norm() - d->length) > 1e-9;
+        if (const auto* p = std::get_if<InPlane>(&joint.kind))
+            strained = std::abs(p->normal_j.u_local.dot(at(p->i) - at(p->j)) - p->offset) > 1e-9;
+        connect(joint.kind, strained);
+    }
     for (const auto& elastic : scene.elastics) {
         if (const auto* s = std::get_if<AxialSpring>(&elastic.kind)) {
-            if (std::get<LinearRate>(s->law).k > 0) connect(elastic.kind, true);  // no random spring has its free length
+            if (std::get<LinearRate>(s->law).k > 0)
+                connect(elastic.kind, true);  // no random spring has its free length
         } else {
             const auto& b = std::get<Bushing>(elastic.kind);
-            if (!b.preload.isZero() || !std::get<LinearStiffness>(b.law).K.isZero()) connect(elastic.kind, !b.preload.isZero());
+            if (!b.preload.isZero() || !std::get<LinearStiffness>(b.law).K.isZero())
+                connect(elastic.kind, !b.preload.isZero());
         }
     }
     std::vector<bool> is_output(scene.bodies.size()), is_loaded(scene.bodies.size());

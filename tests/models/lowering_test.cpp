@@ -54,8 +54,7 @@ void append(const DistanceBetween& c, const Poses& q, std::vector<double>& Phi) 
     Phi.push_back((at(c.i, q) - at(c.j, q)).norm() - c.length);
 }
 void append(const DirectionAtAngle& c, const Poses& q, std::vector<double>& Phi) {
-    Phi.push_back(
-        along(c.i, q).dot(std::cos(c.angle) * along(c.y_j, q) - std::sin(c.angle) * along(c.j, q)));
+    Phi.push_back(along(c.i, q).dot(std::cos(c.angle) * along(c.y_j, q) - std::sin(c.angle) * along(c.j, q)));
 }
 
 Eigen::VectorXd Phi(const std::vector<ConstraintKind>& constraints, const Poses& poses) {
@@ -152,7 +151,10 @@ std::vector<Lowered> all_joints(const Place& at) {
         {"planar", Planar{p_i, p_j, u_i, u_j}, 3, {about_u, along_v, along_w}},
         {"fixed", Fixed{p_i, p_j, u_i, v_i, u_j, v_j}, 6, {}},
         {"distance", Distance{p_i, far_j, rod.norm()}, 1, {about_a, about_b, about_rod, around_a, around_b}},
-        {"in_plane", InPlane{p_i, far_j, u_j, -at.u.dot(rod)}, 1, {about_u, about_v, about_w, along_v, along_w}},
+        {"in_plane",
+         InPlane{p_i, far_j, u_j, -at.u.dot(rod)},
+         1,
+         {about_u, about_v, about_w, along_v, along_w}},
         {"in_line", InLine{p_i, p_j, u_j}, 2, {about_u, about_v, about_w, along_u}},
         {"perpendicular", Perpendicular{u_i, v_j}, 1, {about_u, about_v, along_u, along_v, along_w}},
         {"parallel", Parallel{u_i, u_j}, 2, {about_u, along_u, along_v, along_w}},

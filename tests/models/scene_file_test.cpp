@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <clocale>
 #include <cmath>
 #include <filesystem>
@@ -194,17 +195,22 @@ TEST(Readme, ItsExampleIsAScene) {
 
 // ---- Units.
 
-// A scene with something of everything; `L`, `A` stand
-// for what a number in metres or radians is multiplied by.
-std::string scene_in(const std::string& length, const std::string& angle) {
+// A scene with something of everything; `L`, `A` stand for what a number in metres or radians is multiplied
+// by.
+std::string scene_in(const std::string& length, const std::string& angle, const std::string& force = "N",
+                     const std::string& moment = "") {
     const double L = length == "mm" ? 1000 : 1;        // per m
     const double A = angle == "deg" ? per_degree : 1;  // per rad
+    const double F = force == "kN" ? 1e-3 : 1;         // per N
+    const double M = moment.empty()
+                         ? F * L  // per N·m
+                         : (moment.starts_with("k") ? 1e-3 : 1) * (moment.ends_with("mm") ? 1e3 : 1);
     const auto number = [](double x) { return fmt::format("{:.17g}", x); };
     const auto vector = [&](double x, double y, double z) {
         return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z);
     };
-    std::string text =
-        "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle + ", force: N}\n";
+    std::string text = "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle +
+                       ", force: " + force + (moment.empty() ? "" : ", moment: " + moment) + "}\n";
     text += "points:\n";
     text += "  a: " + vector(0.011 * L, -0.247 * L, 0.333 * L) + "\n";
     text += "  b: " + vector(0.5 * L, 0.125 * L, -0.071 * L) + "\n";
@@ -214,16 +220,17 @@ std::string scene_in(const std::string& length, const std::string& angle) {
     text += "  rod: {type: distance, bodies: [one, two], from: a, to: c}\n";
     text += "  tube: {type: cylindrical, bodies: [one, two], at: c, axis: [a, b]}\n";
     text += "springs:\n";
-    text += "  free: {bodies: [one, two], from: a, to: b, rate: " + number(28e3 / L) +
+    text += "  free: {bodies: [one, two], from: a, to: b, rate: " + number(28e3 * F / L) +
             ", free_length: " + number(0.75 * L) + "}\n";
-    text +=
-        "  loaded: {bodies: [one, ground], from: a, to: c, rate: " + number(30e3 / L) + ", preload: 3500}\n";
+    text += "  loaded: {bodies: [one, ground], from: a, to: c, rate: " + number(30e3 * F / L) +
+            ", preload: " + number(3500 * F) + "}\n";
     text += "bushings:\n";
     text += "  rates: {bodies: [one, ground], at: b, frame: {x: [a, b], y: z}, rates: " +
-            vector(1e5 / L, 2e5 / L, 3e5 / L) +
-            ", rotational_rates: " + vector(10 * L / A, 20 * L / A, 30 * L / A) +
-            ", preload: [1, 2, 3], preload_moment: " + vector(4 * L, 5 * L, 6 * L) + "}\n";
-    const double k = 1e6 / L, c = 250 / A, r = 700 * L / A;
+            vector(1e5 * F / L, 2e5 * F / L, 3e5 * F / L) +
+            ", rotational_rates: " + vector(10 * M / A, 20 * M / A, 30 * M / A) +
+            ", preload: " + vector(F, 2 * F, 3 * F) + ", preload_moment: " + vector(4 * M, 5 * M, 6 * M) +
+            "}\n";
+    const double k = 1e6 * F / L, c = 250 * F / A, r = 700 * M / A;
     text += "  full:\n    bodies: [two, ground]\n    at: c\n    stiffness:\n";
     const double K[6][6] = {{k, 0, 0, 0, c, 0},  {0, 2 * k, 0, -c, 0, 0}, {0, 0, 3 * k, 0, 0, 0},
                             {0, -c, 0, r, 0, 0}, {c, 0, 0, 0, 2 * r, 0},  {0, 0, 0, 0, 0, 3 * r}};
@@ -231,16 +238,23 @@ std::string scene_in(const std::string& length, const std::string& angle) {
         text += "      - [" + number(row[0]) + ", " + number(row[1]) + ", " + number(row[2]) + ", " +
                 number(row[3]) + ", " + number(row[4]) + ", " + number(row[5]) + "]\n";
     text += "static_loads:\n";
-    text += "  weight: {on: one, at: b, force: [0, 0, -400]}\n";
-    text += "  torque: {on: two, moment: " + vector(0, 7 * L, 0) + "}\n";
+    text += "  weight: {on: one, at: b, force: " + vector(0, 0, -400 * F) + "}\n";
+    text += "  torque: {on: two, moment: " + vector(0, 7 * M, 0) + "}\n";
     text += "loads:\n";
     text += "  push: {on: one, at: b, force: [0.6, 0, 0.8]}\n";
-    text += "  lever: {on: two, moment: " + vector(0.1 * L, 0, 0.2 * L) + "}\n";
+    text += "  lever: {on: two, moment: " + vector(0.1 * M / F, 0, 0.2 * M / F) + "}\n";
     text += "  twist: {on: two, moment: [0, 0.6, 0.8]}\n";
     text += "branches:\n";
-    text += "  force: {load: push, to: 3000, steps: 30}\n";
-    text += "  mixed: {load: [push, lever], to: -2000, steps: 20}\n";
-    text += "  moment: {load: twist, to: " + number(90 * L) + ", steps: 10}\n";
+    text += "  force: {load: push, to: " + number(3000 * F) + ", steps: 30}\n";
+    text += "  mixed: {load: [push, lever], to: " + number(-2000 * F) + ", steps: 20}\n";
+    text += "  moment: {load: twist, to: " + number(90 * M) + ", steps: 10}\n";
+    text += "  travel: {drive: travel, from: " + number(-0.08 * L) + ", to: " + number(0.07 * L) +
+            ", steps: 9, hold: {joints.tube: " + number(0.2 * A) + "}}\n";
+    text += "  tube: {drive: {joints.tube: 1, joints.rod: " + number(0.25 * L / A) +
+            ", springs.loaded.preload: " + number(40 * F / A) + "}, to: " + number(0.3 * A) +
+            ", steps: 9, static_loads: {push: " + number(700 * F) + ", twist: " + number(8 * M) + "}}\n";
+    text += "  rubber: {drive: {bushings.rates.preload_moment.x: 1, bushings.full.preload.z: " +
+            number(3 * F / M) + "}, to: " + number(5 * M) + ", steps: 9}\n";
     text += "wheel: {body: one, centre: b, contact_patch: c, spin_axis: [0.1, -1, 0], side: right}\n";
     text += "probes: {tip: {on: two, at: c}}\n";
     return text;
@@ -251,7 +265,11 @@ TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
     for (const char* length : {"m", "mm"})
         for (const char* angle : {"rad", "deg"}) {
             SCOPED_TRACE(fmt::format("{} {}", length, angle));
-            expect_same(si, parsed(scene_in(length, angle)), 1e-15);
+            for (const char* force : {"N", "kN"})
+                for (const char* moment : {"", "N·m", "N*mm", "kNm", "kN·mm"}) {
+                    SCOPED_TRACE(fmt::format("{} {}", force, moment));
+                    expect_same(si, parsed(scene_in(length, angle, force, moment)), 2e-15);
+                }
         }
 }
 
@@ -270,7 +288,8 @@ TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
     // The factor of `mixed` is a force: the moment per newton is a length. That of `moment` is a moment.
     EXPECT_EQ(scene.branches[1].to, -2000);
     EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f, Vector3d(0.6, 0, 0.8));
-    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m, Vector3d(0.1, 0, 0.2), 1e-16);
+    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m, Vector3d(0.1, 0, 0.2),
+                1e-16);
     EXPECT_DOUBLE_EQ(scene.branches[2].to, 90);
     EXPECT_EQ(std::get<DeadMoment>(load_of(scene.branches[2].drivers[0]).kind).m, Vector3d(0, 0.6, 0.8));
 }
@@ -483,19 +502,65 @@ std::string bench_with(const Matrix6& K) {
     return bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
 }
 
-// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere
-// may be like. Its zero eigenvalues come out as ±1e-16.
-TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
+// The 6×6 of SI units K as it is written in the units named.
+struct UnitsOfText {
+    const char *text, *length, *angle;
+    double per_newton_metre;  // of the declared moment
+};
+const UnitsOfText all_units[] = {
+    {"length: m, angle: rad, force: N", "m", "rad", 1},
+    {"length: m, angle: deg, force: N", "m", "deg", 1},
+    {"length: mm, angle: rad, force: N", "mm", "rad", 1000},
+    {"length: mm, angle: deg, force: N", "mm", "deg", 1000},
+    {"length: mm, angle: deg, force: N, moment: N·m", "mm", "deg", 1},
+};
+
+Matrix6 written(const Matrix6& K, const UnitsOfText& units) {
+    const double per_m = units.length == std::string("mm") ? 1000 : 1;
+    const double per_rad = units.angle == std::string("deg") ? per_degree : 1;
+    Matrix6 W = K;
+    W.topLeftCorner<3, 3>() /= per_m;
+    W.topRightCorner<3, 3>() /= per_rad;
+    W.bottomLeftCorner<3, 3>() /= per_rad;
+    W.bottomRightCorner<3, 3>() *= units.per_newton_metre / per_rad;
+    return W;
+}
+
+std::string bench_with(const Matrix6& K, const UnitsOfText& units) {
+    return replaced(bench_with(written(K, units)), "length: mm, angle: deg, force: N", units.text);
+}
+
+// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere may be like. Its zero eigenvalues come out as
+// ±1e-16. Whatever the units, the same 6×6 is accepted, or refused.
+TEST(Stiffness, IsJudgedAlikeInAllUnits) {
     std::mt19937 random(6);
     std::normal_distribution<double> normal;
     for (int n = 0; n < 100; ++n) {
         Eigen::MatrixXd V(6, 1 + n % 5);
         for (double& v : V.reshaped()) v = normal(random) * std::exp(3 * normal(random));
         const Matrix6 K = V * V.transpose();
-        EXPECT_NO_THROW(parsed(bench_with(K))) << K;
         const Matrix6 indefinite = K - 1e-9 * Matrix6(K.diagonal().asDiagonal());
-        EXPECT_THROW(parsed(bench_with(indefinite)), SceneError) << indefinite;
+        for (const UnitsOfText& units : all_units) {
+            EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text << "\n" << K;
+            EXPECT_THROW(parsed(bench_with(indefinite, units)), SceneError) << units.text << "\n"
+                                                                            << indefinite;
+        }
     }
+}
+
+// The congruence with D = diag(√N/mm ..., √N·mm/deg ...) has √(N/mm · N·mm/deg) = N/√deg in its off-diagonal blocks,
+// where N/deg is written: turning deg into rad raises the coupling against the diagonal by √57.3.
+TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
+    Matrix6 K = Matrix6::Identity();
+    K.topLeftCorner<3, 3>() *= 1e6;
+    K.bottomRightCorner<3, 3>() *= 1e2;
+    K(0, 4) = K(4, 0) = 3e4;  // √(1e6 · 1e2) = 1e4 is the most that it may be
+    for (const UnitsOfText& units : all_units)
+        EXPECT_THROW(parsed(bench_with(K, units)), SceneError) << units.text;
+    const Matrix6 in_degrees = written(K, all_units[3]);
+    EXPECT_GT(in_degrees.eigenvalues().real().minCoeff(), 0) << "as written it looks definite";
+    K(0, 4) = K(4, 0) = 0.99e4;
+    for (const UnitsOfText& units : all_units) EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text;
 }
 
 TEST(Stiffness, IsSymmetricToTheLastBit) {
