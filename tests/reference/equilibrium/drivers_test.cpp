@@ -421,6 +421,20 @@ TEST(EquilibriumDrivers, ARodOfAnotherLengthThanDrawnIsSettledToItsOwn) {
     }
 }
 
+// The row of an angle is a sine, which cannot tell a direction from its opposite; the judge can.
+TEST(EquilibriumDrivers, AnOppositeDirectionIsNotTheAngle) {
+    Scene s = slider_crank(0.05, 0.13, 0, 1);
+    const auto solved = solved_at(s, 0, {0});
+    ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
+    expect_in_balance(solved);
+    Equilibrium turned = solved.path.points[0];
+    turned.poses[0].p = Quaterniond(Eigen::AngleAxisd(M_PI, Vector3d::UnitZ()));
+    turned.poses[1].r[0] = -0.05 + 0.13;
+    const auto r = residuals(solved.model, solved.branch(), turned);
+    EXPECT_LE(r.length, 1e-15);
+    EXPECT_GE(r.direction, 1);
+}
+
 // ---- Failures
 
 TEST(EquilibriumDrivers, WhatCannotBeClosedIsNamed) {

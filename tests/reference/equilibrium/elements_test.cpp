@@ -120,14 +120,14 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
                                         });
             const Eigen::VectorXd x = equilibrium::moved(system, design_unknowns(system), off);
             Counts counts;
-            const Eigen::MatrixXd J = derivatives(system, 700, x, counts).J;
+            const Eigen::MatrixXd J = derivatives(system, {700}, x, counts).J;
             for (int k = 0; k < n; ++k) {
                 Eigen::VectorXd differences(n);
                 for (int row = 0; row < n; ++row)
                     differences[row] = slope(
                         [&](double h) {
                             return residual(
-                                system, {700, 0},
+                                system, {700},
                                 equilibrium::moved(system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
                         },
                         2e-3);

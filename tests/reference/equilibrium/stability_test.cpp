@@ -91,6 +91,7 @@ TEST(EquilibriumStability, AStraightColumnEndsAtItsBucklingLoad) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
     expect_singular_at(s, 3929.4, 1000 / 0.5);
+    expect_singular_at(s, 4000, 1000 / 0.5);  // with points that hit it
 }
 
 // Two bars in a line, torsion springs c in both hinges: c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L θ₂, whence
