@@ -164,20 +164,21 @@ Prescribed random_rate(const Model& model, Random& random) {
     return rate;
 }
 
-// g(a + h) = g(a) + h ∂g/∂a + O(h²), for the gradient of V under every driver.
+// g(a + h) = g(a) + ∂g/∂a h + O(h²), for the gradient of V under every driver, along two rates at once.
 TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
     Random random;
     for (int repeat = 0; repeat < 25; ++repeat) {
         for (const auto& one : potentials(random)) {
             Chart chart = chart_about({random.pose(), random.pose()});
             move_to(chart, random.many(12, 0.8));
-            const Prescribed rate = random_rate(one.model, random);
+            const Prescribed rates[] = {random_rate(one.model, random), random_rate(one.model, random)};
             const auto values = [&](const VectorXd& a) -> Values {
-                const Prescribed now = sum(one.prescribed, a[0], rate);
-                return {potential(one.model, now, chart).gradient,
-                        gradient_rate(one.model, now, rate, chart)};
+                const Prescribed now = sum(sum(one.prescribed, a[0], rates[0]), a[1], rates[1]);
+                MatrixXd g_a(12, 2);
+                for (const int k : {0, 1}) g_a.col(k) = gradient_rate(one.model, now, rates[k], chart);
+                return {potential(one.model, now, chart).gradient, g_a};
             };
-            EXPECT_NEAR(observed_order(random, 1, random.many(1), values, 1e-12), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 2, random.many(2), values, 1e-12), 2, 0.1) << one.name;
         }
     }
 }
@@ -189,17 +190,20 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
         for (const auto& one : constraint_cases(random)) {
             Chart chart = chart_about({random.pose(), random.pose()});
             move_to(chart, random.many(12, 0.8));
-            const Prescribed rate = random_rate(one.model, random);
+            const Prescribed rates[] = {random_rate(one.model, random), random_rate(one.model, random)};
             const auto values = [&](const VectorXd& a) -> Values {
-                const Prescribed now = sum(one.prescribed, a[0], rate);
+                const Prescribed now = sum(sum(one.prescribed, a[0], rates[0]), a[1], rates[1]);
                 const ConstraintValues c = constraints(one.model, now, chart);
-                const ConstraintRates c_a = constraint_rates(one.model, now, rate, chart);
-                VectorXd f(c.Phi.size() + c.Phi_q.size()), f_a(f.size());
+                VectorXd f(c.Phi.size() + c.Phi_q.size());
+                MatrixXd f_a(f.size(), 2);
                 f << c.Phi, c.Phi_q.reshaped();
-                f_a << c_a.Phi_a, c_a.Phi_qa.reshaped();
+                for (const int k : {0, 1}) {
+                    const ConstraintRates c_a = constraint_rates(one.model, now, rates[k], chart);
+                    f_a.col(k) << c_a.Phi_a, c_a.Phi_qa.reshaped();
+                }
                 return {f, f_a};
             };
-            EXPECT_NEAR(observed_order(random, 1, random.many(1, 0.2), values, 1e-12), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 2, random.many(2, 0.1), values, 1e-12), 2, 0.1) << one.name;
         }
     }
 }

@@ -35,11 +35,13 @@ EquilibriumPath walk(Scene scene, const Branch& branch, const std::vector<double
     return solve(scene, 0, values);
 }
 
+// Of origins, and of orientations where they are determined: the strut's spin, body 2, is idle and depends on
+// the way.
 double furthest(const Equilibrium& one, const Equilibrium& two) {
     double worst = 0;
     for (std::size_t b = 0; b < one.poses.size(); ++b) {
         worst = std::max(worst, (one.poses[b].r - two.poses[b].r).norm());
-        worst = std::max(worst, one.poses[b].p.angularDistance(two.poses[b].p));
+        if (b != 2) worst = std::max(worst, one.poses[b].p.angularDistance(two.poses[b].p));
     }
     return worst;
 }

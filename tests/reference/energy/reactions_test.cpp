@@ -33,7 +33,8 @@ TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
             model.joints = {{"weld", ground_first ? ground : 0, ground_first ? 0 : ground,
                              ground_first ? on_ground : on_body}};
             for (const auto& kind : lower(weld, model.bodies)) model.constraints.push_back({0, kind});
-            const Branch branch = load_branch("pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3);
+            const Branch branch =
+                load_branch("pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3);
             const auto path = solve(model, branch, sweep(branch));
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& state : path.points) {
