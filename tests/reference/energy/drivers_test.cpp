@@ -384,7 +384,7 @@ TEST(Drivers, FreeLengthPushesAsItsRateSays) {
         walk(scene, driven_branch("lift", {{FreeLength{0}, start, 1}}, 0.05), values_to(0.05, 10));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points)
-        EXPECT_NEAR(state.poses[0].r.z(), 0.3 + k_1 * (start + state.load) / (k_1 + k_2), 1e-14)
+        EXPECT_NEAR(state.poses[0].r.z(), 0.3 + k_1 * (start + state.load) / (k_1 + k_2), 1e-12)
             << state.load;
 }
 
