@@ -130,7 +130,7 @@ std::vector<Scene> scenes() {
              {Motion{4}, 0.01, 0.03},
              {Motion{2}, -0.001, 0.002},
              {FreeLength{0}, 0.002, 0.01},
-             {Preload{1, random.many(6, 20)}, 1, 2},
+             {Preload{3, random.many(6, 20)}, 1, 2},
              {Load{"brake", DeadForce{{wheel.body, Vector3d(0, 0.05, 0)}, {-1, 0.2, 0}}}, 300, 200}}}};
     return {scene_named("mcpherson"),
             hard,
