@@ -1,15 +1,22 @@
 #include "compare/channels.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
+
+#include "compare/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degrees = 180 / std::numbers::pi;
-constexpr double millimetres = 1e3;
+constexpr std::array axes{"x", "y", "z"};
+constexpr std::array towards{"forward", "to the left", "up"};
 
 const Pose& pose(const Equilibrium& state, BodyId body) {
     static const Pose at_rest;
@@ -21,11 +28,143 @@ Vector3d position(const Equilibrium& state, const Point& point) {
     return b.r + b.p * point.s_local;
 }
 
-// The point whose displacement is the travel.
-std::optional<Point> leading_point(const Model& model) {
-    if (model.wheel) return Point{model.wheel->body, model.wheel->centre_local};
-    if (!model.probes.empty()) return model.probes.front().at;
-    return std::nullopt;
+Vector3d direction(const Equilibrium& state, const Direction& u) { return pose(state, u.body).p * u.u_local; }
+
+Vector3d spin_axis(const Model& model, const Equilibrium& state, std::size_t wheel) {
+    const Wheel& w = model.wheels[wheel];
+    return pose(state, w.body).p * w.spin_axis_local;
+}
+
+const Wrench& wrench(const Equilibrium& state, int joint) {
+    return state.reactions[static_cast<std::size_t>(joint)];
+}
+
+const ModelJoint& joint_of(const Model& model, int joint) {
+    return model.joints[static_cast<std::size_t>(joint)];
+}
+
+// ---- Values in SI, one function a kind.
+
+double read(const Model&, const Equilibrium& state, const Coordinate& c) {
+    return position(state, c.at)[c.axis] - c.counted_from;
+}
+double read(const Model& model, const Equilibrium& state, const Toe& c) {
+    const Vector3d e = spin_axis(model, state, c.wheel);
+    return std::atan2(e.x(), model.wheels[c.wheel].side * e.y());
+}
+double read(const Model& model, const Equilibrium& state, const Camber& c) {
+    return -std::asin(spin_axis(model, state, c.wheel).z());
+}
+double read(const Model& model, const Equilibrium& state, const Effort& c) {
+    const int driven = joint_of(model, c.joint).driven;
+    if (driven < 0) return 0;  // does not stand on this branch
+    const Wrench& on_i = wrench(state, c.joint);
+    return std::visit(
+        overloaded{[&](const DistanceBetween& d) {
+                       return on_i.force.dot((position(state, d.i) - position(state, d.j)).normalized());
+                   },
+                   [&](const PointInPlane& p) { return on_i.force.dot(direction(state, p.normal_j)); },
+                   [&](const DirectionAtAngle& a) {
+                       return on_i.moment.dot(direction(state, a.j).cross(direction(state, a.y_j)));
+                   },
+                   // These have no offset, so lowering never lets them be driven.
+                   [](const CoincidentPoints&) { return std::nan(""); },
+                   [](const PerpendicularDirections&) { return std::nan(""); }},
+        model.constraints[static_cast<std::size_t>(driven)].kind);
+}
+double read(const Model&, const Equilibrium& state, const Reaction& c) {
+    const Wrench& on_i = wrench(state, c.joint);
+    return c.component < 3 ? on_i.force[c.component] : on_i.moment[c.component - 3];
+}
+double read(const Model& model, const Equilibrium& state, const Total& c) {
+    const Vector3d about = position(state, joint_of(model, c.joints.front()).at);
+    double sum = 0;
+    for (const int k : c.joints) {
+        const ModelJoint& joint = joint_of(model, k);
+        const double sign = joint.i == c.on ? 1 : -1;
+        const Wrench& w = wrench(state, k);
+        const Vector3d moment = w.moment + (position(state, joint.at) - about).cross(w.force);
+        sum += sign * (c.component < 3 ? w.force[c.component] : moment[c.component - 3]);
+    }
+    return sum;
+}
+
+// ---- The list
+
+std::string body_name(const Model& model, BodyId body) {
+    return body == ground ? "ground" : "'" + model.bodies[static_cast<std::size_t>(body)].name + "'";
+}
+
+void add_position(std::vector<Channel>& list, const std::string& stem, const std::string& of,
+                  const Point& at) {
+    for (int k = 0; k < 3; ++k)
+        list.push_back({.name = stem + "_" + axes[static_cast<std::size_t>(k)],
+                        .reads = Coordinate{at, k},
+                        .definition = fmt::format("position of {}, ground axis {}, positive {}", of,
+                                                  axes[static_cast<std::size_t>(k)],
+                                                  towards[static_cast<std::size_t>(k)])});
+}
+
+void add_wheel(std::vector<Channel>& list, const Model& model, std::size_t w) {
+    const Wheel& wheel = model.wheels[w];
+    const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
+    const Point centre{wheel.body, wheel.centre_local};
+    add_position(list, prefix + "wheel_centre", "the wheel centre", centre);
+    list.push_back({.name = prefix + "toe",
+                    .unit = Unit::deg,
+                    .reads = Toe{w},
+                    .definition =
+                        "angle of the wheel plane to the x axis seen from above, positive toe-in "
+                        "(front of the wheel turned to the vehicle's middle), of this wheel alone"});
+    list.push_back({.name = prefix + "camber",
+                    .unit = Unit::deg,
+                    .reads = Camber{w},
+                    .definition = "angle of the wheel plane to the vertical, positive where the top leans "
+                                  "outwards"});
+    list.push_back({.name = prefix + "travel",
+                    .main = false,
+                    .reads = Coordinate{centre, 2, position(design_state(model), centre).z()},
+                    .definition = "vertical displacement of the wheel centre from its design position, "
+                                  "positive in jounce (up)"});
+}
+
+void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::string& what,
+                const std::string& about, const auto& reads) {
+    for (int k = 0; k < 6; ++k) {
+        const auto axis = static_cast<std::size_t>(k % 3);
+        list.push_back({.name = fmt::format("{}.{}_{}", stem, k < 3 ? "force" : "moment", axes[axis]),
+                        .unit = k < 3 ? Unit::newton : Unit::newton_metre,
+                        .main = false,
+                        .reads = reads(k),
+                        .definition = k < 3 ? fmt::format("force of {}, ground axis {}, positive {}", what,
+                                                          axes[axis], towards[axis])
+                                            : fmt::format("moment of {}, about {}, ground axis {}, "
+                                                          "right-handed",
+                                                          what, about, axes[axis])});
+    }
+}
+
+void add_effort(std::vector<Channel>& list, const Model& model, int k) {
+    const ModelJoint& joint = joint_of(model, k);
+    if (joint.driven < 0) return;
+    const bool turns = std::holds_alternative<DirectionAtAngle>(
+        model.constraints[static_cast<std::size_t>(joint.driven)].kind);
+    list.push_back({.name = joint.name + (turns ? ".drive_moment" : ".drive_force"),
+                    .unit = turns ? Unit::newton_metre : Unit::newton,
+                    .main = false,
+                    .reads = Effort{k},
+                    .definition = fmt::format("{} that holds or moves '{}', positive where it would make its "
+                                              "{} grow: it times the change is the work done",
+                                              turns ? "moment" : "force", joint.name,
+                                              turns ? "angle" : "length or displacement")});
+}
+
+std::set<int> joints_moved(const Model& model) {
+    std::set<int> moved;
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (const auto* motion = std::get_if<Motion>(&driver.what)) moved.insert(motion->joint);
+    return moved;
 }
 
 }  // namespace
@@ -36,67 +175,107 @@ const char* symbol(Unit unit) {
         case Unit::deg: return "deg";
         case Unit::newton: return "N";
         case Unit::newton_metre: return "N·m";
+        case Unit::none: return "-";
     }
     return "";
 }
 
+double in_unit(Unit unit) {
+    switch (unit) {
+        case Unit::mm: return 1e3;
+        case Unit::deg: return 180 / std::numbers::pi;
+        case Unit::newton:
+        case Unit::newton_metre:
+        case Unit::none: return 1;
+    }
+    return 1;
+}
+
+Unit unit_of(ParameterUnit unit) {
+    switch (unit) {
+        case ParameterUnit::newton: return Unit::newton;
+        case ParameterUnit::newton_metre: return Unit::newton_metre;
+        case ParameterUnit::metre: return Unit::mm;
+        case ParameterUnit::radian: return Unit::deg;
+        case ParameterUnit::none: return Unit::none;
+    }
+    return Unit::none;
+}
+
+bool Channel::kinematic() const { return joints().empty(); }
+
+std::vector<int> Channel::joints() const {
+    return std::visit(overloaded{[](const Coordinate&) { return std::vector<int>{}; },
+                                 [](const Toe&) { return std::vector<int>{}; },
+                                 [](const Camber&) { return std::vector<int>{}; },
+                                 [](const Effort& e) { return std::vector<int>{e.joint}; },
+                                 [](const Reaction& r) { return std::vector<int>{r.joint}; },
+                                 [](const Total& t) { return t.joints; }},
+                      reads);
+}
+
 std::vector<Channel> channels(const Model& model) {
     std::vector<Channel> list;
-    const auto add = [&](const std::string& stem, Unit unit, bool main, int joint) {
-        for (const char* axis : {"_x", "_y", "_z"}) list.push_back({stem + axis, unit, main, joint});
-    };
-    if (model.wheel) {
-        add("wheel_centre", Unit::mm, true, -1);
-        list.push_back({"toe", Unit::deg});
-        list.push_back({"camber", Unit::deg});
-    }
-    for (const auto& probe : model.probes) add(probe.name, Unit::mm, true, -1);
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) add_wheel(list, model, w);
+    for (const auto& probe : model.probes) add_position(list, probe.name, "'" + probe.name + "'", probe.at);
+    for (const int k : joints_moved(model)) add_effort(list, model, k);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
-        add(model.joints[k].name + ".force", Unit::newton, false, static_cast<int>(k));
-        add(model.joints[k].name + ".moment", Unit::newton_metre, false, static_cast<int>(k));
+        const ModelJoint& joint = model.joints[k];
+        add_wrench(list, joint.name, fmt::format("joint '{}' on {}", joint.name, body_name(model, joint.i)),
+                   "the joint's point", [&](int component) {
+                       return Reaction{static_cast<int>(k), component};
+                   });
     }
     return list;
 }
 
-std::vector<double> evaluate(const Model& model, const Equilibrium& state) {
+std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups) {
+    std::vector<Channel> list;
+    std::set<std::vector<int>> done;  // on the other body it is the same with the other sign
+    for (const auto& group : groups)
+        for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body) {
+            std::vector<int> on;
+            for (const int k : group)
+                if (joint_of(model, k).i == body || joint_of(model, k).j == body) on.push_back(k);
+            if (on.size() < 2 || !done.insert(on).second) continue;
+            std::string stem, names;
+            for (const int k : on) {
+                stem += (stem.empty() ? "" : "+") + joint_of(model, k).name;
+                names += (names.empty() ? "'" : ", '") + joint_of(model, k).name + "'";
+            }
+            add_wrench(list, stem, fmt::format("joints {} together on {}", names, body_name(model, body)),
+                       fmt::format("the point of '{}'", joint_of(model, on.front()).name),
+                       [&](int component) {
+                           return Total{on, body, component};
+                       });
+        }
+    return list;
+}
+
+int find_channel(std::span<const Channel> channels, std::string_view name) {
+    const auto found = std::ranges::find(channels, name, &Channel::name);
+    return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
+std::vector<double> evaluate(const Model& model, std::span<const Channel> channels,
+                             const Equilibrium& state) {
     std::vector<double> values;
-    const auto add = [&](const Vector3d& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); };
-    if (model.wheel) {
-        const Wheel& wheel = *model.wheel;
-        const Vector3d e = pose(state, wheel.body).p * wheel.spin_axis_local;
-        add(millimetres * position(state, {wheel.body, wheel.centre_local}));
-        values.push_back(degrees * std::atan2(e.x(), wheel.side * e.y()));
-        values.push_back(degrees * -std::asin(e.z()));
-    }
-    for (const auto& probe : model.probes) add(millimetres * position(state, probe.at));
-    for (const auto& wrench : state.reactions) {
-        add(wrench.force);
-        add(wrench.moment);
-    }
+    values.reserve(channels.size());
+    for (const auto& channel : channels)
+        values.push_back(in_unit(channel.unit) *
+                         std::visit([&](const auto& c) { return read(model, state, c); }, channel.reads));
     return values;
 }
 
-std::optional<Vector3d> travel_direction(const Branch& branch) {
-    Vector3d direction = Vector3d::Zero();
-    for (const auto& load : branch.loads)
-        if (const auto* force = std::get_if<DeadForce>(&load.kind)) direction += force->f;
-    if (direction.isZero(0)) return std::nullopt;
-    return direction.normalized();
+std::vector<double> evaluate(const Model& model, const Equilibrium& state) {
+    return evaluate(model, channels(model), state);
 }
 
-Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points) {
-    const auto direction = travel_direction(branch);
-    const auto leading = leading_point(model);
-
-    Curve result;
-    for (const auto& point : points) {
-        result.load.push_back(point.load);
-        result.values.push_back(evaluate(model, point));
-        if (direction && leading)
-            result.travel.push_back(
-                millimetres * direction->dot(position(point, *leading) - position(points.front(), *leading)));
-    }
-    return result;
+Equilibrium design_state(const Model& model) {
+    Equilibrium state;
+    for (const auto& body : model.bodies) state.poses.push_back(body.design);
+    state.reactions.resize(model.joints.size());
+    return state;
 }
 
 }  // namespace elastocheck::compare

@@ -1,8 +1,10 @@
 // Outputs: what is read off a configuration, the same for every leg and independent of all of them.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "models/equilibrium_path.hpp"
@@ -11,40 +13,80 @@
 namespace elastocheck::compare {
 
 // Engineering units from here on: mm, deg, N, N·m.
-enum class Unit { mm, deg, newton, newton_metre };
-const char* symbol(Unit unit);
+enum class Unit { mm, deg, newton, newton_metre, none };
+const char* symbol(Unit unit);     // "mm", ..., "-"
+double in_unit(Unit unit);         // how many of them one m, rad, N, N·m or 1 is
+Unit unit_of(ParameterUnit unit);  // in which a branch's parameter is shown
+
+// ---- What a channel reads.
+
+struct Coordinate {
+    Point at;
+    int axis = 0;             // 0 x, 1 y, 2 z
+    double counted_from = 0;  // [m]
+};
+struct Toe {
+    std::size_t wheel = 0;  // position in Model::wheels
+};
+struct Camber {
+    std::size_t wheel = 0;
+};
+// What the driver of a joint exerts along the offset that it moves, such that effort · d(offset) is the work
+// that the driver does: with the wrench (F, M) of the joint on its body i,
+//   distance between p_i and p_j    F · (p_i - p_j) / |p_i - p_j|     pushes them apart
+//   point i above plane j           F · n_j                           pushes i along the normal
+//   direction i at an angle in j    M · (x_j × y_j)                   turns i from x_j towards y_j
+struct Effort {
+    int joint = 0;  // position in Model::joints
+};
+// Component of the wrench of a joint on its body i, about the joint's point: 0-2 force, 3-5 moment.
+struct Reaction {
+    int joint = 0;
+    int component = 0;
+};
+// The same of several joints on one body, added up about the point of the first: what stays determined where
+// they share a load in a way that nothing decides.
+struct Total {
+    std::vector<int> joints;
+    BodyId on = ground;
+    int component = 0;
+};
+using Reads = std::variant<Coordinate, Toe, Camber, Effort, Reaction, Total>;
 
 struct Channel {
-    std::string name;  // "toe", "wheel_centre_y", "tip_z", "tie_rod.force_x"
+    std::string
+        name;  // "toe", "left.travel", "wheel_centre_y", "tip_z", "tie_rod.force_x", "rack.drive_force"
     Unit unit = Unit::mm;
-    bool main = true;  // false: joint reactions, kept out of the short tables
-    int joint = -1;    // of a reaction: position in Model::joints
+    bool main = true;  // false: joint forces, and travel, which is wheel_centre_z once more
+    Reads reads = {};
+    std::string definition;  // one line with its sign: the only place where it is written
+
+    bool kinematic() const;           // of the configuration alone: a position or an angle
+    std::vector<int> joints() const;  // whose wrenches it reads
 };
 
-// The channels of a model, in order:
+// The channels of a model, in order; those of a wheel with a name as NAME.toe and so on:
 //   wheel_centre_x, _y, _z   position of the wheel centre, ground axes
 //   toe      = atan2(e_x, side·e_y), positive toe-in            e = unit spin axis pointing outboard
-//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; per wheel, never the
-//                                                               axle total
-//   PROBE_x, _y, _z                position of a probe
-//   JOINT.force_x ... moment_z     wrench of a joint on its first body, about the joint's point, ground axes
+//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; never the axle
+//   total travel                   z of the wheel centre from its design position, positive in jounce
+//   PROBE_x, _y, _z          position of a probe
+//   JOINT.drive_force or .drive_moment          effort of the driver, of every joint that some branch moves
+//   JOINT.force_x ... moment_z                  wrench of a joint on its first body
 std::vector<Channel> channels(const Model& model);
 
+// For every group of joints that share a load without anything deciding how (positions in Model::joints):
+// what they exert together on each body that two or more of them hold, "A+B.force_x" ... "A+B.moment_z".
+std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups);
+
+// Position of a channel by its name, or -1.
+int find_channel(std::span<const Channel> channels, std::string_view name);
+
 // Their values at one equilibrium, same order.
-std::vector<double> evaluate(const Model& model, const Equilibrium& state);
+std::vector<double> evaluate(const Model& model, std::span<const Channel> channels, const Equilibrium& state);
+std::vector<double> evaluate(const Model& model, const Equilibrium& state);  // of channels(model)
 
-// One leg's outputs along one branch.
-struct Curve {
-    std::vector<double> load;                 // load factor, as asked
-    std::vector<double> travel;               // [mm]; empty where a branch has no travel
-    std::vector<std::vector<double>> values;  // [point][channel]
-};
-
-// Travel: displacement of the wheel centre (or the first probe) since load factor 0, along the resultant
-// force of the branch. For a vertical load that is wheel travel. A branch of moments alone has none.
-Curve curve(const Model& model, const Branch& branch, const std::vector<Equilibrium>& points);
-
-// Unit vector of the resultant force of a branch; none for moments alone.
-std::optional<Eigen::Vector3d> travel_direction(const Branch& branch);
+// The scene as drawn, nothing acting.
+Equilibrium design_state(const Model& model);
 
 }  // namespace elastocheck::compare

@@ -2,91 +2,132 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
-#include "recursive/diagnosis.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/determination.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-Residuals judge(Leg judge, const Model& model, const Branch& branch, const Equilibrium& state) {
-    switch (judge) {
-        case Leg::recursive: return recursive::residuals(model, branch, state);
-        case Leg::equilibrium: return reference::equilibrium::residuals(model, branch, state);
-        case Leg::energy: return reference::energy::residuals(model, branch, state);
-    }
-    return {};
-}
-
-// The larger of two, where NaN is larger than anything.
-double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
-
 Residuals worse(const Residuals& a, const Residuals& b) {
-    return {worse(a.length, b.length), worse(a.direction, b.direction), worse(a.force, b.force),
-            worse(a.moment, b.moment)};
+    return {compare::worse(a.length, b.length), compare::worse(a.direction, b.direction),
+            compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
 }
 
-bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
+LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+           const std::vector<Way>& ways, Leg leg, const recursive::Options& recursion) {
+    LegRun run{leg, {}, {}, {}, 0, {}};
+    if (leg == Leg::recursive) run.method = recursion.method.name;
+    const auto start = std::chrono::steady_clock::now();
+    run.path = walk(ways, {.leg = leg, .recursion = recursion});
+    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.curve = curve(model, channels, branch, run.path.points);
+    for (const auto& point : run.path.points)
+        for (const Leg by : legs) {
+            auto& worst = run.judged[static_cast<std::size_t>(by)];
+            worst = worse(worst, judge(by, ways.front(), point));
+        }
+    return run;
+}
+
+// Over its bound; more than 1 is too much, and so is what is no number.
+double share(double value, double bound) {
+    const double part = bound > 0 ? value / bound : value > 0 ? INFINITY : 0;
+    return std::isfinite(value) && std::isfinite(bound) ? part : INFINITY;
+}
+
+double bound_of(Unit unit, const Bounds& bounds) {
+    switch (unit) {
+        case Unit::mm: return bounds.length;
+        case Unit::deg: return bounds.angle;
+        case Unit::newton: return bounds.force;
+        case Unit::newton_metre: return bounds.moment;
+        case Unit::none: return 0;
+    }
+    return 0;
+}
 
 // Why the references do not count as one truth on this branch.
-std::vector<std::string> disagreements(const Comparison& all, const BranchComparison& branch,
-                                       const Agreement& bound) {
-    std::vector<std::string> reasons;
+Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
+                         const BranchComparison& branch) {
+    Objections objections;
     for (const auto& run : branch.runs)
         if (run.path.outcome != Outcome::converged)
-            reasons.push_back(fmt::format("{} leg: {}: {}", name(run.leg),
-                                          elastocheck::name(run.path.outcome), run.path.detail));
-    if (!reasons.empty()) return reasons;
+            objections.add(fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.path.outcome),
+                                       run.path.detail));
+    if (!objections.empty()) return objections;
+    const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
+    const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+    if (const auto why = nothing_moves(model, channels, asked, equilibrium.curve); !why.empty())
+        objections.add(why);
 
-    const auto& reading = branch.uncertainty.equal_load;
-    double largest_force = 0;
-    for (std::size_t c = 0; c < all.channels.size(); ++c)
-        if (!all.channels[c].main && all.unique[c])
-            for (const auto& point : branch.runs[1].curve.values)
-                largest_force = worse(largest_force, std::abs(point[c]));
+    const auto& reading = branch.uncertainty.equal_parameter;
+    if (!reading.not_compared.empty())
+        objections.add("the references were not compared: " + reading.not_compared);
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
-        if (!all.unique[c]) continue;
-        const Unit unit = all.channels[c].unit;
-        const double limit = unit == Unit::mm    ? bound.length
-                             : unit == Unit::deg ? bound.angle
-                                                 : bound.wrench * largest_force;
-        if (!within(reading.channels[c].max, limit))
-            reasons.push_back(
+        if (!branch.determined[c]) continue;
+        const double bound = bound_of(channels[c].unit, branch.bounds), off = reading.channels[c].max;
+        if (const double part = share(off, bound); !(part <= 1))
+            objections.add(
                 fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
-                            all.channels[c].name, reading.channels[c].max, symbol(unit), limit));
+                            channels[c].name, off, symbol(channels[c].unit), bound),
+                part);
     }
-    for (const auto& [run, other] :
-         {std::pair{&branch.runs[1], Leg::energy}, std::pair{&branch.runs[2], Leg::equilibrium}}) {
+    for (const auto& [run, other] : {std::pair{&equilibrium, Leg::energy}, {&energy, Leg::equilibrium}}) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
-        if (!within(r.force, bound.residual_force) || !within(r.moment, bound.residual_force) ||
-            !within(1e3 * r.length, bound.residual_length))
-            reasons.push_back(fmt::format(
-                "the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
-                name(run->leg), r.force, r.moment, 1e3 * r.length, name(other)));
+        const Bounds& b = branch.bounds;
+        const double part = std::max({share(r.force, b.residual_force), share(r.moment, b.residual_moment),
+                                      share(1e3 * r.length, b.residual_length)});
+        if (!(part <= 1))
+            objections.add(
+                fmt::format(
+                    "the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations; "
+                    "at most {:.3g} N, {:.3g} N·m, {:.3g} mm are allowed",
+                    name(run->leg), r.force, r.moment, 1e3 * r.length, name(other), b.residual_force,
+                    b.residual_moment, b.residual_length),
+                part);
     }
-    return reasons;
+    return objections;
 }
 
-int count(const Reading& reading, const std::vector<bool>& unique) {
+int count(const Reading& reading, const std::vector<bool>& determined) {
     int sum = 0;
     for (std::size_t c = 0; c < reading.channels.size(); ++c)
-        if (unique[c]) sum += reading.channels[c].compared;
+        if (determined[c]) sum += reading.channels[c].compared;
     return sum;
+}
+
+// Whether a channel reads wrenches that are there and determined; a total is there to be.
+bool is_determined(const Channel& channel, const Determination& known, const Model& standing) {
+    std::vector<bool> stands(standing.joints.size(), false);
+    for (const auto& constraint : standing.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    const bool total = std::holds_alternative<Total>(channel.reads);
+    return std::ranges::all_of(channel.joints(), [&](int k) {
+        const auto j = static_cast<std::size_t>(k);
+        return stands[j] && (total || known.joint[j]);
+    });
 }
 
 }  // namespace
 
-const char* name(Leg leg) {
-    switch (leg) {
-        case Leg::recursive: return "recursive";
-        case Leg::equilibrium: return "equilibrium";
-        case Leg::energy: return "energy";
-    }
-    return "";
+void Objections::add(std::string what, double share) {
+    constexpr std::size_t told = 3;
+    ++count;
+    const auto place = std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
+    worst.insert(place, {std::move(what), share});
+    if (worst.size() > told) worst.pop_back();
+}
+
+std::vector<std::string> Objections::texts() const {
+    std::vector<std::string> list;
+    for (const auto& objection : worst) list.push_back(objection.what);
+    if (const int more = count - static_cast<int>(worst.size()); more > 0)
+        list.push_back(fmt::format("and {} more, none of them worse", more));
+    return list;
 }
 
 bool Comparison::conclusive() const {
@@ -96,56 +137,55 @@ bool Comparison::conclusive() const {
 }
 
 LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {
-    const int N = recursion.steps > 0 ? recursion.steps : branch.steps;
-    std::vector<double> loads;
-    for (int k = 0; k <= N; ++k) loads.push_back(branch.to * k / N);
-
-    LegRun run{leg, {}, {}, {}, 0, {}};
-    if (leg == Leg::recursive) run.method = recursion.method.name;
-    const auto start = std::chrono::steady_clock::now();
-    switch (leg) {
-        case Leg::recursive: run.path = recursive::solve(model, branch, recursion); break;
-        case Leg::equilibrium: run.path = reference::equilibrium::solve(model, branch, loads); break;
-        case Leg::energy: run.path = reference::energy::solve(model, branch, loads); break;
-    }
-    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.curve = curve(model, branch, run.path.points);
-    for (const auto& point : run.path.points)
-        for (const Leg by : legs) {
-            auto& worst = run.judged[static_cast<std::size_t>(by)];
-            worst = worse(worst, judge(by, model, branch, point));
-        }
-    return run;
+    return run(model, channels(model), branch, ways_of(model, branch, recursion.steps), leg, recursion);
 }
 
 Comparison compare(const Model& model, const Options& options) {
     Comparison result;
     result.channels = channels(model);
-    std::vector<bool> redundant(model.joints.size(), false);
-    for (const auto& r : recursive::diagnose(model).redundant)
-        redundant[static_cast<std::size_t>(r.joint)] = true;
-    const bool any_redundant = std::ranges::find(redundant, true) != redundant.end();
-    // A redundant joint shares its load with those it repeats, so no reaction of the model can be relied on.
-    for (const auto& channel : result.channels) result.unique.push_back(channel.joint < 0 || !any_redundant);
+    const int asked = options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
+    if (asked < 0 && !options.abscissa.empty())
+        throw std::invalid_argument(fmt::format("'{}' is no output of the scene", options.abscissa));
 
+    std::vector<std::vector<Way>> ways;
+    std::vector<Determination> known;
+    std::vector<std::vector<int>> groups;
     for (const auto& branch : model.branches) {
+        ways.push_back(ways_of(model, branch, options.recursion.steps));
+        known.push_back(determination(ways.back().front().model));
+        for (const auto& group : known.back().groups)
+            if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
+    }
+    std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
+
+    for (std::size_t k = 0; k < model.branches.size(); ++k) {
+        const Branch& branch = model.branches[k];
         BranchComparison b;
         b.branch = branch.name;
+        b.unit = unit_of(branch.unit);
+        for (const auto& channel : result.channels)
+            b.determined.push_back(is_determined(channel, known[k], ways[k].front().model));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
-            b.runs.push_back(run(model, branch, leg, options.recursion));
+            b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));
         }
+        const auto run_of = [&](Leg leg) -> const LegRun& { return b.runs[static_cast<std::size_t>(leg)]; };
+        const LegRun& truth = run_of(Leg::equilibrium);
+        b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
         const auto pair = [&](Leg a, Leg c) {
-            const Curve& curve_a = b.runs[static_cast<std::size_t>(a)].curve;
-            const Curve& curve_b = b.runs[static_cast<std::size_t>(c)].curve;
-            return Pair{a, c, at_equal_load(curve_a, curve_b), at_equal_travel(curve_a, curve_b)};
+            const Curve &of_a = run_of(a).curve, &of_c = run_of(c).curve;
+            return Pair{
+                a, c, at_equal_parameter(of_a, of_c),
+                at_equal_abscissa(of_a, of_c, compare::abscissa(result.channels, b.abscissa, of_a, of_c))};
         };
         b.deviation = pair(Leg::equilibrium, Leg::recursive);
         b.cross_check = pair(Leg::energy, Leg::recursive);
         b.uncertainty = pair(Leg::equilibrium, Leg::energy);
-        b.inconclusive = disagreements(result, b, options.agreement);
+        b.bounds = bounds_of(options.agreement, scale_of(ways[k].front().model, branch, truth.path.points));
+        b.inconclusive = disagreements(model, result.channels, branch, b);
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
-            result.compared += count(p->equal_load, result.unique) + count(p->equal_travel, result.unique);
+            result.compared +=
+                count(p->equal_parameter, b.determined) + count(p->equal_abscissa, b.determined);
         result.branches.push_back(std::move(b));
     }
     return result;

@@ -3,21 +3,21 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "compare/agreement.hpp"
 #include "compare/channels.hpp"
+#include "compare/curve.hpp"
 #include "compare/deviation.hpp"
+#include "compare/legs.hpp"
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
 #include "recursive/solve.hpp"
 
 namespace elastocheck::compare {
-
-enum class Leg { recursive, equilibrium, energy };
-inline constexpr std::array legs{Leg::recursive, Leg::equilibrium, Leg::energy};
-const char* name(Leg leg);
 
 // One leg along one branch.
 struct LegRun {
@@ -29,50 +29,63 @@ struct LegRun {
     std::array<Residuals, legs.size()> judged;  // worst over the points, by the equations of each leg
 };
 
-// The recursion goes as `recursion` says, the published one unless it says otherwise; the references visit
-// the load factors of its steps.
+// The recursion goes as `recursion` says, the published one unless it says otherwise, and every one of its
+// steps is recorded (0 steps: as many as the branch says); the references visit the parameters of its steps.
+// The curve has channels(model).
 LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion = {});
 
 // Deviation of b from a.
 struct Pair {
     Leg a = Leg::equilibrium, b = Leg::recursive;
-    Reading equal_load, equal_travel;
+    Reading equal_parameter, equal_abscissa;
+};
+
+// Why something cannot be judged.
+struct Objection {
+    std::string what;
+    double share =
+        std::numeric_limits<double>::infinity();  // of its bound; infinite where there is no number
+};
+struct Objections {
+    std::vector<Objection> worst;  // three at most, worst first
+    int count = 0;                 // of all
+
+    void add(std::string what, double share = std::numeric_limits<double>::infinity());
+    bool empty() const { return count == 0; }
+    std::vector<std::string> texts() const;  // the worst, and how many more
 };
 
 struct BranchComparison {
     std::string branch;
-    std::vector<LegRun> runs;               // in the order of `legs`
-    Pair deviation;                         // the recursion against the equilibrium leg
-    Pair cross_check;                       // the recursion against the energy leg
-    Pair uncertainty;                       // the energy leg against the equilibrium leg
-    std::vector<std::string> inconclusive;  // why this branch cannot be judged; empty when it can
+    Unit unit = Unit::newton;      // of its parameter
+    int abscissa = -1;             // channel of the readings at equal abscissa; -1: none
+    std::vector<LegRun> runs;      // in the order of `legs`
+    std::vector<bool> determined;  // per channel; what is not is never compared: reactions that redundant
+                                   // joints share as they like, joints that do not stand on this branch
+    Pair deviation;           // the recursion against the equilibrium leg
+    Pair cross_check;         // the recursion against the energy leg
+    Pair uncertainty;         // the energy leg against the equilibrium leg
+    Bounds bounds;            // within which the references have to agree
+    Objections inconclusive;  // why this branch cannot be judged; empty when it can
 };
 
 struct Comparison {
-    std::vector<Channel> channels;
-    std::vector<bool>
-        unique;  // per channel; the reaction of a redundant joint is not determined, so never compared
+    std::vector<Channel> channels;  // of the model, then the totals of what redundant joints share
     std::vector<BranchComparison> branches;
     int compared = 0;  // numbers compared in all
 
-    bool conclusive() const;  // every leg converged, the references agree, something was compared
-};
-
-// When the references count as one truth. The bound on wrenches is a share of the largest one in the branch.
-struct Agreement {
-    double length = 1e-6;           // [mm]
-    double angle = 1e-6;            // [deg]
-    double wrench = 1e-7;           // [-]
-    double residual_force = 1e-5;   // [N], [N·m]: each reference's states judged by the other leg
-    double residual_length = 1e-8;  // [mm]
+    bool conclusive() const;  // every leg converged, the references agree, every branch moves something,
+                              // something was compared
 };
 
 struct Options {
     recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
     Agreement agreement;
+    std::string abscissa = {};                            // name of a channel; empty: default_abscissa
     std::function<void(std::string_view)> progress = {};  // told what is being solved
 };
 
+// Throws std::invalid_argument for an abscissa that is no channel of the model.
 Comparison compare(const Model& model, const Options& options = {});
 
 }  // namespace elastocheck::compare

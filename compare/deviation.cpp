@@ -44,14 +44,6 @@ double range(const Curve& curve, std::size_t channel) {
     return curve.values.empty() ? nan : high - low;
 }
 
-bool strictly_monotone(const std::vector<double>& x) {
-    if (x.size() < 2) return false;
-    const bool up = x[1] > x[0];
-    for (std::size_t k = 1; k < x.size(); ++k)
-        if (!(up ? x[k] > x[k - 1] : x[k] < x[k - 1])) return false;
-    return true;
-}
-
 Reading finish(std::vector<Tally>& tallies, const Curve& a) {
     Reading reading;
     for (std::size_t c = 0; c < tallies.size(); ++c) {
@@ -67,15 +59,33 @@ Reading nothing(std::string why) {
     return reading;
 }
 
+// The same parameter as two divisions write it.
+bool same(double a, double b, const Curve& of) {
+    return std::abs(a - b) <= 1e-12 * std::max(std::abs(of.a.front()), std::abs(of.a.back()));
+}
+
+void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst) {
+    if (!channels[c].main) return;
+    double& side = channels[c].unit == Unit::deg ? worst.deg : worst.mm;
+    side = worse(side, std::abs(difference));
+}
+
 }  // namespace
 
-Reading at_equal_load(const Curve& a, const Curve& b) {
+double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+Accuracy worse(const Accuracy& a, const Accuracy& b) { return {worse(a.mm, b.mm), worse(a.deg, b.deg)}; }
+
+Reading at_equal_parameter(const Curve& a, const Curve& b) {
     if (a.values.empty() || b.values.empty()) return nothing("a curve is empty");
     std::vector<Tally> tallies(a.values.front().size());
-    for (std::size_t k = 0; k < std::min(a.load.size(), b.load.size()); ++k) {
-        if (a.load[k] != b.load[k]) return nothing("the curves are not at the same loads");
+    // Two-way curves that broke off early begin at different ends: what they share is around their start.
+    const std::size_t before = std::min(a.start, b.start);
+    const std::size_t after = std::min(a.a.size() - a.start, b.a.size() - b.start);
+    for (std::size_t k = 0; k < before + after; ++k) {
+        const std::size_t i = a.start - before + k, j = b.start - before + k;
+        if (!same(a.a[i], b.a[j], a)) return nothing("the curves are not at the same parameters");
         for (std::size_t c = 0; c < tallies.size(); ++c)
-            tallies[c].add(b.values[k][c] - a.values[k][c], a.load[k]);
+            tallies[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
     }
     return finish(tallies, a);
 }
@@ -99,31 +109,89 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
     return sum;
 }
 
-Reading at_equal_travel(const Curve& a, const Curve& b) {
-    if (a.travel.empty() || b.travel.empty())
-        return nothing("the branch has no travel: its loads are moments");
-    if (!strictly_monotone(a.travel) || !strictly_monotone(b.travel))
-        return nothing("travel is not monotone in the load");
-    const auto [low, high] = std::minmax(b.travel.front(), b.travel.back());
-    std::vector<Tally> tallies(a.values.front().size());
+namespace {
+
+// Calls sink(point of a, channel, b - a, uncertainty of it) where b reaches the abscissa of a; returns how
+// many points it does not reach.
+template <class Sink>
+int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink) {
+    const auto at = a.channel(abscissa), x = b.channel(abscissa);
+    const auto [low, high] = std::minmax(x.front(), x.back());
     int outside = 0;
-    for (const double travel : a.travel) outside += travel < low || travel > high;
-    for (std::size_t c = 0; c < tallies.size(); ++c) {
-        std::vector<double> y;
-        for (const auto& point : b.values) y.push_back(point[c]);
-        double uncertain = 0;
-        for (std::size_t k = 0; k < a.travel.size(); ++k) {
-            const double travel = a.travel[k];
-            if (travel < low || travel > high) continue;
-            const double value = interpolate(b.travel, y, travel, 6);
-            uncertain = std::max(uncertain, std::abs(value - interpolate(b.travel, y, travel, 4)));
-            tallies[c].add(value - a.values[k][c], travel);
+    for (const double t : at) outside += t < low || t > high;
+    for (std::size_t c = 0; c < a.values.front().size(); ++c) {
+        const auto y = b.channel(c);
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            if (at[k] < low || at[k] > high) continue;
+            const double value = interpolate(x, y, at[k], 6);
+            sink(k, c, value - a.values[k][c], std::abs(value - interpolate(x, y, at[k], 4)));
         }
-        tallies[c].deviation.interpolation = uncertain;
     }
+    return outside;
+}
+
+}  // namespace
+
+Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by) {
+    if (!by.why_not.empty()) return nothing(by.why_not);
+    const auto channel = static_cast<std::size_t>(by.channel);
+    std::vector<Tally> tallies(a.values.front().size());
+    const int outside =
+        read_over(a, b, channel, [&](std::size_t k, std::size_t c, double difference, double uncertain) {
+            tallies[c].add(difference, a.values[k][channel]);
+            tallies[c].deviation.interpolation = worse(tallies[c].deviation.interpolation, uncertain);
+        });
     Reading reading = finish(tallies, a);
     reading.outside = outside;
     return reading;
+}
+
+Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const Curve& a, const Curve& b) {
+    Profile profile{a.unit, {}, {}};
+    if (a.a.empty() || b.a.empty()) return profile;
+    const std::size_t before = std::min(a.start, b.start);
+    const std::size_t after = std::min(a.a.size() - a.start, b.a.size() - b.start);
+    for (std::size_t k = 0; k < before + after; ++k) {
+        const std::size_t i = a.start - before + k, j = b.start - before + k;
+        Accuracy apart{};
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            raise(channels, c, same(a.a[i], b.a[j], a) ? b.values[j][c] - a.values[i][c] : nan, apart);
+        profile.a.push_back(a.a[i]);
+        profile.apart.push_back(apart);
+    }
+    return profile;
+}
+
+Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Curve& a, const Curve& b,
+                                  const Abscissa& by) {
+    Profile profile{a.unit, {}, {}};
+    if (!by.why_not.empty()) return profile;
+    std::vector<bool> reached(a.a.size(), false);
+    profile.a = a.a;
+    profile.apart.resize(a.a.size());
+    read_over(a, b, static_cast<std::size_t>(by.channel),
+              [&](std::size_t k, std::size_t c, double difference, double) {
+                  reached[k] = true;
+                  raise(channels, c, difference, profile.apart[k]);
+              });
+    for (std::size_t k = 0; k < reached.size(); ++k)
+        if (!reached[k]) profile.apart[k] = {nan, nan};
+    return profile;
+}
+
+Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b) {
+    if (a.a.empty() || a.a.size() != b.a.size() || a.start != b.start) return {nan, nan};
+    Accuracy worst{};
+    for (const auto& apart : profile_at_equal_parameter(channels, a, b).apart) worst = worse(worst, apart);
+    return worst;
+}
+
+Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve) {
+    Accuracy largest{};
+    for (const auto& values : curve.values)
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            raise(channels, c, 4 * std::numeric_limits<double>::epsilon() * values[c], largest);
+    return largest;
 }
 
 }  // namespace elastocheck::compare

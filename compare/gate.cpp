@@ -41,7 +41,7 @@ const GatedBranch* find(const Measurement& in, const std::string& branch) {
 
 bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
 bool is_deviation(Quantity q) {
-    return q == Quantity::deviation_at_equal_load || q == Quantity::deviation_at_equal_travel;
+    return q == Quantity::deviation_at_equal_parameter || q == Quantity::deviation_at_equal_abscissa;
 }
 
 double range(const Series& s) {
@@ -84,8 +84,8 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     if (!all_finite(was.values)) return cannot("is not a finite number in the baseline");
     if (!all_finite(is->values)) return cannot("was measured as something that is not a finite number");
     const GatedBranch* branch = find(baseline.accepted, was.branch);
-    if (is_channel(was.quantity) && (branch == nullptr || branch->loads.size() != was.values.size()))
-        return cannot("has not as many numbers as its branch has loads");
+    if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has points");
     const Tolerance* tolerance = tolerance_of(tolerances, was);
     if (tolerance == nullptr || !sane(tolerance->atol) || !sane(tolerance->rtol))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
@@ -102,7 +102,7 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .was = was.values[k],
                         .is = is->values[k],
                         .tolerance = allowed};
-        if (is_channel(was.quantity)) offence.has_load = true, offence.load = branch->loads[k];
+        if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
         verdict.offences.push_back(offence);
     }
 }
@@ -132,7 +132,13 @@ void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& ve
                                               name(limit.deviation), limit.channel));
 }
 
-// The branches that can be compared: there are both, at the same loads. Numbers at other loads answer another
+std::string described(const GatedBranch& branch) {
+    if (branch.a.empty()) return "nowhere";
+    return fmt::format("{} points, {:g} to {:g} {}", branch.a.size(), branch.a.front(), branch.a.back(),
+                       branch.unit);
+}
+
+// The branches that can be compared: there are both, at the same parameters. Numbers elsewhere answer another
 // question, so the series of the rest are not looked at.
 std::vector<std::string> common_branches(const Baseline& baseline, const Measurement& measurement,
                                          Verdict& verdict) {
@@ -144,12 +150,11 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
         const GatedBranch* is = find(measurement, was.name);
         if (is == nullptr)
             cannot(was.name, "is in the baseline and was not measured");
-        else if (is->loads != was.loads)
-            cannot(was.name,
-                   fmt::format("is measured at other loads than the accepted ones ({} up to {:g} instead of "
-                               "{} up to {:g})",
-                               is->loads.size(), is->loads.empty() ? 0 : is->loads.back(), was.loads.size(),
-                               was.loads.empty() ? 0 : was.loads.back()));
+        else if (is->unit != was.unit)
+            cannot(was.name, fmt::format("is driven in {} and was in {}", is->unit, was.unit));
+        else if (is->a != was.a)
+            cannot(was.name, fmt::format("is measured elsewhere than the accepted one ({} instead of {})",
+                                         described(*is), described(was)));
         else
             common.push_back(was.name);
     }
@@ -185,8 +190,8 @@ const char* name(Quantity quantity) {
     switch (quantity) {
         case Quantity::recursive: return "recursive";
         case Quantity::equilibrium: return "equilibrium";
-        case Quantity::deviation_at_equal_load: return "deviation at equal load";
-        case Quantity::deviation_at_equal_travel: return "deviation at equal travel";
+        case Quantity::deviation_at_equal_parameter: return "deviation at equal parameter";
+        case Quantity::deviation_at_equal_abscissa: return "deviation at equal abscissa";
         case Quantity::work_recursive: return "work of recursive";
         case Quantity::work_equilibrium: return "work of equilibrium";
         case Quantity::work_energy: return "work of energy";
@@ -241,33 +246,37 @@ Measurement measure(const Model& model, const Comparison& comparison) {
     Measurement result;
     result.scene = model.name;
     for (const auto& branch : comparison.branches) {
-        for (const auto& reason : branch.inconclusive)
+        for (const auto& reason : branch.inconclusive.texts())
             result.inconclusive.push_back(fmt::format("branch '{}': {}", branch.branch, reason));
         const LegRun& recursive = branch.runs[static_cast<std::size_t>(Leg::recursive)];
         const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
         const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
 
-        GatedBranch kept{branch.branch, {}};
+        // What both reached, around where they begin.
+        const Curve &of_r = recursive.curve, &of_e = equilibrium.curve;
+        const std::size_t before = std::min(of_r.start, of_e.start);
+        const std::size_t points = before + std::min(of_r.a.size() - of_r.start, of_e.a.size() - of_e.start);
+        GatedBranch kept{branch.branch, symbol(branch.unit), {}};
         std::vector<std::size_t> at;
-        const std::size_t points = std::min(recursive.curve.load.size(), equilibrium.curve.load.size());
         const std::size_t count = std::min<std::size_t>(points, points_per_branch);
         for (std::size_t k = 0; k < count; ++k)
             at.push_back(count == 1 ? 0 : (k * (points - 1) + (count - 1) / 2) / (count - 1));
-        for (const std::size_t k : at) kept.loads.push_back(rounded(equilibrium.curve.load[k]));
+        for (const std::size_t k : at) kept.a.push_back(rounded(of_e.a[of_e.start - before + k]));
 
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
-            if (!comparison.unique[c]) continue;
+            if (!branch.determined[c]) continue;
             const auto& channel = comparison.channels[c];
             const std::string unit = symbol(channel.unit);
             for (const auto& [quantity, run] :
                  {std::pair{Quantity::recursive, &recursive}, {Quantity::equilibrium, &equilibrium}}) {
                 Series curve{branch.branch, quantity, channel.name, unit, {}};
-                for (const std::size_t k : at) curve.values.push_back(rounded(run->curve.values[k][c]));
+                for (const std::size_t k : at)
+                    curve.values.push_back(rounded(run->curve.values[run->curve.start - before + k][c]));
                 result.series.push_back(std::move(curve));
             }
             for (const auto& [quantity, reading] :
-                 {std::pair{Quantity::deviation_at_equal_load, &branch.deviation.equal_load},
-                  {Quantity::deviation_at_equal_travel, &branch.deviation.equal_travel}})
+                 {std::pair{Quantity::deviation_at_equal_parameter, &branch.deviation.equal_parameter},
+                  {Quantity::deviation_at_equal_abscissa, &branch.deviation.equal_abscissa}})
                 if (c < reading->channels.size())
                     result.series.push_back(
                         {branch.branch, quantity, channel.name, unit, {rounded(reading->channels[c].max)}});

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,45 +25,47 @@ const char* name(ToleranceClass kind);  // "same-build", ...
 
 // What a series tells about a branch.
 enum class Quantity {
-    recursive,                  // a channel of the recursion at the branch's loads
-    equilibrium,                // ... of the equilibrium leg
-    deviation_at_equal_load,    // the largest |recursion - equilibrium leg| over all points, one number
-    deviation_at_equal_travel,  // likewise
-    work_recursive,             // counters of a leg: steps, factorisations, iterations, evaluations
+    recursive,                     // a channel of the recursion along the branch
+    equilibrium,                   // ... of the equilibrium leg
+    deviation_at_equal_parameter,  // the largest |recursion - equilibrium leg| over all points, one number
+    deviation_at_equal_abscissa,   // likewise
+    work_recursive,                // counters of a leg: steps, factorisations, iterations, evaluations
     work_equilibrium,
     work_energy,
 };
 inline constexpr std::array quantities{Quantity::recursive,
                                        Quantity::equilibrium,
-                                       Quantity::deviation_at_equal_load,
-                                       Quantity::deviation_at_equal_travel,
+                                       Quantity::deviation_at_equal_parameter,
+                                       Quantity::deviation_at_equal_abscissa,
                                        Quantity::work_recursive,
                                        Quantity::work_equilibrium,
                                        Quantity::work_energy};
-const char* name(Quantity quantity);  // "recursive", "deviation at equal load", "work of recursive", ...
+const char* name(Quantity quantity);  // "recursive", "deviation at equal parameter", "work of recursive", ...
 
 struct Series {
     std::string branch;
     Quantity quantity = Quantity::recursive;
     std::string channel;         // or counter
     std::string unit;            // "mm", "deg", "N", "N·m", "count"
-    std::vector<double> values;  // one per load of the branch for a channel, else one
+    std::vector<double> values;  // one per kept parameter of the branch for a channel, else one
 };
 
 struct GatedBranch {
     std::string name;
-    std::vector<double> loads;  // load factors at which channels are kept, design position first
+    std::string unit;       // of the parameter: "N", "mm", ...
+    std::vector<double> a;  // parameters at which channels are kept
 };
 
 struct Measurement {
     std::string scene;
     std::vector<GatedBranch> branches;
     std::vector<Series> series;             // sorted by branch, quantity, channel
-    std::vector<std::string> inconclusive;  // why the run itself proves nothing; empty when it does
+    std::vector<std::string> inconclusive;  // why the run itself proves nothing; empty when it does. The
+                                            // worst three of a branch and how many more
 };
 
-// Up to eleven load points a branch, evenly spread, both ends included.
-// Values are rounded to what a baseline file holds.
+// Up to eleven points a branch, evenly spread, both ends included. Values are rounded to what a baseline
+// file holds.
 Measurement measure(const Model& model, const Comparison& comparison);
 
 // |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; of the equilibrium leg's curve
@@ -77,7 +80,7 @@ Tolerances default_tolerances(ToleranceClass kind);
 
 // An absolute bound on a deviation, in the channel's unit, over every branch: it gates accuracy, not change.
 struct Limit {
-    Quantity deviation = Quantity::deviation_at_equal_travel;
+    Quantity deviation = Quantity::deviation_at_equal_abscissa;
     std::string channel;
     double max = 0;
 };
@@ -93,10 +96,10 @@ struct Offence {
     std::string branch;
     Quantity quantity = Quantity::recursive;
     std::string channel, unit;
-    bool has_load = false;
-    double load = 0;         // where on the branch, for a channel
-    bool of_limit = false;   // an absolute limit is broken; `was` is then the limit
-    double was = 0, is = 0;  // accepted, measured
+    std::optional<double> a = {};  // where on the branch, for a channel, ...
+    std::string a_unit = {};       // ... in the unit of its parameter
+    bool of_limit = false;         // an absolute limit is broken; `was` is then the limit
+    double was = 0, is = 0;        // accepted, measured
     double tolerance = 0;
 
     double difference() const { return is - was; }

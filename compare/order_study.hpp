@@ -26,7 +26,8 @@ struct OrderLevel {
 };
 
 struct BranchOrders {
-    std::string branch;
+    std::string branch;    // a way of it where it has two: "bounce to -80 mm"
+    std::string failure;   // why the references are none; empty where they are
     Accuracy uncertainty;  // distance of the references
     std::vector<OrderLevel> levels;
 };
@@ -34,7 +35,7 @@ struct BranchOrders {
 struct OrderOptions {
     std::vector<int> orders{2, 4, 6, 8, 12, 16, 20, 24};
     std::vector<double> tolerances{1e-6, 1e-9, 1e-12};
-    int points = 20;        // where it is compared
+    int points = 20;        // where it is compared, over the branch
     int expansions = 2000;  // at most
     std::function<void(std::string_view)> progress = {};
 };

@@ -7,24 +7,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
-
 namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }  // NaN is larger than anything
 
-Accuracy distance(const std::vector<Channel>& channels, const std::vector<double>& a,
-                  const std::vector<double>& b) {
-    Accuracy worst;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (!channels[c].main) continue;
-        double& side = channels[c].unit == Unit::deg ? worst.deg : worst.mm;
-        side = worse(side, std::abs(b[c] - a[c]));
-    }
-    return worst;
+// The end of a curve alone: what more steps are judged by.
+Curve end_of(const Curve& curve) {
+    if (curve.a.empty()) return {};
+    return {.unit = curve.unit, .a = {curve.a.back()}, .start = 0, .values = {curve.values.back()}};
 }
 
 }  // namespace
@@ -67,30 +58,23 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
         study.inconclusive.push_back("the scene has no branch");
         return study;
     }
-    const Branch& branch = model.branches.front();
-    study.branch = branch.name;
+    constexpr int points = 10;  // of the references
+    const Way way = ways_of(model, model.branches.front(), points).back();
+    const Branch& branch = way.branch;
+    Way whole = way;  // of whose points the first and last are recorded
+    whole.branch.steps = 1;
+    study.branch = way.name;
     const auto all_channels = channels(model);
     for (const auto& channel : all_channels)
         study.angles = study.angles || (channel.main && channel.unit == Unit::deg);
 
-    std::vector<double> loads;
-    for (int k = 0; k <= 10; ++k) loads.push_back(branch.to * k / 10);
-    const auto truth = reference::equilibrium::solve(model, branch, loads),
-               other = reference::energy::solve(model, branch, loads);
-    for (const auto& [leg, path] : {std::pair{Leg::equilibrium, &truth}, std::pair{Leg::energy, &other}})
-        if (path->outcome != Outcome::converged)
-            study.inconclusive.push_back(
-                fmt::format("{} leg: {}: {}", name(leg), name(path->outcome), path->detail));
+    const References known = references(model, all_channels, branch, {way});
+    study.inconclusive = known.failures;
     study.uncertainty = {nan, nan};
-    std::vector<double> end;
-    if (study.inconclusive.empty()) {
-        end = evaluate(model, truth.points.back());
-        auto nudged = end;  // the references may agree to the last bit by luck
-        for (double& v : nudged) v *= 1 + 4 * std::numeric_limits<double>::epsilon();
-        const Accuracy apart = distance(all_channels, end, evaluate(model, other.points.back()));
-        const Accuracy rounding = distance(all_channels, end, nudged);
-        study.uncertainty = {worse(apart.mm, rounding.mm), worse(apart.deg, rounding.deg)};
-    }
+    const Curve end = study.inconclusive.empty() ? end_of(known.truth) : Curve{};
+    if (!end.a.empty())
+        study.uncertainty =
+            worse(distance(all_channels, end, end_of(known.other)), rounding_of(all_channels, end));
 
     const double per_step = std::pow(coordinates(model) + constraint_rows(model), 3);
     for (const auto& label : options.methods) {
@@ -110,14 +94,13 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
                 if (options.progress)
                     options.progress(fmt::format("{} in {}, {} steps", label, name(precision), N));
                 PrecisionLevel level{.steps = static_cast<int>(N), .constraint = nan, .error = {nan, nan}};
-                const auto path = recursive::solve(
-                    model, branch,
-                    {.method = *method, .steps = level.steps, .record = 1, .precision = precision});
+                const auto path = walk(
+                    whole, {.recursion = {.method = *method, .precision = precision}, .refine = level.steps});
                 level.outcome = path.outcome;
                 if (path.outcome == Outcome::converged) {
                     level.constraint = path.points.back().constraint_error;
-                    if (!end.empty())
-                        level.error = distance(all_channels, end, evaluate(model, path.points.back()));
+                    level.error =
+                        distance(all_channels, end, end_of(curve(model, all_channels, branch, path.points)));
                 }
                 series.levels.push_back(level);
                 steps.push_back(level.steps);

@@ -2,7 +2,7 @@
 //
 // More steps shrink the step error until round-off is all that is left; a method that adds up increments then
 // gets worse again, one that starts each step from the true residual stays where it is. Read at the end of
-// the first branch:
+// the first branch (of its last way, where it has two):
 //
 //   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no reference,
 //               so nothing but the arithmetic bounds it; for the published method it is the paper's own norm
@@ -53,7 +53,7 @@ struct PrecisionOptions {
 };
 
 struct PrecisionStudy {
-    std::string branch;
+    std::string branch;  // or its way
     bool angles = false;
     Accuracy uncertainty;  // of the reference there; NaN when one failed
     std::vector<PrecisionSeries> series;

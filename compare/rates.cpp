@@ -1,9 +1,10 @@
 #include "compare/rates.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
-#include "compare/channels.hpp"
+#include "compare/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -13,9 +14,9 @@ using recursive::series::Path;
 using recursive::series::Place;
 using recursive::series::Rates;
 
-constexpr double degrees = 180 / std::numbers::pi;
-constexpr double millimetres = 1e3;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+// Velocity of a vector of the body that has the components u in ground axes.
 Vector3d turn(const Rates& rates, BodyId body, const Vector3d& u) {
     return body == ground ? Vector3d::Zero() : Vector3d(rates.omega[static_cast<std::size_t>(body)].cross(u));
 }
@@ -25,59 +26,71 @@ Vector3d velocity(const Equilibrium& state, const Rates& rates, const Point& poi
     return rates.dr[b] + turn(rates, point.body, state.poses[b].p * point.s_local);
 }
 
+struct Spin {
+    Vector3d e, de;
+    double side;
+};
+Spin spin(const Model& model, const Equilibrium& state, const Rates& rates, std::size_t w) {
+    const Wheel& wheel = model.wheels[w];
+    const Vector3d e = state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local;
+    return {e, turn(rates, wheel.body, e), static_cast<double>(wheel.side)};
+}
+
+double rate(const Model& model, const Channel& channel, const Equilibrium& state, const Rates& rates) {
+    const auto unknown = [](const auto&) { return nan; };
+    return std::visit(overloaded{[&](const Coordinate& c) { return velocity(state, rates, c.at)[c.axis]; },
+                                 [&](const Toe& c) {
+                                     const auto [e, de, side] = spin(model, state, rates, c.wheel);
+                                     return side * (e.y() * de.x() - e.x() * de.y()) /
+                                            (e.x() * e.x() + e.y() * e.y());
+                                 },
+                                 [&](const Camber& c) {
+                                     const auto [e, de, side] = spin(model, state, rates, c.wheel);
+                                     return -de.z() / std::sqrt(1 - e.z() * e.z());
+                                 },
+                                 [&](const Effort& c) { return unknown(c); },
+                                 [&](const Reaction& c) { return unknown(c); },
+                                 [&](const Total& c) { return unknown(c); }},
+                      channel.reads) *
+           in_unit(channel.unit);
+}
+
 }  // namespace
 
-ChannelRates channel_rates(const Model& model, const Branch& branch, const Path& path, Place place) {
+std::vector<double> channel_rates(const Model& model, std::span<const Channel> channels, const Branch& branch,
+                                  const Path& path, Place place) {
     const Equilibrium state = recursive::series::evaluate(model, path, place);
     const Rates rates = recursive::series::rates(path, place);
-    ChannelRates result;
-    const auto add = [&](const Vector3d& v) {
-        for (int c = 0; c < 3; ++c) result.slope.push_back(millimetres * v[c]);
-    };
-    std::optional<Vector3d> leading;
-    if (model.wheel) {
-        const Wheel& wheel = *model.wheel;
-        leading = velocity(state, rates, {wheel.body, wheel.centre_local});
-        add(*leading);
-        const Vector3d e = state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local,
-                       de = turn(rates, wheel.body, e);
-        result.slope.push_back(degrees * wheel.side * (e.y() * de.x() - e.x() * de.y()) /
-                               (e.x() * e.x() + e.y() * e.y()));
-        result.slope.push_back(degrees * -de.z() / std::sqrt(1 - e.z() * e.z()));
-    }
-    for (const auto& probe : model.probes) {
-        const Vector3d v = velocity(state, rates, probe.at);
-        if (!leading) leading = v;
-        add(v);
-    }
-    if (const auto direction = travel_direction(branch); direction && leading)
-        result.travel = millimetres * direction->dot(*leading);
+    std::vector<double> result;
+    for (const auto& channel : channels)
+        result.push_back(rate(model, channel, state, rates) / in_unit(unit_of(branch.unit)));
     return result;
 }
 
-std::optional<Place> place_at_travel(const Model& model, const Branch& branch, const Path& path,
-                                     double travel) {
+std::optional<Place> place_at(const Model& model, const Channel& channel, const Branch& branch,
+                              const Path& path, double value) {
     using namespace recursive::series;
-    if (path.expansions.empty() || !travel_direction(branch)) return std::nullopt;
-    const Equilibrium start = evaluate(model, path, {0, 0});
-    const auto travel_at = [&](double load) {
-        return curve(model, branch, {start, evaluate(model, path, *find(path, load))}).travel.back();
+    if (path.expansions.empty() || !channel.kinematic()) return std::nullopt;
+    const auto value_at = [&](Place place) {
+        return compare::evaluate(model, {&channel, 1}, evaluate(model, path, place)).front();
     };
     const Expansion& last = path.expansions.back();
-    double from = start.load, to = evaluate(model, path, {path.expansions.size() - 1, last.reach}).load;
-    const double first = 0, final = travel_at(to);
-    if (!(std::min(first, final) <= travel && travel <= std::max(first, final))) return std::nullopt;
-    double load = from + (to - from) * (final == 0 ? 0 : travel / final);
+    const Place end{path.expansions.size() - 1, last.reach};
+    double from = evaluate(model, path, {0, 0}).load, to = evaluate(model, path, end).load;
+    const double first = value_at({0, 0}), final = value_at(end);
+    if (!(std::min(first, final) <= value && value <= std::max(first, final))) return std::nullopt;
+    double a = from + (to - from) * (final == first ? 0 : (value - first) / (final - first));
     for (int k = 0; k < 100; ++k) {
-        const double miss = travel_at(load) - travel;
-        ((miss < 0) == (final > 0) ? from : to) = load;
-        const double slope = channel_rates(model, branch, path, *find(path, load)).travel;
-        double next = load - miss / slope;
+        const Place here = *find(path, a);
+        const double miss = value_at(here) - value;
+        ((miss < 0) == (final > first) ? from : to) = a;
+        const double slope = rate(model, channel, evaluate(model, path, here), rates(path, here));
+        double next = a - miss / slope;
         if (!((next - from) * (next - to) <= 0)) next = from + (to - from) / 2;  // bisect where Newton leaves
-        if (next == load || std::abs(next - load) <= 1e-15 * std::abs(branch.to)) break;
-        load = next;
+        if (next == a || std::abs(next - a) <= 1e-15 * std::abs(branch.to)) break;
+        a = next;
     }
-    return find(path, load);
+    return find(path, a);
 }
 
 }  // namespace elastocheck::compare

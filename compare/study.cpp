@@ -6,10 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compare/deviation.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/agreement.hpp"
+#include "compare/legs.hpp"
+#include "models/branch.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -18,58 +17,47 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double round_off = 1e-9;  // [mm], [deg]: differences below are the arithmetic's
 constexpr int stations = 30;        // along a branch, where curves are read
 constexpr int reference_points = 300;
-constexpr double agreement = 1e-6;  // [mm], [deg]: of the references
 
-enum class Abscissa { load, travel };
+// What a curve is read over: its parameter, or a channel.
+constexpr int parameter = -1;
+std::vector<double> over(const Curve& curve, int by) {
+    return by == parameter ? curve.a : curve.channel(static_cast<std::size_t>(by));
+}
 
-// One channel of a curve at equally spaced stations 1 ... S of `abscissa` up to `end`.
-std::vector<double> at_stations(const Curve& curve, std::size_t channel, Abscissa abscissa, double end) {
-    const auto& x = abscissa == Abscissa::load ? curve.load : curve.travel;
-    std::vector<double> y, values;
-    for (const auto& point : curve.values) y.push_back(point[channel]);
+// What every curve reaches.
+struct Span {
+    double from = nan, to = nan;
+};
+Span common_span(int by, const std::vector<const Curve*>& curves) {
+    Span span;
+    for (const Curve* curve : curves) {
+        const auto x = over(*curve, by);
+        const bool up = x.back() > x.front();
+        const auto farther = [&](double a, double b) { return up ? a > b : a < b; };
+        if (std::isnan(span.from) || farther(x.front(), span.from)) span.from = x.front();
+        if (std::isnan(span.to) || farther(span.to, x.back())) span.to = x.back();
+    }
+    return span;
+}
+
+// One channel of a curve at equally spaced stations 1 ... S of the span.
+std::vector<double> at_stations(const Curve& curve, std::size_t channel, int by, const Span& span) {
+    const auto x = over(curve, by), y = curve.channel(channel);
+    std::vector<double> values;
     for (int s = 1; s <= stations; ++s)
-        values.push_back(s == stations && x.back() == end ? y.back()
-                                                          : interpolate(x, y, end * s / stations, 6));
+        values.push_back(s == stations && x.back() == span.to
+                             ? y.back()
+                             : interpolate(x, y, span.from + (span.to - span.from) * s / stations, 6));
     return values;
 }
 
-bool strictly_monotone(const std::vector<double>& x) {
-    if (x.size() < 2) return false;
-    const bool up = x[1] > x[0];
-    return std::ranges::adjacent_find(x, [&](double a, double b) { return up ? !(b > a) : !(b < a); }) ==
-           x.end();
-}
-
-// The largest travel that every curve reaches, or the load at the end; NaN where travel cannot be read.
-double common_end(Abscissa abscissa, const std::vector<const Curve*>& curves) {
-    if (abscissa == Abscissa::load) return curves.front()->load.back();
-    double end = nan;
-    for (const Curve* curve : curves) {
-        if (curve->travel.empty() || !strictly_monotone(curve->travel)) return nan;
-        const double reached = curve->travel.back();
-        if (std::isnan(end) || std::abs(reached) < std::abs(end)) end = reached;
-    }
-    return end;
-}
-
-struct References {
-    Curve equilibrium, energy;
-    std::string failure;
-};
-
-References solve_references(const Model& model, const Branch& branch) {
-    std::vector<double> loads;
-    for (int k = 0; k <= reference_points; ++k) loads.push_back(branch.to * k / reference_points);
-    References references;
-    const auto first = reference::equilibrium::solve(model, branch, loads);
-    const auto second = reference::energy::solve(model, branch, loads);
-    for (const auto& [leg, path] : {std::pair{"equilibrium", &first}, {"energy", &second}})
-        if (path->outcome != Outcome::converged)
-            references.failure =
-                fmt::format("{} leg: {}: {}", leg, elastocheck::name(path->outcome), path->detail);
-    references.equilibrium = curve(model, branch, first.points);
-    references.energy = curve(model, branch, second.points);
-    return references;
+// The channel that all curves can be read over, or why there is none.
+Abscissa common_abscissa(const std::vector<Channel>& channels, const std::vector<const Curve*>& curves) {
+    const int by = default_abscissa(channels, *curves.front());
+    for (const Curve* curve : curves)
+        if (const Abscissa found = abscissa(channels, by, *curves.front(), *curve); !found.why_not.empty())
+            return found;
+    return {by, ""};
 }
 
 double rms(const std::vector<double>& values) {
@@ -107,19 +95,19 @@ std::vector<double> own_limit(const std::vector<int>& steps, const std::vector<s
 }
 
 ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels,
-                           const References& references, std::size_t channel, double formal,
-                           Abscissa abscissa, double end) {
+                           const References& references, std::size_t channel, double formal, int by,
+                           const Span& span) {
     ChannelStudy result;
-    const auto truth = at_stations(references.equilibrium, channel, abscissa, end);
-    result.uncertainty = largest(difference(at_stations(references.energy, channel, abscissa, end), truth));
+    const auto truth = at_stations(references.truth, channel, by, span);
+    result.uncertainty = largest(difference(at_stations(references.other, channel, by, span), truth));
     const auto [low, high] = std::ranges::minmax(truth);
-    const double start = references.equilibrium.values.front()[channel];
+    const double start = references.truth.values.front()[channel];
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
     std::vector<Level> sequence;
     for (std::size_t l = 0; l < levels.size(); ++l) {
-        values.push_back(at_stations(levels[l], channel, abscissa, end));
+        values.push_back(at_stations(levels[l], channel, by, span));
         sequence.push_back({static_cast<double>(steps[l]), values.back().back()});
     }
     result.end = step_convergence(sequence, formal, {round_off, result.uncertainty});
@@ -149,13 +137,74 @@ std::vector<std::size_t> main_channels(const std::vector<Channel>& all) {
     return list;
 }
 
+Way with_steps(Way way, int steps) {
+    way.branch.steps = steps;
+    return way;
+}
+
+// The ways of a branch as the references walk them, each with its share of every number of steps.
+std::vector<std::pair<Way, std::vector<int>>> ways_with_steps(const Model& model, const Branch& branch,
+                                                              const std::vector<int>& steps) {
+    std::vector<std::pair<Way, std::vector<int>>> result;
+    for (const auto& way : ways_of(model, branch, reference_points))
+        result.emplace_back(way, std::vector<int>{});
+    for (const int N : steps) {
+        Branch whole = branch;
+        whole.steps = N;
+        const auto shares = ways(whole);
+        for (std::size_t w = 0; w < shares.size(); ++w) result[w].second.push_back(shares[w].steps);
+    }
+    return result;
+}
+
+// All levels of one method on one way.
+MethodStudy study_method(const Model& model, const std::vector<Channel>& channels, const Way& way,
+                         const References& references, const recursive::Method& method,
+                         const std::vector<int>& steps,
+                         const std::function<void(std::string_view)>& progress) {
+    MethodStudy m;
+    m.method = method.name;
+    std::vector<Curve> levels;
+    std::vector<Level> Phi;
+    for (const int N : steps) {
+        if (progress) progress(fmt::format("{}: {} with {} steps", way.name, method.name, N));
+        const auto path = walk(with_steps(way, N), {.recursion = {.method = method}});
+        m.outcomes.push_back(path.outcome);
+        if (path.outcome != Outcome::converged) {
+            m.not_studied =
+                fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome), path.detail);
+            m.constraint_error.push_back(nan);
+            continue;
+        }
+        m.constraint_error.push_back(path.points.back().constraint_error);
+        Phi.push_back({static_cast<double>(N), m.constraint_error.back()});
+        levels.push_back(curve(model, channels, way.branch, path.points));
+    }
+    m.constraint_order = order_of(Phi, 1e-12);
+    if (!m.not_studied.empty()) return m;
+
+    std::vector<const Curve*> curves{&references.truth, &references.other};
+    for (const auto& level : levels) curves.push_back(&level);
+    const double formal = std::max(method.formal_order, 1.0);  // to its own limit
+    const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
+        const Span span = common_span(by, curves);
+        for (const std::size_t c : main_channels(channels))
+            reading.push_back(study_channel(steps, levels, references, c, formal, by, span));
+    };
+    read(parameter, m.equal_parameter);
+    const Abscissa by = common_abscissa(channels, curves);
+    m.no_abscissa = by.why_not;
+    if (by.why_not.empty()) read(by.channel, m.equal_abscissa);
+    return m;
+}
+
 }  // namespace
 
 bool Study::conclusive() const {
     if (!inconclusive.empty()) return false;
     for (const auto& branch : branches)
         for (const auto& method : branch.methods)
-            if (!method.equal_load.empty()) return true;
+            if (!method.equal_parameter.empty()) return true;
     return false;
 }
 
@@ -166,124 +215,118 @@ Study study(const Model& model, const StudyOptions& options) {
     Study result;
     result.steps = options.steps;
     const auto all = channels(model);
-    const auto shown = main_channels(all);
-    for (const std::size_t c : shown) result.channels.push_back(all[c]);
+    for (const std::size_t c : main_channels(all)) result.channels.push_back(all[c]);
 
-    for (const auto& branch : model.branches) {
-        if (options.progress) options.progress(fmt::format("{}: references", branch.name));
-        const References references = solve_references(model, branch);
-        if (!references.failure.empty()) {
-            result.inconclusive.push_back(fmt::format("{}: {}", branch.name, references.failure));
-            continue;
-        }
-        BranchStudy b{branch.name, {}};
-        for (const auto& method : options.methods) {
-            if (!recursive::has_steps(method)) continue;  // has no step count
-            MethodStudy m;
-            m.method = method.name;
-            std::vector<Curve> levels;
-            std::vector<Level> Phi;
-            for (const int steps : options.steps) {
-                if (options.progress)
-                    options.progress(fmt::format("{}: {} with {} steps", branch.name, method.name, steps));
-                const auto path = recursive::solve(model, branch, {.method = method, .steps = steps});
-                m.outcomes.push_back(path.outcome);
-                if (path.outcome != Outcome::converged) {
-                    m.not_studied = fmt::format("with {} steps: {}: {}", steps,
-                                                elastocheck::name(path.outcome), path.detail);
-                    m.constraint_error.push_back(nan);
-                    continue;
-                }
-                m.constraint_error.push_back(path.points.back().constraint_error);
-                Phi.push_back({static_cast<double>(steps), m.constraint_error.back()});
-                levels.push_back(curve(model, branch, path.points));
+    for (const auto& branch : model.branches)
+        for (const auto& [way, steps] : ways_with_steps(model, branch, options.steps)) {
+            if (options.progress) options.progress(fmt::format("{}: references", way.name));
+            const References known = references(model, all, way.branch, {way});
+            for (const auto& why : known.failures)
+                result.inconclusive.push_back(fmt::format("{}: {}", way.name, why));
+            if (!known.failures.empty()) continue;
+            const Bounds bounds = bounds_of({}, scale_of(way.model, way.branch, known.equilibrium.points));
+            if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
+                result.inconclusive.push_back(fmt::format(
+                    "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} deg "
+                    "are "
+                    "allowed",
+                    way.name, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
+            if (std::ranges::adjacent_find(steps, std::greater_equal<>{}) != steps.end()) {
+                result.inconclusive.push_back(
+                    fmt::format("{}: its share of the steps is too small for levels", way.name));
+                continue;
             }
-            m.constraint_order = order_of(Phi, 1e-12);
-            if (m.not_studied.empty()) {
-                std::vector<const Curve*> curves{&references.equilibrium, &references.energy};
-                for (const auto& level : levels) curves.push_back(&level);
-                const double formal = std::max(method.formal_order, 1.0);  // to its own limit
-                for (const Abscissa abscissa : {Abscissa::load, Abscissa::travel}) {
-                    const double end = common_end(abscissa, curves);
-                    if (std::isnan(end)) continue;
-                    auto& reading = abscissa == Abscissa::load ? m.equal_load : m.equal_travel;
-                    for (const std::size_t c : shown)
-                        reading.push_back(
-                            study_channel(options.steps, levels, references, c, formal, abscissa, end));
-                }
-                for (std::size_t k = 0; k < m.equal_load.size(); ++k)
-                    if (!(m.equal_load[k].uncertainty <= agreement))
-                        result.inconclusive.push_back(
-                            fmt::format("{}: the references disagree on {} by {:.2g}", branch.name,
-                                        result.channels[k].name, m.equal_load[k].uncertainty));
+            const int by = default_abscissa(all, known.truth);
+            BranchStudy b{
+                way.name, branch.name, by < 0 ? "" : all[static_cast<std::size_t>(by)].name, steps, {}};
+            for (const auto& method : options.methods) {
+                if (!recursive::has_steps(method)) continue;  // has no step count
+                b.methods.push_back(study_method(model, all, way, known, method, steps, options.progress));
             }
-            b.methods.push_back(std::move(m));
+            result.branches.push_back(std::move(b));
         }
-        result.branches.push_back(std::move(b));
-    }
     return result;
 }
+
+namespace {
+
+// What is left of the way's gap when some of the stored forces follow; bit 0 lever, 1 axis, 2 load.
+constexpr unsigned combinations = 8;
+
+BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& channels, const Way& way,
+                                const std::string& branch, const std::vector<int>& steps) {
+    BranchAttribution attribution;
+    attribution.branch = way.name;
+    attribution.belongs_to = branch;
+    const References known = references(model, channels, way.branch, {way});
+    if (!known.failures.empty()) {
+        attribution.not_attributed = known.failures.front();
+        return attribution;
+    }
+    std::vector<std::vector<Curve>> levels(combinations);
+    std::vector<const Curve*> curves{&known.truth, &known.other};
+    for (unsigned bits = 0; bits < combinations; ++bits) {
+        const recursive::Method method{
+            .kind = recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
+        for (const int N : steps) {
+            const auto path = walk(with_steps(way, N), {.recursion = {.method = method}});
+            if (path.outcome != Outcome::converged) {
+                attribution.not_attributed =
+                    fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome), path.detail);
+                return attribution;
+            }
+            levels[bits].push_back(curve(model, channels, way.branch, path.points));
+        }
+    }
+    for (const auto& combination : levels)
+        for (const auto& level : combination) curves.push_back(&level);
+
+    const auto read = [&](int by, std::vector<GapShare>& reading) {
+        const Span span = common_span(by, curves);
+        for (const std::size_t c : main_channels(channels)) {
+            GapShare share;
+            for (unsigned bits = 0; bits < combinations; ++bits) {
+                const auto s = study_channel(steps, levels[bits], known, c, 1, by, span);
+                share.combinations.push_back(s.gap);
+                // At the round-off floor the limit is the finest value; where nothing can be said the spread
+                // is the band.
+                const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
+                share.band =
+                    std::max(share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
+            }
+            const auto& g = share.combinations;
+            // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both (1/3).
+            const auto effect = [&](unsigned term) {
+                const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3), t = 1u << term;
+                return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 + (g[a | b] - g[7]) / 3;
+            };
+            share.whole = g[0];
+            share.lever = effect(0);
+            share.axis = effect(1);
+            share.load = effect(2);
+            share.rest = g[7];
+            reading.push_back(share);
+        }
+    };
+    read(parameter, attribution.equal_parameter);
+    const Abscissa by = common_abscissa(channels, curves);
+    attribution.no_abscissa = by.why_not;
+    if (by.why_not.empty()) read(by.channel, attribution.equal_abscissa);
+    return attribution;
+}
+
+}  // namespace
 
 std::vector<BranchAttribution> attribute_gap(const Model& model,
                                              const std::function<void(std::string_view)>& progress) {
     const std::vector<int> steps{300, 600, 1200, 2400};
-    const auto shown = main_channels(channels(model));
+    const auto all = channels(model);
     std::vector<BranchAttribution> result;
-    for (const auto& branch : model.branches) {
-        if (progress) progress(fmt::format("{}: gap attribution", branch.name));
-        BranchAttribution attribution;
-        attribution.branch = branch.name;
-        const References references = solve_references(model, branch);
-        attribution.not_attributed = references.failure;
-        std::vector<std::vector<Curve>> levels(8);
-        for (unsigned bits = 0; bits < 8 && attribution.not_attributed.empty(); ++bits) {
-            recursive::Method method;
-            method.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
-            for (const int N : steps) {
-                const auto path = recursive::solve(model, branch, {.method = method, .steps = N});
-                if (path.outcome != Outcome::converged) attribution.not_attributed = path.detail;
-                levels[bits].push_back(curve(model, branch, path.points));
-            }
+    for (const auto& branch : model.branches)
+        for (const auto& [way, shares] : ways_with_steps(model, branch, steps)) {
+            if (progress) progress(fmt::format("{}: gap attribution", way.name));
+            result.push_back(attribute_way(model, all, way, branch.name, shares));
         }
-        if (!attribution.not_attributed.empty()) {
-            result.push_back(std::move(attribution));
-            continue;
-        }
-        std::vector<const Curve*> curves{&references.equilibrium, &references.energy};
-        for (const auto& combination : levels)
-            for (const auto& level : combination) curves.push_back(&level);
-        for (const Abscissa abscissa : {Abscissa::load, Abscissa::travel}) {
-            const double end = common_end(abscissa, curves);
-            if (std::isnan(end)) continue;
-            for (const std::size_t c : shown) {
-                GapShare share;
-                for (unsigned bits = 0; bits < 8; ++bits) {
-                    const auto s = study_channel(steps, levels[bits], references, c, 1, abscissa, end);
-                    share.combinations.push_back(s.gap);
-                    // At the round-off floor the limit is the finest value; where nothing can be said the
-                    // spread is the band.
-                    const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
-                    share.band =
-                        std::max(share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
-                }
-                const auto& g = share.combinations;
-                // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both (1/3).
-                const auto effect = [&](unsigned term) {
-                    const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3), t = 1u << term;
-                    return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 +
-                           (g[a | b] - g[7]) / 3;
-                };
-                share.whole = g[0];
-                share.lever = effect(0);
-                share.axis = effect(1);
-                share.load = effect(2);
-                share.rest = g[7];
-                (abscissa == Abscissa::load ? attribution.equal_load : attribution.equal_travel)
-                    .push_back(share);
-            }
-        }
-        result.push_back(std::move(attribution));
-    }
     return result;
 }
 

@@ -3,8 +3,11 @@
 //   value(N) - truth = [value(N) - own limit]  +  [own limit - reference]  +  [reference - truth]
 //                       step error                formulation gap             reference uncertainty
 //
-// The own limit is Richardson's, per channel (convergence.hpp). Read at equal load and at equal travel. |Φ|
+// The own limit is Richardson's, per channel (convergence.hpp). Read at equal parameter and at equal
+// abscissa (curve.hpp). |Φ|
 // of eq. (31) stands beside them: it falls with the steps whatever the method converges to.
+//
+// A branch with two ways is studied as two: each has an end of its own.
 #pragma once
 
 #include <functional>
@@ -22,7 +25,8 @@ namespace elastocheck::compare {
 
 struct StudyOptions {
     std::vector<recursive::Method> methods{recursive::Method{}};  // fixed-step ones
-    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};        // per branch, increasing, at least five
+    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};  // per branch, shared by its ways; increasing, at
+                                                            // least five
     std::function<void(std::string_view)> progress = {};
 };
 
@@ -33,23 +37,27 @@ struct ChannelStudy {
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
     double gap = 0;                                      // own limit - reference at the end, signed
     double gap_max = 0, gap_rms = 0;                     // over the branch
-    double gap_exponent = 0;  // of |gap| over the load (equal load) or travel; NaN where it is at its floor
+    double gap_exponent = 0;  // of |gap| over the parameter or abscissa; NaN where it is at its floor
     double uncertainty = 0;   // largest difference of the references over the branch
     double range = 0;         // of the reference over the branch
 };
 
 struct MethodStudy {
     std::string method;
-    std::vector<Outcome> outcomes;           // per level
-    std::vector<double> constraint_error;    // |Φ| at the end, eq. (31), per level
-    OrderFit constraint_order;               // at which it falls
-    std::vector<ChannelStudy> equal_load;    // one per main channel; empty when a level did not converge
-    std::vector<ChannelStudy> equal_travel;  // the same; empty where travel cannot be read
-    std::string not_studied;                 // why there is nothing, empty when there is
+    std::vector<Outcome> outcomes;              // per level
+    std::vector<double> constraint_error;       // |Φ| at the end, eq. (31), per level
+    OrderFit constraint_order;                  // at which it falls
+    std::vector<ChannelStudy> equal_parameter;  // one per main channel; empty when a level did not converge
+    std::vector<ChannelStudy> equal_abscissa;   // the same; empty where it cannot be read
+    std::string not_studied;                    // why there is nothing, empty when there is
+    std::string no_abscissa;                    // why there is nothing at equal abscissa
 };
 
 struct BranchStudy {
-    std::string branch;
+    std::string branch;      // its name, or of one way of it: "bounce to -80 mm"
+    std::string belongs_to;  // the name of the branch
+    std::string abscissa;    // name of the channel, empty where there is none
+    std::vector<int> steps;  // of this way
     std::vector<MethodStudy> methods;
 };
 
@@ -81,9 +89,10 @@ struct GapShare {
 };
 
 struct BranchAttribution {
-    std::string branch;
-    std::vector<GapShare> equal_load, equal_travel;  // per main channel; empty where it cannot be read
-    std::string not_attributed;
+    std::string branch, belongs_to;                         // as in BranchStudy
+    std::vector<GapShare> equal_parameter, equal_abscissa;  // per main channel; empty where it cannot be read
+    std::string not_attributed;                             // why there is nothing
+    std::string no_abscissa;                                // why there is nothing at equal abscissa
 };
 
 std::vector<BranchAttribution> attribute_gap(const Model& model,

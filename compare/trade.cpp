@@ -6,13 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
+#include "compare/legs.hpp"
+#include "compare/overloaded.hpp"
 #include "compare/timing.hpp"
 #include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -22,62 +21,31 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double angle_per_length = 1.745;
 
 bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
-double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }  // NaN is larger than anything
-Accuracy worse(const Accuracy& a, const Accuracy& b) { return {worse(a.mm, b.mm), worse(a.deg, b.deg)}; }
 Accuracy plus(const Accuracy& a, const Accuracy& b) { return {a.mm + b.mm, a.deg + b.deg}; }
 
 // ---- one configuration
 
-std::vector<double> loads_of(const Branch& branch, int points) {
-    std::vector<double> loads;
-    for (int k = 0; k <= points; ++k) loads.push_back(branch.to * k / points);
-    return loads;
+// The same output points, `factor` from one to the next.
+std::vector<Way> refined(std::vector<Way> ways, int factor) {
+    for (auto& way : ways) way.branch.steps *= factor;
+    return ways;
 }
 
-EquilibriumPath solve(const Model& model, const Branch& branch, const TradePoint& with, int points) {
-    switch (with.leg) {
-        case Leg::recursive: return recursive::solve(model, branch, recursion_of(with, points));
-        case Leg::equilibrium: return reference::equilibrium::solve(model, branch, loads_of(branch, points));
-        case Leg::energy: return reference::energy::solve(model, branch, loads_of(branch, points));
+// Every so-many-th point.
+Curve every(const Curve& curve, std::size_t stride) {
+    Curve result{.unit = curve.unit, .a = {}, .start = curve.start / stride, .values = {}};
+    for (std::size_t k = curve.start % stride; k < curve.a.size(); k += stride) {
+        result.a.push_back(curve.a[k]);
+        result.values.push_back(curve.values[k]);
     }
-    return {};
+    return result;
 }
 
-// The distance of b from a, both along `branch`;
-// `stride` points of a are one of b. NaN unless both are complete.
-Accuracy distance(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& a,
-                  const EquilibriumPath& b, std::size_t stride = 1, int* compared = nullptr) {
-    if (a.outcome != Outcome::converged || b.outcome != Outcome::converged || b.points.empty() ||
-        a.points.size() != (b.points.size() - 1) * stride + 1)
-        return {nan, nan};
-    Accuracy worst;
-    for (std::size_t k = 0; k < b.points.size(); ++k) {
-        const Equilibrium &p = a.points[k * stride], &q = b.points[k];
-        // The same load factor as two divisions write it.
-        if (!(std::abs(p.load - q.load) <= 1e-14 * std::abs(b.points.back().load))) return {nan, nan};
-        const auto u = evaluate(model, p), v = evaluate(model, q);
-        for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].main) continue;
-            double& side = channels[c].unit == Unit::deg ? worst.deg : worst.mm;
-            side = worse(side, std::abs(v[c] - u[c]));
-            if (compared != nullptr) ++*compared;
-        }
-    }
-    return worst;
-}
-
-// Two references may agree to the last bit by luck; values of this size know no more than a few units of it.
-Accuracy rounding_of(const Model& model, const std::vector<Channel>& channels, const EquilibriumPath& path) {
-    Accuracy largest;
-    for (const auto& point : path.points) {
-        const auto values = evaluate(model, point);
-        for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].main) continue;
-            double& side = channels[c].unit == Unit::deg ? largest.deg : largest.mm;
-            side = worse(side, 4 * std::numeric_limits<double>::epsilon() * std::abs(values[c]));
-        }
-    }
-    return largest;
+// Of a path that is complete; else without a point, so that whatever is read from it is no number.
+Curve curve_of(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+               const EquilibriumPath& path) {
+    if (path.outcome != Outcome::converged) return {};
+    return curve(model, channels, branch, path.points);
 }
 
 std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
@@ -90,7 +58,8 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
         if (!options.methods.empty() && std::ranges::find(options.methods, label) == options.methods.end())
             continue;
         if (!recursive::has_steps(method)) {
-            for (int digits = 3; digits <= (method.series ? 12 : 9); ++digits)
+            const bool series = std::holds_alternative<recursive::Series>(method.kind);
+            for (int digits = 3; digits <= (series ? 12 : 9); ++digits)
                 all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
             continue;
         }
@@ -148,38 +117,30 @@ bool same_ladder(const TradePoint& a, const TradePoint& b) {
     return a.leg == b.leg && a.method == b.method && a.again == b.again;
 }
 
-// What is compared: time, or, where none was taken, the work that takes it.
-double price_of(const Trade& trade, const TradePoint& point) {
-    return trade.rounds > 0 ? point.ratio
-                            : static_cast<double>(point.work.factorisations + point.work.evaluations);
+// Told more than is asked for, a method is good enough by luck.
+bool told_enough(const Trade& trade, const TradePoint& point) {
+    const double deg = in_unit(Unit::deg) * angle_per_length * point.own_tolerance;
+    return 1e3 * point.own_tolerance <= trade.tolerance.mm && deg <= trade.tolerance.deg;
 }
 
 // Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at
 // steps too few to show that the method is unstable, is good by luck.
 bool eligible(const Trade& trade, std::size_t k) {
-    if (trade.points[k].again) return false;
+    if (trade.points[k].again || !told_enough(trade, trade.points[k])) return false;
     for (std::size_t finer = k;
          finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]); ++finer) {
         const TradePoint& point = trade.points[finer];
         if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
     }
-    return std::isfinite(price_of(trade, trade.points[k]));
+    return true;
 }
 
-// The cheapest by time; within the noise the one with fewer factorisations, then fewer solves.
+// By price; of equals the first, since every ladder begins with its loosest rung.
 std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::size_t>& candidates) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto k : candidates) least = std::min(least, price_of(trade, trade.points[k]));
-    std::optional<std::size_t> best;
-    for (const auto k : candidates) {
-        if (!(price_of(trade, trade.points[k]) <= least * (1 + trade.noise))) continue;
-        const auto key = [&](std::size_t i) {
-            const Work& work = trade.points[i].work;
-            return std::tuple{work.factorisations, work.solves, work.evaluations};
-        };
-        if (!best || key(k) < key(*best)) best = k;
-    }
-    return best;
+    const auto price = [&](std::size_t k) { return trade.points[k].work.price; };
+    const auto best = std::ranges::min_element(candidates, {}, price);
+    if (best == candidates.end()) return std::nullopt;
+    return *best;
 }
 
 // Between the rungs h/2 and 2h a law C·h^p puts the geometric mean at the middle one; at an end of the ladder
@@ -227,19 +188,26 @@ void band(const Trade& trade, Recommendation& found) {
 // earlier, against a reference that gets there by thirds of its steps.
 Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const TradePoint& point,
                  int points, int& compared) {
-    int finer = 7 * points;
+    int finer = 7;  // output points for one
     if (point.steps > 0) {
-        finer = points;
-        while (2 * finer <= std::min(point.steps, 100)) finer *= 2;
+        finer = 1;
+        while (2 * finer * points <= std::min(point.steps, 100)) finer *= 2;
     }
     const TradePoint reference{.leg = point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
+    const auto main = std::ranges::count_if(channels, &Channel::main);
     Accuracy worst;
     for (const auto& branch : model.branches)
-        for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer)}) {
+        for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * points)}) {
             Branch shorter = branch;
             shorter.to *= end;
-            worst = worse(worst, distance(model, channels, solve(model, shorter, reference, 3 * finer),
-                                          solve(model, shorter, point, finer), 3, &compared));
+            shorter.from *= end;
+            const auto ways = refined(ways_of(model, shorter, points), finer);
+            const Curve truth = curve_of(model, channels, shorter,
+                                         walk(refined(ways, 3), gait_of(reference, points))),
+                        found =
+                            curve_of(model, channels, shorter, walk(ways, gait_of(point, finer * points)));
+            worst = worse(worst, distance(channels, every(truth, 3), found));
+            compared += static_cast<int>(main) * static_cast<int>(found.a.size());
         }
     return worst;
 }
@@ -313,13 +281,19 @@ double share_of(const Tolerance& tolerance, const Accuracy& error) {
     return worse(mm, deg);
 }
 
-recursive::Options recursion_of(const TradePoint& point, int points) {
-    return {.method = *recursive::find_method(point.method),
-            .steps = point.steps > 0 ? point.steps : points,
-            .record = points,
-            .length_tolerance = point.own_tolerance,
-            .angle_tolerance = angle_per_length * point.own_tolerance,
-            .series = {.tolerance = point.own_tolerance}};
+Gait gait_of(const TradePoint& point, int points) {
+    Gait gait{.leg = point.leg};
+    if (point.leg != Leg::recursive) return gait;
+    gait.recursion.method = *recursive::find_method(point.method);
+    std::visit(overloaded{[&](const recursive::Linear&) { gait.refine = point.steps / points; },
+                          [&](const recursive::Consistent&) { gait.refine = point.steps / points; },
+                          [&](recursive::Adaptive& adaptive) {
+                              adaptive.length_tolerance = point.own_tolerance;
+                              adaptive.angle_tolerance = angle_per_length * point.own_tolerance;
+                          },
+                          [&](recursive::Series& series) { series.tolerance = point.own_tolerance; }},
+               gait.recursion.method.kind);
+    return gait;
 }
 
 std::string describe(const TradePoint& point) {
@@ -362,43 +336,44 @@ Trade trade(const Model& model, const TradeOptions& options) {
         result.inconclusive.push_back("only an angle is asked for, and the scene has none");
     if (!result.inconclusive.empty()) return result;
 
-    std::vector<EquilibriumPath> truth;
-    const TradePoint equilibrium{.leg = Leg::equilibrium}, energy{.leg = Leg::energy};
+    std::vector<std::vector<Way>> ways;
+    std::vector<Curve> truth;
     for (const auto& branch : model.branches) {
         tell(fmt::format("{}: the references", branch.name));
-        truth.push_back(solve(model, branch, equilibrium, options.points));
-        const auto other = solve(model, branch, energy, options.points);
-        for (const auto& [leg, path] :
-             {std::pair{Leg::equilibrium, &std::as_const(truth.back())}, std::pair{Leg::energy, &other}})
-            if (path->outcome != Outcome::converged)
-                result.inconclusive.push_back(fmt::format("{}: {} leg: {}: {}", branch.name, name(leg),
-                                                          name(path->outcome), path->detail));
-        result.uncertainty =
-            worse(result.uncertainty, worse(distance(model, all_channels, truth.back(), other),
-                                            rounding_of(model, all_channels, truth.back())));
+        ways.push_back(ways_of(model, branch, options.points));
+        References known = references(model, all_channels, branch, ways.back());
+        for (const auto& why : known.failures)
+            result.inconclusive.push_back(fmt::format("{}: {}", branch.name, why));
+        result.uncertainty = worse(result.uncertainty, known.uncertainty);
+        truth.push_back(known.equilibrium.outcome == Outcome::converged ? std::move(known.truth) : Curve{});
     }
 
     result.points = configurations(model, options);
+    const double unknowns = coordinates(model) + constraint_rows(model);
     std::vector<std::function<void()>> jobs;
     std::vector<std::size_t> timed;
     for (std::size_t k = 0; k < result.points.size(); ++k) {
         TradePoint& point = result.points[k];
         tell(describe(point));
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
-            const auto path = solve(model, model.branches[b], point, options.points);
+            const auto path = walk(ways[b], gait_of(point, options.points));
             point.work.solves += path.counts.iterations;
             point.work.factorisations += path.counts.factorisations;
             point.work.evaluations += path.counts.evaluations;
-            point.error = worse(point.error, distance(model, all_channels, truth[b], path));
+            point.error = worse(
+                point.error,
+                distance(all_channels, truth[b], curve_of(model, all_channels, model.branches[b], path)));
             if (path.outcome != Outcome::converged && point.outcome == Outcome::converged) {
                 point.outcome = path.outcome;
                 point.detail = path.detail;
             }
         }
+        point.work.price = unknowns / 3 * static_cast<double>(point.work.factorisations) +
+                           static_cast<double>(point.work.solves + point.work.evaluations);
         if (point.outcome != Outcome::converged) continue;
         timed.push_back(k);
-        jobs.emplace_back([&model, &options, point] {
-            for (const auto& branch : model.branches) (void)solve(model, branch, point, options.points);
+        jobs.emplace_back([&ways, &options, point] {
+            for (const auto& way : ways) (void)walk(way, gait_of(point, options.points));
         });
     }
 

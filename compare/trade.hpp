@@ -1,10 +1,15 @@
 // The price of accuracy: what each method's error costs, and the cheapest one that is good enough.
 //
 // Every configuration (a method with a step count or a tolerance of its own, or a reference leg) produces the
-// same output points: `points` equal load increments of every branch. Its error is the worst over all
-// branches, output points and main channels, at equal load, from the equilibrium leg. Its price is counted in
-// linear solves, in factorisations and residual evaluations, and in time relative to the equilibrium leg,
-// measured interleaved (timing.hpp).
+// same output points: `points` equal increments of the parameter of every branch. Its error is the worst over
+// all branches, output points and main channels, at equal parameter, from the equilibrium leg. Its price is
+// counted, in the work of one back-substitution. With N = 6nb + m unknowns, dense, that takes 2N² operations
+// and a factorisation 2N³/3, and an evaluation of the residuals is counted as one:
+//
+//   price = N/3 · factorisations + solves + evaluations
+//
+// It is the same in every run, so what is recommended is; time relative to the equilibrium leg, measured
+// interleaved (timing.hpp), is shown beside it.
 //
 // What can be said ends at the reference uncertainty u, the distance of the two reference legs: an error e is
 // at most e + u, and errors up to u cannot be told apart, hence not ranked.
@@ -26,12 +31,6 @@
 
 namespace elastocheck::compare {
 
-// Lengths in mm and angles in deg: an error, an uncertainty.
-struct Accuracy {
-    double mm = 0;   // positions
-    double deg = 0;  // toe and camber; 0 where a scene has no angles
-};
-
 // Infinite: not asked for.
 struct Tolerance {
     double mm = std::numeric_limits<double>::infinity();
@@ -49,6 +48,7 @@ struct Work {
     long solves = 0;  // back-substitutions
     long factorisations = 0;
     long evaluations = 0;                                       // of the residual, or of energy and gradient
+    double price = 0;                                           // in back-substitutions, see above
     double seconds = std::numeric_limits<double>::quiet_NaN();  // median over the rounds
 };
 
@@ -70,7 +70,8 @@ struct TradePoint {
     std::array<bool, 3> on_front{};
 };
 
-// The whole band lies within the tolerance.
+// The cheapest by price, of equals the loosest: it is told no more than is asked for, everything finer of the
+// same method is good enough too, and the whole band lies within the tolerance.
 struct Recommendation {
     std::size_t point = 0;  // position in Trade::points
     // Band: how far the law error = C·steps^-p of the ladder misses this rung, what the confirming run found,
@@ -84,10 +85,10 @@ struct Recommendation {
 struct TradeOptions {
     Tolerance tolerance{0.01, 0.001};
     std::vector<std::string> methods = {};  // of the recursion; empty: all
-    int points = 10;  // output points per branch, beside load factor 0; the ladder starts with as many steps
+    int points = 10;  // output points per branch, beside a = 0; the ladder starts with as many steps
     int most_steps = 2560;
     double work_budget = 5e8;  // of one configuration: steps · branches · (unknowns)³
-    int rounds = 7;            // of timing; 0: no times, the price is factorisations + evaluations
+    int rounds = 7;            // of timing; 0: no times
     std::function<void(std::string_view)> progress = {};
 };
 
@@ -106,8 +107,8 @@ struct Trade {
 
 Trade trade(const Model& model, const TradeOptions& options = {});
 
-// How the recursion goes in a configuration of it that records `points` equal load increments.
-recursive::Options recursion_of(const TradePoint& point, int points);
+// How a configuration walks that records `points` equal increments of the parameter, a divisor of its steps.
+Gait gait_of(const TradePoint& point, int points);
 
 // "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
 std::string describe(const TradePoint& point);

@@ -1,49 +1,28 @@
 // Step size from an error estimate, and the branch between the steps.
 //
-// A node is a point z = (q, λ) of the branch with its derivative z' = dz/da: at a node ∂G z' = ∂f_ext/∂a, one
-// more right-hand side for factors that are there anyway. From one node to the next:
+//   a step    walk.hpp
+//   between   the cubic through (z, z') and (z⁺, z⁺'). Its error is largest in the middle: one correction
+//             there is it.
 //
-//   forecast    z⁺ = z + h z' + ½ h² z'', z'' from the last two derivatives
-//   corrections Newton steps, each with its own factors: their sizes fall quadratically, so the last one
-//               squared over the one before is what is left. (With the factors of the old node they hardly
-//               fall at all: where stiff bushings turn beside soft springs, the error of old factors is their
-//               angle times the ratio of the rates.)
-//   between     the cubic through (z, z') and (z⁺, z⁺'). Its error is largest in the middle: one correction
-//               there is it.
-//
-// A step is accepted when what is left and the middle are within the tolerance; the next size follows from
+// A step is accepted when it is believed and the middle is within the tolerance; the next size follows from
 // the middle, which is of order 4.
+//
+// An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the determinant
+// as it was. It is found where the determinant dips: where it is, in the middle, of another sign or less than
+// half of what it is at either end, the step is halved until it is no more, or the point is found.
 #pragma once
 
 #include <algorithm>
 
-#include "recursive/steps.hpp"
+#include "recursive/settle.hpp"
 
 namespace elastocheck::recursive {
-
-template <class Real>
-struct Node {
-    State<Real> q;
-    Vector<Real> lambda, dq, dlambda;  // z' = (dq, dlambda) per unit of the load factor
-    Real a = 0;
-};
-
-// z' at the node, with the factors now in the system.
-template <class Real>
-void differentiate(March<Real>& s, Node<Real>& node) {
-    s.upper.setZero();
-    add_loads<Real>(s.branch.loads, Real(1), node.q, s.upper);
-    s.lower.setZero();
-    back_substitute(s);
-    node.dq = s.x.head(s.n());
-    node.dlambda = s.x.tail(s.m());
-}
 
 // The cubic between two nodes at the share t of the way, rotations as vectors π from the first node:
 // π(0) = 0, π'(0) = ω, π(h) = log(A⁺Aᵀ), π'(h) = J(π)⁻¹ ω⁺.
 template <class Real>
 void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& q, Vector<Real>& lambda) {
-    const Real h = to.a - from.a;
+    const Real h = to.p - from.p;
     const Real h01 = t * t * (3 - 2 * t), h10 = t * (1 - t) * (1 - t) * h, h11 = t * t * (t - 1) * h;
     lambda = from.lambda + h01 * (to.lambda - from.lambda) + h10 * from.dlambda + h11 * to.dlambda;
     for (BodyId b = 0; b < from.q.bodies(); ++b) {
@@ -59,97 +38,70 @@ void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& 
     }
 }
 
-// Fills `path.points` at their equal load increments up to `to`; `reached` counts them.
+// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: settled.
 template <class Real>
-Outcome adapt(March<Real>& s, double length_tolerance, double angle_tolerance, double to,
-              EquilibriumPath& path, std::size_t& reached) {
-    const int n = s.n();
+Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath& path,
+              std::size_t& reached) {
     const Real end = static_cast<Real>(to);
-    const auto share = [&]() -> Real {  // of the tolerance that the correction in s.x takes
-        Real worst = 0;
-        for (int b = 0; b < n / 6; ++b) {
-            worst =
-                std::max(worst, s.x.template segment<3>(6 * b).norm() / static_cast<Real>(length_tolerance));
-            worst = std::max(worst,
-                             s.x.template segment<3>(6 * b + 3).norm() / static_cast<Real>(angle_tolerance));
-        }
-        return worst;
-    };
+    const Going<Real> going{Drive::rate, static_cast<Real>(method.length_tolerance),
+                            static_cast<Real>(method.angle_tolerance)};
     const std::size_t last = path.points.size() - 1;
-    const auto load = [&](std::size_t k) { return to * static_cast<double>(k) / static_cast<double>(last); };
-
-    // One Newton correction of (q, lambda) at the load factor a; its share of the tolerance goes to `size`.
-    const auto correct = [&](State<Real>& q, Vector<Real>& lambda, Real a, Real& size) -> Outcome {
-        external_force<Real>(s.model, s.branch, end, q, s.applied);  // what idle modes are checked against
-        if (const Outcome outcome = factorise_at(s, q, lambda, a); outcome != Outcome::converged)
-            return outcome;
-        residual_at(s, q, lambda, a);
-        back_substitute(s);
-        if (!s.x.allFinite()) return Outcome::not_finite;
-        size = share();
-        s.dq = s.x.head(n);
-        advance(q, s.dq);
-        lambda += s.x.tail(s.m());
-        return Outcome::converged;
+    const auto parameter = [&](std::size_t k) {
+        return to * static_cast<double>(k) / static_cast<double>(last);
+    };
+    const auto keep = [&](const State<Real>& q, const Vector<Real>& lambda, double a) {
+        go_to(s, {1, static_cast<Real>(a)});
+        record<Real>(s.model, s.inputs, q, q, lambda, a, path.points[reached++]);
     };
 
-    Node<Real> node{s.q, s.lambda, {}, {}, 0}, next = node;
-    Vector<Real> lambda = s.lambda, curvature = Vector<Real>::Zero(n),
+    Node<Real> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    Vector<Real> lambda = s.lambda, curvature = Vector<Real>::Zero(s.n()),
                  lambda_curvature = Vector<Real>::Zero(s.m());
     State<Real> q = s.q;
     Real size = 0;
-    if (const Outcome outcome = correct(node.q, node.lambda, Real(0), size); outcome != Outcome::converged)
-        return outcome;
-    differentiate(s, node);
-    record<Real>(s.model, node.q, node.q, node.lambda, 0, path.points[reached++]);
+    if (const Outcome o = correct(s, going, node.q, node.lambda, Real(0), size); o != Outcome::converged)
+        return o;
+    differentiate(s, going, node);
+    Real log_here = log_determinant(s.system.lu);
+    keep(node.q, node.lambda, 0);
 
     Real h = end / 8;
     while (reached <= last) {
-        if (!(std::abs(h) > std::abs(end) * Real(1e-7))) return Outcome::branch_lost;
-        next.a = std::abs(end - node.a) < std::abs(h) * Real(1.1) ? end : node.a + h;
-        const Real step = next.a - node.a;
-
-        next.q = node.q;
-        next.lambda = node.lambda + step * node.dlambda + step * step / 2 * lambda_curvature;
-        s.dq = step * node.dq + step * step / 2 * curvature;
-        advance(next.q, s.dq);
-        Real left = std::numeric_limits<Real>::infinity(), before = left;
-        Outcome outcome = Outcome::converged;
-        for (int k = 0; k < 6 && left > Real(0.01) && outcome == Outcome::converged; ++k) {
-            outcome = correct(next.q, next.lambda, next.a, size);
-            if (outcome != Outcome::converged || !(size < before))
-                break;  // not falling: the step is too long
-            // The first correction has no ratio yet; one far below the tolerance may be rounding, whose ratio
-            // says nothing.
-            left = k == 0 || size <= Real(1e-3) ? size : size * (size / before);
-            before = size;
-        }
-        Real error = left;
-        if (error <= Real(0.01)) {
-            differentiate(s, next);
+        next.p = std::abs(end - node.p) < std::abs(h) * Real(1.1) ? end : node.p + h;
+        const Real step = next.p - node.p;
+        Trial<Real> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+        Real error = std::numeric_limits<Real>::infinity();
+        if (trial.verdict == Verdict::believed) {
+            const Real log_next = log_determinant(s.system.lu);
             between(node, next, Real(0.5), q, lambda);
-            outcome = correct(q, lambda, (node.a + next.a) / 2, size);
-            error = std::max(error, size);
-        }
-        if (outcome == Outcome::converged && error <= 1) {
-            for (; reached <= last; ++reached) {
-                const double at = load(reached);
-                const Real t = (static_cast<Real>(at) - node.a) / step;
-                if (t > 1 && next.a != end) break;
-                between(node, next, std::min(t, Real(1)), q, lambda);
-                record<Real>(s.model, q, q, lambda, at, path.points[reached]);
+            trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
+            if (trial.outcome == Outcome::converged) {
+                error = std::max(trial.left, size);
+                const bool dips = s.system.lu.orientation != node.orientation ||
+                                  log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
+                if (dips) trial.verdict = Verdict::turned_over;
             }
-            curvature = (next.dq - node.dq) / step;
-            lambda_curvature = (next.dlambda - node.dlambda) / step;
-            std::swap(node, next);
-            s.a = node.a;
-        } else if (outcome != Outcome::converged && std::abs(h) <= std::abs(end) * Real(1e-3)) {
-            return outcome;
+            if (trial.verdict == Verdict::believed && error <= 1) {
+                for (; reached <= last;) {
+                    const double at = parameter(reached);
+                    const Real t = (static_cast<Real>(at) - node.p) / step;
+                    if (t > 1 && next.p != end) break;
+                    between(node, next, std::min(t, Real(1)), q, lambda);
+                    keep(q, lambda, at);
+                }
+                curvature = (next.dq - node.dq) / step;
+                lambda_curvature = (next.dlambda - node.dlambda) / step;
+                std::swap(node, next);
+                log_here = log_next;
+                s.a = node.p;
+            }
         }
         using std::pow;
-        const Real change =
-            std::isfinite(error) ? Real(0.85) * pow(std::max(error, Real(1e-8)), Real(-0.25)) : Real(0.3);
+        const bool judged = trial.verdict == Verdict::believed && std::isfinite(error);
+        const Real change = judged ? Real(0.85) * pow(std::max(error, Real(1e-8)), Real(-0.25)) : Real(0.3);
         h = step * std::clamp(change, Real(0.1), Real(4));
+        if (!(std::abs(h) > std::abs(end) * Real(1e-7)) && reached <= last)
+            return judged ? Outcome::branch_lost : why_it_ends(trial, node, curvature, step);
     }
     return Outcome::converged;
 }

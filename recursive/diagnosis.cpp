@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // on rows of unit length
 
-// The root mean square lever of everything that is attached to a body:
-// invariant under motions of the ground frame.
+// The root mean square lever of everything that is attached to a body: invariant under motions of the ground
+// frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
@@ -59,13 +59,12 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
     return Q.rightCols(columns - qr.rank());
 }
 
-// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with
-// a unit diagonal C, so that rates of any size count alike.
-MatrixXd elastic_rows(const Model& model, const State<double>& q) {
+// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size
+// count alike.
+MatrixXd elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
     std::vector<VectorXd> rows;
-    for (const auto& elastic : model.elastics) {
-        const auto e =
-            std::visit([&](const auto& kind) { return element_stiffness<double>(kind, q); }, elastic.kind);
+    for (std::size_t at = 0; at < model.elastics.size(); ++at) {
+        const auto e = element_stiffness<double>(model.elastics[at].kind, inputs.rest[at], q);
         const Eigen::Matrix<double, 6, 1> s = e.K.diagonal().cwiseMax(0).cwiseSqrt();
         const Eigen::Matrix<double, 6, 1> inverse = s.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
         const Matrix6<double> C = inverse.asDiagonal() * e.K * inverse.asDiagonal();
@@ -167,6 +166,7 @@ double condition_number(const MatrixXd& M, Eigen::Index nullity) {
 
 Diagnosis diagnose(const Model& model) {
     const State<double> q = design_state<double>(model);
+    const Inputs<double> inputs = inputs_as_drawn<double>(model);
     Diagnosis result;
     const int n = result.coordinates = coordinates(model);
     const int m = result.rows = constraint_rows(model);
@@ -176,9 +176,9 @@ Diagnosis diagnose(const Model& model) {
     VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
     for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
 
-    const VectorXd Phi = constraint_values<double>(model, q);
+    const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
-    MatrixXd Phi_q = constraint_jacobian<double>(model, q) * physical.asDiagonal();
+    MatrixXd Phi_q = constraint_jacobian<double>(model, inputs, q) * physical.asDiagonal();
     VectorXd row_norm = Phi_q.rowwise().norm();
     normalise_rows(Phi_q);
     result.rank = rank_of(Phi_q);
@@ -197,7 +197,7 @@ Diagnosis diagnose(const Model& model) {
         rank_before = rank;
     }
 
-    MatrixXd elastic = elastic_rows(model, q) * physical.asDiagonal();
+    MatrixXd elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
     normalise_rows(elastic);
     MatrixXd noticed(m + elastic.rows(), n);
     noticed << Phi_q, elastic;
@@ -224,8 +224,8 @@ Diagnosis diagnose(const Model& model) {
     // f_ext(0) - f_elast, projected on what the constraints leave free.
     VectorXd f(n);
     f.setZero();
-    add_loads<double>(model.static_loads, 1.0, q, f);
-    f -= elastic_force<double>(model, q);
+    for (const auto& load : model.static_loads) add_load<double>(load.kind, 1.0, q, f);
+    f -= elastic_force<double>(model, inputs, q);
     if (!f.isZero(0)) {
         const MatrixXd free = null_space_of(Phi_q, n);
         const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
@@ -238,7 +238,7 @@ Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
     const State<double> q = design_state<double>(model);
     MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);
     VectorXd unused(diagnosis.rows);
-    assemble<double>(model, q, M, unused);
+    assemble<double>(model, inputs_as_drawn<double>(model), q, M, unused);
     const VectorXd D = equilibration<double>(M);
     const auto nullity = diagnosis.null_space.cols();
     return {condition_number(M, nullity), condition_number(D.asDiagonal() * M * D.asDiagonal(), nullity)};

@@ -1,14 +1,14 @@
 // Elastic elements: the stiffness matrix of eqs. (8)-(20), and the force of the full nonlinear law.
 //
-// The paper's displacement of the attachment points, eqs. (12)-(13),
-// and its relative motion seen from body i,
+// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen from body
+// i,
 //
 //   Δe = ⎧ Δr_j' - Δr_i' ⎫ = B ⎧ Δq_i ⎫ ,   B = ⎡ -I   s̃_i   I   -s̃_j ⎤      Δr' = Δr - s̃ Δπ
 //        ⎩ Δπ_j  - Δπ_i  ⎭     ⎩ Δq_j ⎭         ⎣  0   -I    0    I   ⎦
 //
-// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections: its sign, so that
-// f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block row, third and
-// fourth block. Written out,
+// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections:
+// its sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block
+// row, third and fourth block. Written out,
 //
 //   ⎡ K_ii  K_ij ⎤   ⎡  K_T         -K_T s̃_i              -K_T          K_T s̃_j            ⎤
 //   ⎣ K_ji  K_jj ⎦ = ⎢  s̃_i K_T     -s̃_i K_T s̃_i + K_R    -s̃_i K_T      s̃_i K_T s̃_j - K_R  ⎥      (19)
@@ -20,7 +20,8 @@
 // gap, kept on purpose.
 #pragma once
 
-#include "recursive/state.hpp"
+#include "recursive/inputs.hpp"
+#include "recursive/law.hpp"
 
 namespace elastocheck::recursive {
 
@@ -33,30 +34,68 @@ struct ElementStiffness {
     bool rotational = true;  // whether anything outside K_T is there
 };
 
+// ---- Geometry: what deforms.
+
+// Two points: D = p_j - p_i, ℓ = |D|; the law answers to ℓ - ℓ₀.
 template <class Real>
-ElementStiffness<Real> element_stiffness(const AxialSpring& e, const State<Real>& q) {
+struct Axial {
+    Vector3<Real> s_i, s_j, D;
+    Real length;
+};
+template <class Real>
+Axial<Real> deformation(const AxialSpring& e, const State<Real>& q) {
+    Axial<Real> g{q[e.i.body].lever(e.i.s_local), q[e.j.body].lever(e.j.s_local), {}, 0};
+    g.D = q[e.j.body].r + g.s_j - q[e.i.body].r - g.s_i;
+    g.length = g.D.norm();
+    return g;
+}
+
+template <class Real>
+Vector3<Real> logarithm(const Matrix3<Real>& R);
+
+// Two markers: e = (d, θ).
+template <class Real>
+struct Spatial {
+    Vector3<Real> s_i, s_j, D;
+    Matrix3<Real> A_i;
+    Vector6<Real> e;
+};
+template <class Real>
+Spatial<Real> deformation(const Bushing& e, const State<Real>& q) {
+    Spatial<Real> g{q[e.i.body].lever(e.i.s_local),
+                    q[e.j.body].lever(e.j.s_local),
+                    {},
+                    q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix(),
+                    {}};
+    g.D = q[e.j.body].r + g.s_j - q[e.i.body].r - g.s_i;
+    const Matrix3<Real> A_j = q[e.j.body].A * e.j.A_local.cast<Real>().toRotationMatrix();
+    g.e << g.A_i.transpose() * g.D, logarithm<Real>(g.A_i.transpose() * A_j);
+    return g;
+}
+
+// ---- K of eq. (19): the Hessian of the law, turned to ground axes, at the two levers.
+
+template <class Real>
+ElementStiffness<Real> element_stiffness(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
     ElementStiffness<Real> k{e.i.body,
                              e.j.body,
                              q[e.i.body].lever(e.i.s_local),
                              q[e.j.body].lever(e.j.s_local),
                              Matrix6<Real>::Zero(),
                              false};
-    const Vector3<Real> n = (q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i).normalized();
-    k.K.template topLeftCorner<3, 3>() =
-        static_cast<Real>(e.k) * n * n.transpose();  // (8), (10): one axis, along the spring
+    const Vector3<Real> D = q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i, n = D.normalized();
+    const Real rate = hessian<Real>(e.law, [&] { return D.norm() - rest.free_length; });
+    k.K.template topLeftCorner<3, 3>() = rate * n * n.transpose();  // (8), (10): one axis, along the spring
     return k;
 }
 
 template <class Real>
-ElementStiffness<Real> element_stiffness(const Bushing& e, const State<Real>& q) {
-    ElementStiffness<Real> k{e.i.body,
-                             e.j.body,
-                             q[e.i.body].lever(e.i.s_local),
-                             q[e.j.body].lever(e.j.s_local),
-                             {},
-                             !e.K.template rightCols<3>().isZero(0)};
+ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>&, const State<Real>& q) {
+    ElementStiffness<Real> k{
+        e.i.body, e.j.body,         q[e.i.body].lever(e.i.s_local), q[e.j.body].lever(e.j.s_local),
+        {},       rotational(e.law)};
     const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
-    const Matrix6<Real> K_local = e.K.cast<Real>();
+    const Matrix6<Real> K_local = hessian<Real>(e.law, [&] { return deformation<Real>(e, q).e; });
     for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b)  // K_T = A_i K_T' A_iᵀ, K_R = A_i K_R' A_iᵀ (10)-(11)
             k.K.template block<3, 3>(3 * a, 3 * b).noalias() =
@@ -64,8 +103,8 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const State<Real>& q)
     return k;
 }
 
-// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20);
-// `target` is [6nb × 6nb] or has it as its top left corner.
+// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top left
+// corner.
 template <class Real, class Target>
 void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
     // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b).
@@ -89,20 +128,30 @@ void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
     add(e.j, e.j, tilde_j, tilde_j, Real(1));
 }
 
-// K(q) [6nb × 6nb], symmetric, positive semidefinite: f_elast = K Δq, eq. (20).
 template <class Real>
-Matrix<Real> stiffness(const Model& model, const State<Real>& q) {
+ElementStiffness<Real> element_stiffness(const ElasticKind& kind, const Rest<Real>& rest,
+                                         const State<Real>& q) {
+    return std::visit([&](const auto& e) { return element_stiffness<Real>(e, rest, q); }, kind);
+}
+
+// K(q) [6nb × 6nb], symmetric, positive semidefinite where the laws are: f_elast = K Δq, eq. (20).
+template <class Real, class Target>
+void add_stiffness(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, Target& target) {
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        add_stiffness(element_stiffness<Real>(model.elastics[k].kind, inputs.rest[k], q), target);
+}
+template <class Real>
+Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const State<Real>& q) {
     Matrix<Real> K = Matrix<Real>::Zero(coordinates(model), coordinates(model));
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { add_stiffness(element_stiffness<Real>(e, q), K); }, elastic.kind);
+    add_stiffness<Real>(model, inputs, q, K);
     return K;
 }
 
 // ---- The law itself: f_elast(q) = ∂U/∂q, which K Δq linearises at an unloaded design position.
 //
-// Spring:  f = k (ℓ - ℓ₀) n along its axis n.
-// Bushing: with F' = ∂U/∂d, M' = ∂U/∂θ in marker axes,
-// F = A_i F' and δd = A_iᵀ (δp_j - δp_i - δπ_i × D), D = p_j - p_i,
+// Spring:  f = u'(ℓ - ℓ₀) n along its axis n.
+// Bushing: with (F', M') = ∂u/∂e + preload in marker axes, F = A_i F' and δd = A_iᵀ (δp_j - δp_i - δπ_i × D),
+// D = p_j - p_i,
 //   on j: ( F, s_j × F + M )   on i: ( -F, -(s_i + D) × F - M )   M = A_i J(θ)⁻ᵀ M'
 // where δθ = J(θ)⁻¹ A_iᵀ (δπ_j - δπ_i), J the left Jacobian of the rotation group:
 //   J(θ)⁻¹ = I - ½ θ̃ + c(θ) θ̃²,  c = (1 - (θ/2) cot(θ/2)) / θ².
@@ -114,8 +163,8 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
     Eigen::Quaternion<Real> p(R);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces
-    // the quotient, which is exact to the last bit there.
+    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit
+    // there.
     const Real factor =
         sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
     return factor * p.vec();
@@ -149,26 +198,44 @@ struct ElementForce {
 };
 
 template <class Real>
-ElementForce<Real> element_force(const AxialSpring& e, const State<Real>& q) {
-    const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
-    const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
-    const Real length = D.norm();
-    return {static_cast<Real>(e.k) * (length - static_cast<Real>(e.free_length)) / length * D,
-            Vector3<Real>::Zero(), s_i, s_j};
+ElementForce<Real> element_force(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
+    const Axial<Real> g = deformation<Real>(e, q);
+    return {gradient<Real>(e.law, g.length - rest.free_length) / g.length * g.D, Vector3<Real>::Zero(), g.s_i,
+            g.s_j};
 }
 
+// The force (F, M) that the stress (F', M') in marker axes is.
 template <class Real>
-ElementForce<Real> element_force(const Bushing& e, const State<Real>& q) {
-    const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
-    const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
-    const Matrix3<Real> A_j = q[e.j.body].A * e.j.A_local.cast<Real>().toRotationMatrix();
-    const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
-    Vector6<Real> strain;  // e = (d, θ)
-    strain << A_i.transpose() * D, logarithm<Real>(A_i.transpose() * A_j);
-    const Vector6<Real> stress = e.K.cast<Real>() * strain + e.preload.cast<Real>();
-    const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(strain.template tail<3>());
-    return {A_i * stress.template head<3>(), A_i * (J_inverse.transpose() * stress.template tail<3>()),
-            s_i + D, s_j};
+ElementForce<Real> force_of_stress(const Spatial<Real>& g, const Vector6<Real>& stress) {
+    const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(g.e.template tail<3>());
+    return {g.A_i * stress.template head<3>(), g.A_i * (J_inverse.transpose() * stress.template tail<3>()),
+            g.s_i + g.D, g.s_j};
+}
+template <class Real>
+ElementForce<Real> element_force(const Bushing& e, const Rest<Real>& rest, const State<Real>& q) {
+    const Spatial<Real> g = deformation<Real>(e, q);
+    return force_of_stress<Real>(g, gradient<Real>(e.law, g.e) + rest.preload);
+}
+template <class Real>
+ElementForce<Real> element_force(const ElasticKind& kind, const Rest<Real>& rest, const State<Real>& q) {
+    return std::visit([&](const auto& e) { return element_force<Real>(e, rest, q); }, kind);
+}
+
+// ∂(F, M)/∂ℓ₀ and along a change of the preload.
+template <class Real>
+ElementForce<Real> force_of_free_length(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
+    const Axial<Real> g = deformation<Real>(e, q);
+    const Real rate = hessian<Real>(e.law, [&] { return g.length - rest.free_length; });
+    return {-rate / g.length * g.D, Vector3<Real>::Zero(), g.s_i, g.s_j};
+}
+template <class Real>
+ElementForce<Real> force_of_preload(const Bushing& e, const Vector6<Real>& change, const State<Real>& q) {
+    return force_of_stress<Real>(deformation<Real>(e, q), change);
+}
+
+// The bodies an element acts between.
+inline std::pair<BodyId, BodyId> bodies_of(const ElasticKind& kind) {
+    return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, kind);
 }
 
 // Adds (F, s × F + M) on body j and its opposite on body i to f [6nb].
@@ -186,17 +253,18 @@ void add_element_force(BodyId i, BodyId j, const ElementForce<Real>& e, Vector<R
 
 // f_elast(q) = ∂U/∂q [6nb], moments about the bodies' origins, ground axes.
 template <class Real>
-void elastic_force(const Model& model, const State<Real>& q, Vector<Real>& f) {
+void elastic_force(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, Vector<Real>& f) {
     f.setZero(coordinates(model));
-    for (const auto& elastic : model.elastics)
-        std::visit(
-            [&](const auto& e) { add_element_force<Real>(e.i.body, e.j.body, element_force<Real>(e, q), f); },
-            elastic.kind);
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const ElasticKind& kind = model.elastics[k].kind;
+        const auto [i, j] = bodies_of(kind);
+        add_element_force<Real>(i, j, element_force<Real>(kind, inputs.rest[k], q), f);
+    }
 }
 template <class Real>
-Vector<Real> elastic_force(const Model& model, const State<Real>& q) {
+Vector<Real> elastic_force(const Model& model, const Inputs<Real>& inputs, const State<Real>& q) {
     Vector<Real> f;
-    elastic_force<Real>(model, q, f);
+    elastic_force<Real>(model, inputs, q, f);
     return f;
 }
 

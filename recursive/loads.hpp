@@ -1,34 +1,48 @@
 // The external force vector f_ext of eq. (3): dead forces and moments on the bodies' origins.
 #pragma once
 
-#include "recursive/state.hpp"
+#include "recursive/inputs.hpp"
 
 namespace elastocheck::recursive {
 
-// Adds factor · (sum of loads) to f_ext [6nb]. A force at
-// a body point has a lever s = A s' that moves with the body.
+// Adds factor · load to f_ext [6nb]. A force at a body point has a lever s = A s' that moves with the body.
 template <class Real>
-void add_loads(const std::vector<Load>& loads, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
-    for (const auto& load : loads) {
-        if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
-            const BodyId b = force->at.body;
-            const Vector3<Real> f = factor * force->f.cast<Real>();
-            f_ext.template segment<3>(6 * b) += f;
-            f_ext.template segment<3>(6 * b + 3) += q[b].lever(force->at.s_local).cross(f);
-        } else {
-            const auto& moment = std::get<DeadMoment>(load.kind);
-            f_ext.template segment<3>(6 * moment.body + 3) += factor * moment.m.cast<Real>();
-        }
-    }
+void add_load(const DeadForce& force, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
+    const BodyId b = force.at.body;
+    const Vector3<Real> f = factor * force.f.cast<Real>();
+    f_ext.template segment<3>(6 * b) += f;
+    f_ext.template segment<3>(6 * b + 3) += q[b].lever(force.at.s_local).cross(f);
+}
+template <class Real>
+void add_load(const DeadMoment& moment, Real factor, const State<Real>&, Vector<Real>& f_ext) {
+    f_ext.template segment<3>(6 * moment.body + 3) += factor * moment.m.cast<Real>();
+}
+template <class Real>
+void add_load(const LoadKind& load, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
+    std::visit([&](const auto& kind) { add_load<Real>(kind, factor, q, f_ext); }, load);
 }
 
-// f_ext(q, a) = static loads + a · branch loads.
+// Calls sink(load, factor) for the static loads, factor 1, then for those that the branch drives.
+template <class Real, class Sink>
+void for_each_load(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Sink&& sink) {
+    for (const auto& load : model.static_loads) sink(load.kind, Real(1));
+    for (std::size_t k = 0; k < branch.drivers.size(); ++k)
+        std::visit(overloaded{
+                       [&](const Load& load) { sink(load.kind, inputs.load_factor[k]); },
+                       [](const Motion&) {},
+                       [](const FreeLength&) {},
+                       [](const Preload&) {},
+                   },
+                   branch.drivers[k].what);
+}
+
+// f_ext(q, inputs)
 template <class Real>
-void external_force(const Model& model, const Branch& branch, Real a, const State<Real>& q,
-                    Vector<Real>& f_ext) {
+void external_force(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                    const State<Real>& q, Vector<Real>& f_ext) {
     f_ext.setZero(coordinates(model));
-    add_loads<Real>(model.static_loads, Real(1), q, f_ext);
-    add_loads<Real>(branch.loads, a, q, f_ext);
+    for_each_load<Real>(model, branch, inputs,
+                        [&](const LoadKind& load, Real factor) { add_load<Real>(load, factor, q, f_ext); });
 }
 
 }  // namespace elastocheck::recursive

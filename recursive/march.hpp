@@ -4,25 +4,58 @@
 #include "models/equilibrium_path.hpp"
 #include "recursive/assembly.hpp"
 #include "recursive/diagnosis.hpp"
+#include "recursive/drive.hpp"
 #include "recursive/method.hpp"
 #include "recursive/reactions.hpp"
 
 namespace elastocheck::recursive {
+
+// Where on the way: first what is held settles, t from 0 to 1, then a goes its way along the branch.
+//
+//   Φ(q, inputs(t, a)) = (1 - t) Φ_d        G(q, λ, inputs(t, a)) = -(1 - t) R_d
+//
+// Φ_d is what the joints are open by as drawn, R_d = f_ext - f_elast what is out of balance there: at t = 0
+// the design position is an equilibrium by definition, and everything between is a smooth path.
+template <class Real>
+struct Place {
+    Real t = 0, a = 0;
+};
+
+// When a step means nothing. The numbers are no tolerances of the answer: between what they let pass and what
+// they refuse lie orders of magnitude.
+namespace guard {
+// A motion counts as idle while its strain, as a share of what it would be if only one end of each element
+// moved, is less than this; a real mode has a share near one.
+inline constexpr double idle_strain = 1e-3;
+// What is idle or redundant where the constraints are met blurs with the constraint error: so much strain,
+// and so much of a load's share, for each |Φ| / L.
+inline constexpr double strain_per_error = 100, share_per_error = 10;
+// ... and with rounding: in multiples of the unit round-off, since the share is a small difference of forces
+// that the conditioning has blown up.
+inline constexpr double rounding = 1e7;
+// The linearisation of a rotation, eq. (6), is off by half at a radian.
+inline constexpr double largest_turn = 1;
+// One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
+inline constexpr int swings = 2;
+}  // namespace guard
 
 // Everything a step touches, allocated once.
 template <class Real>
 struct March {
     const Model& model;
     const Branch& branch;
-    const Method& method;
     double length;  // L of the diagnosis [m]
     Counts counts;
+    bool consistent = false;  // whether the matrix is the consistent tangent, or K of (19)
 
     State<Real> q;             // qⁿ
     State<Real> before;        // qⁿ⁻¹
     Vector<Real> lambda;       // λⁿ⁻¹, total
     Vector<Real> lambda_half;  // halfway to λⁿ
-    Real a = 0;                // load factor of qⁿ
+    Real a = 0;                // parameter of qⁿ
+    Place<Real> place;         // that `inputs` are of
+    Inputs<Real> drawn, inputs;
+    Vector<Real> R_d, Phi_d;  // out of balance and open as drawn [6nb], [m]
     SaddlePoint<Real> system;
 
     Vector<Real> applied;  // f_ext as far as the method lets it follow, at (qⁿ, aⁿ⁺¹)
@@ -33,38 +66,51 @@ struct March {
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
     int swings = 0;  // steps in a row that reversed the one before and were larger
 
-    March(const Model& model_, const Branch& branch_, const Method& method_, const Diagnosis& diagnosis)
+    March(const Model& model_, const Branch& branch_, const Diagnosis& diagnosis)
         : model(model_),
           branch(branch_),
-          method(method_),
           length(diagnosis.length),
           q(design_state<Real>(model)),
-          before(q) {
+          before(q),
+          drawn(inputs_as_drawn<Real>(model)) {
         const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
         system.M.setZero(n + m, n + m);
         system.weight.setOnes(n + m);
         for (int b = 0; b < n / 6; ++b)
             system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
-        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
-        for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
+        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last, &R_d}) v->setZero(n);
+        for (auto* v : {&lambda, &lambda_half, &lower, &Phi, &Phi_d}) v->setZero(m);
         x.setZero(n + m);
-        assemble<Real>(model, q, system.M, Phi);
+        assemble<Real>(model, drawn, q, system.M, Phi);
         prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space,
                 generic_matrix<Real>(model, branch, system.M));
+        set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
+        external_force<Real>(model, branch, inputs, q, R_d);
+        R_d -= elastic_force<Real>(model, inputs, q);
+        Phi_d = constraint_values<Real>(model, inputs, q);
     }
     int n() const { return system.n; }
     int m() const { return system.m; }
 };
 
+// The inputs become those of (t, a).
+template <class Real>
+void go_to(March<Real>& s, Place<Real> place) {
+    s.place = place;
+    set_inputs<Real>(s.model, s.branch, s.drawn, place.t, place.a, s.inputs);
+}
+
 // The part of the external force that works on the idle modes now held, as a share of the whole.
 template <class Real>
-Real load_on_idle_modes(const March<Real>& s) {
-    const int n = s.n();
-    const Real whole = s.applied.cwiseQuotient(s.system.weight.head(n)).norm();
+Real load_on_idle_modes(const March<Real>& s, const Vector<Real>& force, Real whole) {
     Real worst = 0;
     for (int c = 0; c < s.system.idle; ++c)
-        if (whole > 0) worst = std::max(worst, std::abs(s.system.held.col(c).head(n).dot(s.applied)) / whole);
+        if (whole > 0) worst = std::max(worst, std::abs(s.system.held.col(c).head(s.n()).dot(force)) / whole);
     return worst;
+}
+template <class Real>
+Real size_of_force(const March<Real>& s, const Vector<Real>& force) {
+    return force.cwiseQuotient(s.system.weight.head(s.n())).norm();
 }
 
 // How far the held motions are from idle, and the held
@@ -78,13 +124,10 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     Real worst = 0;
     for (int c = 0; c < system.idle; ++c) {
         Real energy = 0, single = 0;
-        for (const auto& elastic : s.model.elastics) {
-            const bool touched =
-                std::visit([&](const auto& kind) { return moves(kind.i.body, c) || moves(kind.j.body, c); },
-                           elastic.kind);
-            if (!touched) continue;
-            const auto e =
-                std::visit([&](const auto& kind) { return element_stiffness<Real>(kind, q); }, elastic.kind);
+        for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
+            const auto [i, j] = bodies_of(s.model.elastics[k].kind);
+            if (!moves(i, c) && !moves(j, c)) continue;
+            const auto e = element_stiffness<Real>(s.model.elastics[k].kind, s.inputs.rest[k], q);
             const Real k_T = e.K.template topLeftCorner<3, 3>().trace(),
                        k_R = e.K.template bottomRightCorner<3, 3>().trace();
             Vector6<Real> de = Vector6<Real>::Zero();
@@ -138,46 +181,68 @@ bool has_diverged(March<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
     const Real size = weighted.matrix().squaredNorm(), size_before = s.last.squaredNorm();
     const bool swung = (weighted * s.last.array()).sum() < 0 && size > size_before;
-    const bool too_long = s.method.consistent && !s.method.adaptive && size_before > 0 &&
+    const bool too_long = s.consistent && size_before > 0 &&
                           disagree(s, (weighted - s.last.array()).matrix().squaredNorm(), size, size_before);
     s.swings = swung ? s.swings + 1 : 0;
     s.last = weighted;
     Real turn = 0;
     for (int b = 0; b < s.n() / 6; ++b) turn = std::max(turn, s.dq.template segment<3>(6 * b + 3).norm());
-    return s.swings >= 2 || too_long || !(turn <= 1);
+    return s.swings >= guard::swings || too_long || !(turn <= Real(guard::largest_turn));
 }
 
-// Assembles and factorises the method's matrix at (q, λ) with the load factor a, and judges it.
+// Assembles and factorises the method's matrix at (q, λ) with the present inputs, and judges it.
 template <class Real>
-Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda, Real a) {
-    if (s.method.consistent)
-        assemble_consistent<Real>(s.model, s.branch, a, q, lambda, s.system.M, s.Phi);
+Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
+    if (s.consistent)
+        assemble_consistent<Real>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
     else
-        assemble<Real>(s.model, q, s.system.M, s.Phi);
+        assemble<Real>(s.model, s.inputs, q, s.system.M, s.Phi);
     const Real pivot_ratio = factorise(s.system);
     ++s.counts.factorisations;
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
-    // What is idle or redundant where the constraints are met blurs with the constraint error (and with
-    // rounding): strain and a load's share on it grow in proportion. More than that is real, and holding it
-    // would be a quiet wrong number.
-    const Real rounding = 1e7 * std::numeric_limits<Real>::epsilon();
+    // More than what blurs is real, and holding it would be a quiet wrong number.
+    const Real rounding = Real(guard::rounding) * std::numeric_limits<Real>::epsilon();
     const Real blur = s.Phi.norm() / static_cast<Real>(std::min(1.0, s.length));
-    if (!(strain_of_held(s, q) <= rounding + Real(1e-3) + 100 * blur)) return Outcome::singular;
-    if (!(load_on_idle_modes(s) <= rounding + 10 * blur)) return Outcome::loaded_idle_mode;
+    if (!(strain_of_held(s, q) <= rounding + Real(guard::idle_strain) + Real(guard::strain_per_error) * blur))
+        return Outcome::singular;
+    if (!(load_on_idle_modes(s, s.applied, size_of_force(s, s.applied)) <=
+          rounding + Real(guard::share_per_error) * blur))
+        return Outcome::loaded_idle_mode;
     return Outcome::converged;
 }
 
-// G = f_elast + Φ_qᵀ λ - f_ext at (q, λ, a), and Φ: the right-hand side (-G, -Φ) of a correction.
+// G = f_elast + Φ_qᵀ λ - f_ext at (q, λ) and the present inputs, and Φ, less what is still held of them: the
+// right-hand side (-G, -Φ) of a correction.
 template <class Real>
-void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda, Real a) {
-    external_force<Real>(s.model, s.branch, a, q, s.upper);
-    elastic_force<Real>(s.model, q, s.force);
+void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
+    external_force<Real>(s.model, s.branch, s.inputs, q, s.upper);
+    elastic_force<Real>(s.model, s.inputs, q, s.force);
     s.upper -= s.force;
-    constraint_force<Real>(s.model, q, lambda, s.force, s.lower);
+    constraint_force<Real>(s.model, s.inputs, q, lambda, s.force, s.lower);
     s.upper -= s.force;
     s.lower = -s.lower;
+    if (const Real held = 1 - s.place.t; held != Real(0)) {
+        s.upper -= held * s.R_d;
+        s.lower += held * s.Phi_d;
+    }
     ++s.counts.evaluations;
+}
+
+// amount · ∂/∂t or ∂/∂a of the same right-hand side, at the present inputs.
+template <class Real>
+void drive_at(March<Real>& s, Drive drive, Real amount, const State<Real>& q) {
+    s.upper.setZero();
+    s.force.setZero();
+    s.lower.setZero();
+    add_load_rate<Real>(s.branch, drive, amount, q, s.upper);
+    add_stored_rate<Real>(s.model, s.branch, s.inputs, drive, amount, q, s.force);
+    s.upper -= s.force;
+    add_constraint_rate<Real>(s.model, s.branch, s.inputs, drive, -amount, q, s.lower);
+    if (drive == Drive::start) {
+        s.upper += amount * s.R_d;
+        s.lower -= amount * s.Phi_d;
+    }
 }
 
 template <class Real>
@@ -188,17 +253,18 @@ void back_substitute(March<Real>& s) {
 
 // λ acts where it was solved: for the published sums one step before q.
 template <class Real>
-void record(const Model& model, const State<Real>& q, const State<Real>& where_lambda_acts,
-            const Vector<Real>& lambda, double load, Equilibrium& point) {
+void record(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+            const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load,
+            Equilibrium& point) {
     point.load = load;
     for (std::size_t b = 0; b < point.poses.size(); ++b) {
         point.poses[b].r = q[static_cast<BodyId>(b)].r.template cast<double>();
         point.poses[b].p = q[static_cast<BodyId>(b)].p.template cast<double>();
     }
-    Real sum = joint_wrenches<Real>(model, where_lambda_acts, lambda, point.reactions);
+    Real sum = joint_wrenches<Real>(model, inputs, where_lambda_acts, lambda, point.reactions);
     if (&q != &where_lambda_acts) {
         sum = 0;
-        for_each_row<Real>(model, q, [&](int, const Row<Real>& row) { sum += row.Phi * row.Phi; });
+        for_each_row<Real>(model, inputs, q, [&](int, const Row<Real>& row) { sum += row.Phi * row.Phi; });
     }
     point.constraint_error = static_cast<double>(std::sqrt(sum));  // (31)
 }

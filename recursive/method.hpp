@@ -1,6 +1,5 @@
-// The ladder of methods: one loop (sweep.hpp) with a few orthogonal choices.
-//
-// All solve one saddle-point system per step. They differ in what they leave out of it:
+// The ladder of methods. All solve one saddle-point system per step; they differ in what they leave out of
+// it:
 //
 //   rung        right-hand side                                  matrix          solves  order to the truth
 //   published   what (29) carries over; constraints (7)          K of (19)       1       0
@@ -9,7 +8,7 @@
 //   tangent     the same                                         ∂(forces)/∂q    1       2
 //   chord       the same, then once more with the same factors   ∂(forces)/∂q    1 (2)   3
 //   midpoint    the same, matrix taken half a step ahead         ∂(forces)/∂q    2       3
-//   adaptive    chord, with the step size from its own error estimate
+//   adaptive    tangents, with the step size from its own error estimate
 //   series      no steps: the branch as a power series, to any order with one matrix (series/path.hpp)
 //
 // A method that starts each step from the true residual does not accumulate: its error at a point is the
@@ -19,6 +18,9 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <variant>
+
+#include "recursive/series/options.hpp"
 
 namespace elastocheck::recursive {
 
@@ -34,47 +36,48 @@ struct Follow {
 };
 inline constexpr Follow everything{true, true, true};
 
+// Equal steps with the stiffness matrix K of eq. (19): published, closed, balanced.
+struct Linear {
+    Follow follow = {};
+    bool closed = false;  // lower row -Φ(qⁿ; aⁿ⁺¹) instead of -∂Φ/∂a Δa
+};
+// Equal steps with the consistent tangent and the true forces: tangent, chord, midpoint.
+struct Consistent {
+    enum class Solve {
+        once,
+        corrected,  // once more with the same factors
+        midpoint    // once more with the matrix from half a step ahead, at the price of its factorisation
+    } solve = Solve::once;
+};
+// Steps of its own.
+struct Adaptive {
+    double length_tolerance = 1e-5;     // error of any body's origin [m] ...
+    double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
+};
+using Series = series::Options;
+
+using MethodKind = std::variant<Linear, Consistent, Adaptive, Series>;
 struct Method {
     std::string_view name = "published";
-    Follow follow = {};
-    bool closed = false;      // lower row -Φ(qⁿ) instead of 0
-    bool consistent = false;  // tangent of all forces instead of K
-    bool midpoint = false;    // matrix from half a step ahead, at the price of a second factorisation
-    int corrections = 0;      // further solves with the same factors
-    bool adaptive = false;    // step size from the embedded error estimate
-    bool series = false;      // the branch as a piecewise polynomial
     double formal_order = 0;  // to the truth
+    MethodKind kind = Linear{};
 };
 
 inline constexpr std::array methods{
     Method{},
-    Method{.name = "closed", .closed = true},
-    Method{.name = "balanced", .follow = everything, .closed = true, .formal_order = 1},
-    Method{.name = "tangent", .follow = everything, .closed = true, .consistent = true, .formal_order = 2},
-    Method{.name = "chord",
-           .follow = everything,
-           .closed = true,
-           .consistent = true,
-           .corrections = 1,
-           .formal_order = 3},
-    Method{.name = "midpoint",
-           .follow = everything,
-           .closed = true,
-           .consistent = true,
-           .midpoint = true,
-           .formal_order = 3},
-    Method{.name = "adaptive",
-           .follow = everything,
-           .closed = true,
-           .consistent = true,
-           .corrections = 1,
-           .adaptive = true,
-           .formal_order = 3},
-    Method{.name = "series", .follow = everything, .closed = true, .consistent = true, .series = true},
+    Method{"closed", 0, Linear{.closed = true}},
+    Method{"balanced", 1, Linear{.follow = everything, .closed = true}},
+    Method{"tangent", 2, Consistent{Consistent::Solve::once}},
+    Method{"chord", 3, Consistent{Consistent::Solve::corrected}},
+    Method{"midpoint", 3, Consistent{Consistent::Solve::midpoint}},
+    Method{"adaptive", 3, Adaptive{}},
+    Method{"series", 0, Series{}},
 };
 
 // Whether the method takes as many equal steps as it is told.
-constexpr bool has_steps(const Method& method) { return !method.adaptive && !method.series; }
+constexpr bool has_steps(const Method& method) {
+    return std::holds_alternative<Linear>(method.kind) || std::holds_alternative<Consistent>(method.kind);
+}
 
 constexpr std::optional<Method> find_method(std::string_view name) {
     for (const Method& method : methods)

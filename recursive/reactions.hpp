@@ -10,16 +10,17 @@ namespace elastocheck::recursive {
 // the body's origin; moved here to the joint's point, p = r + s:  M_p = M_r - s × F. Ground is a body like
 // any other. Returns |Φ|², which falls out on the way.
 template <class Real>
-Real joint_wrenches(const Model& model, const State<Real>& q, const Vector<Real>& lambda,
-                    std::vector<Wrench>& wrenches) {
+Real joint_wrenches(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+                    const Vector<Real>& lambda, std::vector<Wrench>& wrenches) {
     for (auto& wrench : wrenches) wrench = {};
     int k = 0;
     Real sum = 0;
-    for (const auto& constraint : model.constraints) {
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const Constraint& constraint = model.constraints[c];
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         const Vector3<Real> s = q[joint.i].lever(joint.at.s_local);
         Wrench& wrench = wrenches[static_cast<std::size_t>(constraint.joint)];
-        rows<Real>(constraint.kind, q, [&](const Row<Real>& row) {
+        rows<Real>(constraint.kind, inputs.offset[c], q, [&](const Row<Real>& row) {
             // A constraint may list the joint's bodies in either order.
             const bool on_i = row.i == joint.i;
             const Real pull = on_i ? -lambda[k] : lambda[k];

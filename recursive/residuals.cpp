@@ -6,10 +6,12 @@ namespace elastocheck::recursive {
 
 // f_ext(q, a) - f_elast(q) + (wrenches of the joints) = 0 for every body, and Φ(q) = 0.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state) {
+    check(model, branch);
     const State<double> q = state_of<double>(state.poses);
+    const Inputs<double> inputs = inputs_at<double>(model, branch, state.load);
     Vector<double> f;
-    external_force<double>(model, branch, state.load, q, f);
-    f -= elastic_force<double>(model, q);
+    external_force<double>(model, branch, inputs, q, f);
+    f -= elastic_force<double>(model, inputs, q);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];
         const Wrench& wrench = state.reactions[k];
@@ -33,7 +35,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
             worse(result.moment, f[6 * b + 3 + c]);
         }
     }
-    for_each_row<double>(model, q, [&](int, const Row<double>& row) {
+    for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
         worse(row.length ? result.length : result.direction, row.Phi);
     });
     return result;

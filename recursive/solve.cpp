@@ -4,24 +4,40 @@
 
 #include <stdexcept>
 
+#include "recursive/series/path.hpp"
 #include "recursive/sweep.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
-std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outcome, double load) {
-    std::string detail = fmt::format("at load factor {:.6g}", load);
-    if (outcome == Outcome::loaded_idle_mode) {
-        detail += ": the load pushes what nothing resists:";
-        for (const auto& mode : diagnosis.idle) detail += " " + mode.description + ";";
-        detail.pop_back();
-    } else if (outcome == Outcome::singular && diagnosis.null_space.cols() > 0) {
-        detail += ": the matrix lost rank, or what was idle or redundant at the design position no longer is";
-    } else if (outcome == Outcome::diverged) {
-        detail += method.consistent
-                      ? ": what a step misses is more than half of it; take more steps"
-                      : ": the stored forces turn stiffer than the elements are, the recursion is unstable "
-                        "from here on";
+std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outcome, double stopped) {
+    std::string detail = std::isnan(stopped) ? std::string("while what is held at the start settles")
+                                             : fmt::format("at load factor {:.6g}", stopped);
+    switch (outcome) {
+        case Outcome::loaded_idle_mode:
+            detail += ": the load pushes what nothing resists:";
+            for (const auto& mode : diagnosis.idle) detail += " " + mode.description + ";";
+            detail.pop_back();
+            break;
+        case Outcome::singular:
+            if (diagnosis.null_space.cols() > 0)
+                detail +=
+                    ": the matrix lost rank, or what was idle or redundant at the design position no longer "
+                    "is";
+            break;
+        case Outcome::diverged:
+            detail +=
+                std::holds_alternative<Linear>(method.kind)
+                    ? ": the stored forces turn stiffer than the elements are, the recursion is unstable "
+                      "from here on"
+                    : ": what a step misses is more than half of it; take more steps";
+            break;
+        case Outcome::converged:
+        case Outcome::inconsistent_constraints:
+        case Outcome::not_finite:
+        case Outcome::iteration_limit:
+        case Outcome::limit_point:
+        case Outcome::branch_lost: break;
     }
     return detail;
 }
@@ -39,23 +55,16 @@ EquilibriumPath sweep(Precision precision, const Model& model, const Branch& bra
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options) {
-    if (options.method.series) {
+    check(model, branch);
+    if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         if (options.precision != Precision::twofold)
             throw std::invalid_argument("the series is computed in double precision only");
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
-        return series::sample(model, series::follow(model, branch, options.series), branch, points);
+        return series::sample(model, series::follow(model, branch, *how), branch, points);
     }
     const Diagnosis diagnosis = diagnose(model);
-    if (!(diagnosis.constraint_error <= 1e-9)) {
-        EquilibriumPath path;
-        path.outcome = Outcome::inconsistent_constraints;
-        path.detail =
-            fmt::format("branch '{}': the joints are not closed at the design position, |Φ| = {:.3g}",
-                        branch.name, diagnosis.constraint_error);
-        return path;
-    }
     double stopped = 0;
     EquilibriumPath path = sweep(options.precision, model, branch, options, diagnosis, stopped);
     if (path.outcome != Outcome::converged)

@@ -4,7 +4,6 @@
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
 #include "recursive/method.hpp"
-#include "recursive/series/path.hpp"
 
 namespace elastocheck::recursive {
 
@@ -12,13 +11,10 @@ namespace elastocheck::recursive {
 enum class Precision { single, twofold, extended };
 
 struct Options {
-    Method method = {};  // published
-    int steps = 0;       // equal load increments over the branch; 0: as many as the branch says
-    int record = 0;      // equal load increments between recorded points, a divisor of steps; 0: every step
+    Method method = {};  // published; what a method can be told besides is in its kind
+    int steps = 0;       // equal increments of the parameter over the branch; 0: as many as the branch says
+    int record = 0;      // equal increments between recorded points, a divisor of steps; 0: every step
     Precision precision = Precision::twofold;
-    double length_tolerance = 1e-5;     // adaptive: error of any body's origin [m] ...
-    double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
-    series::Options series = {};
 };
 
 // Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them.

@@ -31,6 +31,8 @@ struct SparseLU {
     std::vector<long> in_row, in_column;  // ... how many entries a row and a column still have
     std::vector<Real> largest;            // ... and the largest of a column
     int orders = 0;                       // how often the order was chosen
+    int parity = 1;                       // of the two permutations `row` and `col` together: +1 or -1
+    int orientation = 0;                  // sign of the determinant of the last matrix factorised
 
     static constexpr double least_pivot = 0.1, largest_multiplier = 100;
 };
@@ -54,6 +56,17 @@ void reserve(SparseLU<Real>& lu, const Matrix<Real>& A) {
     for (auto* list : {&lu.row, &lu.col, &lu.first_below, &lu.first_right}) list->reserve(n + 1);
     for (auto* list : {&lu.source, &lu.to, &lu.below, &lu.right}) list->reserve(n * n);
     lu.orders = 0;
+}
+
+// +1 or -1, as an even or an odd number of swaps makes the permutation.
+inline int parity(std::vector<int> permutation) {
+    int sign = 1;
+    for (std::size_t k = 0; k < permutation.size(); ++k)
+        while (permutation[k] != static_cast<int>(k)) {
+            std::swap(permutation[k], permutation[static_cast<std::size_t>(permutation[k])]);
+            sign = -sign;
+        }
+    return sign;
 }
 
 // Chooses the order of elimination from the values of A.
@@ -154,6 +167,7 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
     }
     lu.first_below.push_back(static_cast<int>(lu.below.size()));
     lu.first_right.push_back(static_cast<int>(lu.right.size()));
+    lu.parity = parity(lu.row) * parity(lu.col);
 }
 
 // Eliminates in the order chosen. Returns the smallest over the largest pivot, 0 where one is exactly zero,
@@ -172,6 +186,7 @@ Real eliminate(SparseLU<Real>& lu, const Matrix<Real>& A, Real& largest) {
     if (!std::isfinite(sum)) return std::numeric_limits<Real>::quiet_NaN();
     Real least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0;
     largest = 0;
+    lu.orientation = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const Real* const U = W + k * n;
         const Real size = std::abs(U[k]);
@@ -188,7 +203,18 @@ Real eliminate(SparseLU<Real>& lu, const Matrix<Real>& A, Real& largest) {
             for (int e = 0; e < entries; ++e) into[right[e]] -= l * U[right[e]];
         }
     }
+    lu.orientation = lu.parity;
+    for (std::size_t k = 0; k < n; ++k)
+        if (lu.inverse[k] < 0) lu.orientation = -lu.orientation;
     return least_pivot / largest_pivot;
+}
+
+// log2 |det| of the last matrix factorised.
+template <class Real>
+Real log_determinant(const SparseLU<Real>& lu) {
+    Real sum = 0;
+    for (const Real inverse : lu.inverse) sum -= std::log2(std::abs(inverse));
+    return sum;
 }
 
 // Factorises A, in the order of last time if that still serves. Returns the smallest over the largest pivot.

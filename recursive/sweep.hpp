@@ -1,55 +1,72 @@
-// The one loop of all methods that take steps: settle at load factor 0,
-// then N increments, eqs. (25)-(29), or steps of the method's own.
-// Instantiated once per arithmetic (sweep_*.cpp), since each takes its time to compile.
+// The one loop of all methods that take steps: settle at a = 0, then N increments, eqs. (25)-(29), or
+// steps of the method's own. Instantiated once per arithmetic (sweep_*.cpp), since each takes its time to
+// compile.
 #pragma once
 
 #include "recursive/adaptive.hpp"
 #include "recursive/solve.hpp"
-#include "recursive/steps.hpp"
 
 namespace elastocheck::recursive {
 
-// The recorded points as far as the sweep comes; where it does not converge, `stopped` is the load factor and
-// the words for it are the caller's.
+// The recorded points as far as the sweep comes; where it does not converge, `stopped` is the parameter (NaN
+// while settling) and the words for it are the caller's.
 template <class Real>
 EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
                       const Diagnosis& diagnosis, double& stopped) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
-    March<Real> s(model, branch, options.method, diagnosis);
+    March<Real> s(model, branch, diagnosis);
     EquilibriumPath path;
     make_room(model, points + 1, path);
     std::size_t reached = 0;
-    const auto finish = [&](Outcome outcome, double load) {
+    const auto finish = [&](Outcome outcome, double a) {
         path.outcome = outcome;
         path.points.resize(reached);
         path.counts = s.counts;
-        stopped = load;
+        stopped = a;
         return path;
     };
-    const bool follows = options.method.follow.lever || options.method.follow.axis;
-    const auto keep = [&](double load) {
-        record<Real>(s.model, s.q, follows ? s.q : s.before, s.lambda, load, path.points[reached]);
-        ++reached;
+    const auto equal_steps = [&](const auto& method, const auto& where_lambda_acts) -> Outcome {
+        const auto keep = [&](double a) {
+            record<Real>(s.model, s.inputs, s.q, where_lambda_acts, s.lambda, a, path.points[reached]);
+            ++reached;
+        };
+        keep(0);
+        for (int k = 1; k <= N; ++k) {
+            stopped = branch.to * k / N;
+            if (const Outcome o = step(s, method, {1, static_cast<Real>(stopped)}); o != Outcome::converged)
+                return o;
+            if (static_cast<long>(k) * points % N == 0) keep(stopped);
+        }
+        return Outcome::converged;
     };
-
-    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return finish(outcome, 0);
-    if (options.method.adaptive) {
-        const Outcome outcome =
-            adapt(s, options.length_tolerance, options.angle_tolerance, branch.to, path, reached);
-        return finish(outcome, static_cast<double>(s.a));
-    }
-    keep(0);
-    for (int k = 1; k <= N; ++k) {
-        const double load = branch.to * k / N;
-        if (const Outcome outcome = step(s, static_cast<Real>(load)); outcome != Outcome::converged)
-            return finish(outcome, load);
-        if (k == N && options.method.consistent && options.method.corrections == 0)
-            if (const Outcome outcome = check_last_step(s); outcome != Outcome::converged)
-                return finish(outcome, load);
-        if (static_cast<long>(k) * points % N == 0) keep(load);
-    }
-    return finish(Outcome::converged, branch.to);
+    constexpr double settling = std::numeric_limits<double>::quiet_NaN();
+    return std::visit(
+        overloaded{
+            [&](const Linear& method) {
+                const bool follows = method.follow.lever || method.follow.axis;
+                const bool truth = method.follow == everything;
+                if (const Outcome o = truth ? settle(s) : settle(s, method, N); o != Outcome::converged)
+                    return finish(o, settling);
+                s.consistent = false;
+                const Outcome o = equal_steps(method, follows ? s.q : s.before);
+                return finish(o, stopped);
+            },
+            [&](const Consistent& method) {
+                if (const Outcome o = settle(s); o != Outcome::converged) return finish(o, settling);
+                Outcome o = equal_steps(method, s.q);
+                if (o == Outcome::converged && method.solve == Consistent::Solve::once)
+                    o = check_last_step(s);
+                return finish(o, stopped);
+            },
+            [&](const Adaptive& method) {
+                if (const Outcome o = settle(s); o != Outcome::converged) return finish(o, settling);
+                const Outcome o = adapt(s, method, branch.to, path, reached);
+                return finish(o, static_cast<double>(s.a));
+            },
+            [&](const Series&) { return finish(Outcome::not_finite, settling); },  // never asked
+        },
+        options.method.kind);
 }
 
 extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Diagnosis&,

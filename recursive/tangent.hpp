@@ -16,6 +16,7 @@
 
 #include "recursive/constraints.hpp"
 #include "recursive/elastic.hpp"
+#include "recursive/loads.hpp"
 
 namespace elastocheck::recursive {
 
@@ -68,16 +69,15 @@ void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variati
     }
 }
 
-// Spring: F = t n on j, -F on i; δF = (k n nᵀ + t/ℓ (I - n nᵀ)) (δp_j - δp_i).
+// Spring: F = t n on j, -F on i, t = u'(ℓ - ℓ₀); δF = (u'' n nᵀ + t/ℓ (I - n nᵀ)) (δp_j - δp_i).
 template <class Real, class Target>
-void add_tangent(const AxialSpring& e, const State<Real>& q, Target& target) {
-    const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
-    const Vector3<Real> D = q[e.j.body].r + s_j - q[e.i.body].r - s_i;
-    const Real length = D.norm(), k = static_cast<Real>(e.k),
-               t = k * (length - static_cast<Real>(e.free_length));
+void add_tangent(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
+    const auto [s_i, s_j, D, length] = deformation<Real>(e, q);
+    const Real stretch = length - rest.free_length, t = gradient<Real>(e.law, stretch),
+               rate = hessian<Real>(e.law, [x = stretch] { return x; });
     const Vector3<Real> n = D / length, F = t * n;
     const Matrix3<Real> along = n * n.transpose();
-    const Variation<Real> dF = (k * along + t / length * (Matrix3<Real>::Identity() - along)) *
+    const Variation<Real> dF = (rate * along + t / length * (Matrix3<Real>::Identity() - along)) *
                                (of_point<Real>(1, s_j) - of_point<Real>(0, s_i));
     add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF),
               target);
@@ -107,20 +107,17 @@ Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m)
            h * theta.cross(turned) * theta.transpose();
 }
 
-// Bushing: F = A_i F', M = A_i J(θ)⁻ᵀ M', (F', M') = K e + preload;
+// Bushing: F = A_i F', M = A_i J(θ)⁻ᵀ M', (F', M') = ∂u/∂e + preload, δ(F', M') = ∂²u/∂e² δe;
 //   on j: (F, s_j × F + M)      on i: -(F, ρ × F + M),   ρ = p_j - r_i
 //   δd = A_iᵀ (δp_j - δr_i - δπ_i × ρ),   δθ = J(θ)⁻¹ A_iᵀ (δπ_j - δπ_i)
 template <class Real, class Target>
-void add_tangent(const Bushing& e, const State<Real>& q, Target& target) {
-    const Vector3<Real> s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
-    const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
-    const Matrix3<Real> A_j = q[e.j.body].A * e.j.A_local.cast<Real>().toRotationMatrix();
-    const Vector3<Real> rho = q[e.j.body].r + s_j - q[e.i.body].r, D = rho - s_i;
-    Vector6<Real> strain;
-    strain << A_i.transpose() * D, logarithm<Real>(A_i.transpose() * A_j);
+void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
+    const Spatial<Real> g = deformation<Real>(e, q);
+    const auto& [s_i, s_j, D, A_i, strain] = g;
+    const Vector3<Real> rho = s_i + D;
     const Vector3<Real> theta = strain.template tail<3>();
-    const Matrix6<Real> K = e.K.cast<Real>();
-    const Vector6<Real> stress = K * strain + e.preload.cast<Real>();
+    const Matrix6<Real> K = hessian<Real>(e.law, [&] { return g.e; });
+    const Vector6<Real> stress = gradient<Real>(e.law, strain) + rest.preload;
     const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(theta);
     const Vector3<Real> F = A_i * stress.template head<3>();
     const Vector3<Real> M = A_i * (J_inverse.transpose() * stress.template tail<3>());
@@ -145,7 +142,8 @@ void add_tangent(const Bushing& e, const State<Real>& q, Target& target) {
 // λ[n  s_i × n; -n  -s_j × n] and its relatives (constraints.hpp), with λ n = F turning as the constraint
 // says.
 template <class Real, class Target>
-void add_curvature(const CoincidentPoints& c, const State<Real>& q, const Real* lambda, Target& target) {
+void add_curvature(const CoincidentPoints& c, Real, const State<Real>& q, const Real* lambda,
+                   Target& target) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> F(lambda[0], lambda[1], lambda[2]);
     const Variation<Real> zero = Variation<Real>::Zero();
@@ -156,7 +154,7 @@ void add_curvature(const CoincidentPoints& c, const State<Real>& q, const Real* 
 }
 
 template <class Real, class Target>
-void add_curvature(const PointInPlane& c, const State<Real>& q, const Real* lambda, Target& target) {
+void add_curvature(const PointInPlane& c, Real, const State<Real>& q, const Real* lambda, Target& target) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local);
     const Vector3<Real> F = *lambda * q[c.j.body].lever(c.normal_j.u_local);
     const Vector3<Real> rho = q[c.i.body].r + s_i - q[c.j.body].r;  // p_i from the origin of j
@@ -167,21 +165,34 @@ void add_curvature(const PointInPlane& c, const State<Real>& q, const Real* lamb
     add<Real>(c.j.body, c.i.body, c.j.body, -dF, -of_cross<Real>(rho, drho, F, dF), target);
 }
 
+// Two directions u_i, u_j fixed in their bodies: the couple λ u_i × u_j on i, its opposite on j.
 template <class Real, class Target>
-void add_curvature(const PerpendicularDirections& c, const State<Real>& q, const Real* lambda,
-                   Target& target) {
-    const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), u_j = q[c.j.body].lever(c.j.u_local);
+void add_couple_curvature(BodyId i, BodyId j, const Vector3<Real>& u_i, const Vector3<Real>& u_j, Real lambda,
+                          Target& target) {
     const Variation<Real> zero = Variation<Real>::Zero();
     const Variation<Real> dM =
-        *lambda * of_cross<Real>(u_i, of_direction<Real>(0, u_i), u_j, of_direction<Real>(1, u_j));
-    add<Real>(c.i.body, c.i.body, c.j.body, zero, dM, target);
-    add<Real>(c.j.body, c.i.body, c.j.body, zero, -dM, target);
+        lambda * of_cross<Real>(u_i, of_direction<Real>(0, u_i), u_j, of_direction<Real>(1, u_j));
+    add<Real>(i, i, j, zero, dM, target);
+    add<Real>(j, i, j, zero, -dM, target);
+}
+template <class Real, class Target>
+void add_curvature(const PerpendicularDirections& c, Real, const State<Real>& q, const Real* lambda,
+                   Target& target) {
+    add_couple_curvature<Real>(c.i.body, c.j.body, q[c.i.body].lever(c.i.u_local),
+                               q[c.j.body].lever(c.j.u_local), *lambda, target);
+}
+template <class Real, class Target>
+void add_curvature(const DirectionAtAngle& c, Real angle, const State<Real>& q, const Real* lambda,
+                   Target& target) {
+    add_couple_curvature<Real>(c.i.body, c.j.body, q[c.i.body].lever(c.i.u_local), across(c, angle, q),
+                               *lambda, target);
 }
 
 template <class Real, class Target>
-void add_curvature(const DistanceBetween& c, const State<Real>& q, const Real* lambda, Target& target) {
+void add_curvature(const DistanceBetween& c, Real length, const State<Real>& q, const Real* lambda,
+                   Target& target) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
-    const Real factor = *lambda / static_cast<Real>(c.length);
+    const Real factor = *lambda / length;
     const Vector3<Real> F = factor * (q[c.i.body].r + s_i - q[c.j.body].r - s_j);
     const Variation<Real> dF = factor * (of_point<Real>(0, s_i) - of_point<Real>(1, s_j));
     add<Real>(c.i.body, c.i.body, c.j.body, dF, of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF),
@@ -190,34 +201,35 @@ void add_curvature(const DistanceBetween& c, const State<Real>& q, const Real* l
               target);
 }
 
-// A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ.
+// A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ. A dead moment has none.
 template <class Real, class Target>
-void add_load_stiffness(const std::vector<Load>& loads, Real factor, const State<Real>& q, Target& target) {
-    for (const auto& load : loads)
-        if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
-            const BodyId b = force->at.body;
-            const Vector3<Real> f = factor * force->f.cast<Real>();
-            target.template block<3, 3>(6 * b + 3, 6 * b + 3) -=
-                tilde(f) * tilde(q[b].lever(force->at.s_local));
-        }
+void add_load_stiffness(const DeadForce& force, Real factor, const State<Real>& q, Target& target) {
+    const BodyId b = force.at.body;
+    const Vector3<Real> f = factor * force.f.cast<Real>();
+    target.template block<3, 3>(6 * b + 3, 6 * b + 3) -= tilde(f) * tilde(q[b].lever(force.at.s_local));
 }
+template <class Real, class Target>
+void add_load_stiffness(const DeadMoment&, Real, const State<Real>&, Target&) {}
 
 }  // namespace detail
 
 // Adds ∂G/∂q [6nb × 6nb] to the top left of `target`.
 template <class Real, class Target>
-void add_consistent_tangent(const Model& model, const Branch& branch, Real a, const State<Real>& q,
-                            const Vector<Real>& lambda, Target& target) {
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { detail::add_tangent<Real>(e, q, target); }, elastic.kind);
-    int k = 0;
-    for (const auto& constraint : model.constraints) {
-        std::visit([&](const auto& c) { detail::add_curvature<Real>(c, q, lambda.data() + k, target); },
-                   constraint.kind);
-        k += rows(constraint.kind);
-    }
-    detail::add_load_stiffness<Real>(model.static_loads, Real(1), q, target);
-    detail::add_load_stiffness<Real>(branch.loads, a, q, target);
+void add_consistent_tangent(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                            const State<Real>& q, const Vector<Real>& lambda, Target& target) {
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        std::visit([&](const auto& e) { detail::add_tangent<Real>(e, inputs.rest[k], q, target); },
+                   model.elastics[k].kind);
+    for (std::size_t k = 0; k < model.constraints.size(); ++k)
+        std::visit(
+            [&](const auto& c) {
+                detail::add_curvature<Real>(c, inputs.offset[k], q, lambda.data() + inputs.row[k], target);
+            },
+            model.constraints[k].kind);
+    for_each_load<Real>(model, branch, inputs, [&](const LoadKind& load, Real factor) {
+        std::visit([&](const auto& kind) { detail::add_load_stiffness<Real>(kind, factor, q, target); },
+                   load);
+    });
 }
 
 }  // namespace elastocheck::recursive

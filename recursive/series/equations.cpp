@@ -1,5 +1,9 @@
 #include "recursive/series/equations.hpp"
 
+#include <stdexcept>
+
+#include "recursive/overloaded.hpp"
+
 namespace elastocheck::recursive::series {
 namespace {
 
@@ -42,6 +46,27 @@ ConstraintSeries room(const PerpendicularDirections& c, int p) {
 }
 ConstraintSeries room(const DistanceBetween& c, int p) {
     return between<DistanceSeries>(c, p, &DistanceSeries::d, &DistanceSeries::F);
+}
+ConstraintSeries room(const DirectionAtAngle&, int) {
+    throw std::invalid_argument("the series does not know a direction at an angle yet");
+}
+// What a branch drives of loads, as loads.
+std::vector<Load> driven_loads(const Branch& branch) {
+    std::vector<Load> loads;
+    for (const auto& driver : branch.drivers)
+        std::visit(
+            overloaded{
+                [&](const Load& load) {
+                    if (driver.start != 0 || driver.rate != 1)
+                        throw std::invalid_argument("the series does not know weighted loads yet");
+                    loads.push_back(load);
+                },
+                [](const Motion&) { throw std::invalid_argument("the series knows no motion yet"); },
+                [](const FreeLength&) { throw std::invalid_argument("the series knows no free length yet"); },
+                [](const Preload&) { throw std::invalid_argument("the series knows no preload yet"); },
+            },
+            driver.what);
+    return loads;
 }
 std::vector<LoadSeries> room(const std::vector<Load>& loads, int p) {
     std::vector<LoadSeries> all(loads.size());
@@ -133,8 +158,9 @@ void evaluate(Equations& e, const AxialSpring& spring, SpringSeries& t, Order o)
     product(o, t.D, t.D, t.length_squared, dot);
     square_root(o, t.length_squared, t.length);
     reciprocal(o, t.length, t.inverse);
-    linear(o, t.tension, [&](auto of) { return -spring.k * spring.free_length * of(t.inverse); });
-    if (o.k == 0) t.tension.c[0] += spring.k;
+    linear(o, t.tension,
+           [&](auto of) { return -std::get<LinearRate>(spring.law).k * spring.free_length * of(t.inverse); });
+    if (o.k == 0) t.tension.c[0] += std::get<LinearRate>(spring.law).k;
     product(o, t.tension, t.D, t.F, scale);
     if (o.pass == Pass::change) return;
     push(e, o.k, t.j.body, +1, t.j.s, t.F);
@@ -174,7 +200,7 @@ void evaluate(Equations& e, const Bushing& bushing, BushingSeries& t, Order o) {
     linear(o, t.stress, [&](auto of) -> Vector6<double> {
         Vector6<double> strain;
         strain << t.E_i.transpose() * of(t.strain), of(t.theta);
-        return bushing.K * strain;
+        return std::get<LinearStiffness>(bushing.law).K * strain;
     });
     if (o.k == 0) t.stress.c[0] += bushing.preload;
     linear(o, t.moment_local, [&](auto of) -> V3 { return of(t.stress).template tail<3>(); });
@@ -282,7 +308,7 @@ Equations equations(const Model& model, const Branch& branch, int order) {
         e.constraints.push_back(
             std::visit([&](const auto& kind) { return room(kind, order); }, constraint.kind));
     e.static_loads = room(model.static_loads, order);
-    e.branch_loads = room(branch.loads, order);
+    e.branch_loads = room(driven_loads(branch), order);
     e.G.setZero(coordinates(model));
     e.Phi.setZero(constraint_rows(model));
     return e;
@@ -307,7 +333,7 @@ void begin(Equations& e, const Model& model, const Branch& branch, const State<d
     place_all(e.elastics, model.elastics);
     place_all(e.constraints, model.constraints);
     place(e.static_loads, model.static_loads, q);
-    place(e.branch_loads, branch.loads, q);
+    place(e.branch_loads, driven_loads(branch), q);
 }
 
 void evaluate(Equations& e, const Model& model, const Branch& branch, Order o) {
@@ -333,7 +359,7 @@ void evaluate(Equations& e, const Model& model, const Branch& branch, Order o) {
         row += static_cast<std::size_t>(rows(model.constraints[k].kind));
     }
     evaluate(e, model.static_loads, e.static_loads, e.one, o);
-    evaluate(e, branch.loads, e.branch_loads, e.a, o);
+    evaluate(e, driven_loads(branch), e.branch_loads, e.a, o);
 }
 
 void assign(Equations& e, int k, const Vector<double>& x, double a) {

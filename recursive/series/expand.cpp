@@ -21,9 +21,8 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     begin(e, s.model, s.branch, s.q, s.lambda, s.a);
     evaluate(e, s.model, s.branch, {0, Pass::known});
 
-    s.upper.setZero();
-    add_loads<double>(s.branch.loads, 1, s.q, s.upper);
-    s.lower.setZero();
+    go_to(s, {1, s.a});
+    drive_at(s, Drive::rate, 1.0, s.q);
     back_substitute(s);
     c.unit = s.x;
     c.x.setZero();

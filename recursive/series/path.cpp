@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "recursive/series/expand.hpp"
-#include "recursive/steps.hpp"
+#include "recursive/settle.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
@@ -71,20 +71,20 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
-        external_force<double>(s.model, s.branch, w.to, s.q,
+        elastocheck::recursive::go_to(s, {1, w.to});
+        external_force<double>(s.model, s.branch, s.inputs, s.q,
                                s.applied);  // what idle modes are checked against
-        if (const Outcome outcome = factorise_at(s, s.q, s.lambda, s.a); outcome != Outcome::converged)
+        elastocheck::recursive::go_to(s, {1, s.a});
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
         double slid = 0;
         const bool slide = w.options.arc_length && !w.ahead.isZero(0);
         if (slide) {
-            s.upper.setZero();
-            add_loads<double>(s.branch.loads, 1, s.q, s.upper);
-            s.lower.setZero();
+            drive_at(s, Drive::rate, 1.0, s.q);
             back_substitute(s);
             w.c.unit = s.x;
         }
-        residual_at(s, s.q, s.lambda, s.a);
+        residual_at(s, s.q, s.lambda);
         if (k == 0 && judged != nullptr) {
             judged->force_end = largest_force(s);
             judged->constraint_end = largest_violation(s);
@@ -167,7 +167,8 @@ void go_to(Walk& w, const State<double>& from, double tau) {
 Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged) {
     for (int shorter = 0; shorter <= 20; ++shorter) {
         go_to(w, from, end.tau / 2);
-        residual_at(w.s, w.s.q, w.s.lambda, w.s.a);
+        elastocheck::recursive::go_to(w.s, {1, w.s.a});
+        residual_at(w.s, w.s.q, w.s.lambda);
         judged.force_middle = largest_force(w.s);
         judged.constraint_middle = largest_violation(w.s);
 
@@ -239,17 +240,9 @@ std::string words(const Walk& w, Outcome outcome) {
 }  // namespace
 
 Path follow(const Model& model, const Branch& branch, const Options& options) {
+    check(model, branch);
     const Diagnosis diagnosis = diagnose(model);
-    Path path;
-    if (!(diagnosis.constraint_error <= 1e-9)) {
-        path.outcome = Outcome::inconsistent_constraints;
-        path.detail =
-            fmt::format("branch '{}': the joints are not closed at the design position, |Φ| = {:.3g}",
-                        branch.name, diagnosis.constraint_error);
-        return path;
-    }
-    static const Method method = *find_method("tangent");  // what `settle` and the factors are made by
-    Walk w{March<double>(model, branch, method, diagnosis),
+    Walk w{March<double>(model, branch, diagnosis),
            equations(model, branch, options.order),
            {},
            options,
@@ -289,7 +282,7 @@ std::optional<Place> find(const Path& path, double load) {
     return std::nullopt;
 }
 
-Equilibrium evaluate(const Model& model, const Path& path, Place place) {
+Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path, Place place) {
     const Expansion& expansion = path.expansions[place.expansion];
     Vector<double> x;
     horner(expansion.x, place.tau, x);
@@ -297,8 +290,9 @@ Equilibrium evaluate(const Model& model, const Path& path, Place place) {
     State<double> q = from;
     displace(from, x, q);
     Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
-    record<double>(model, q, q, Vector<double>(x.tail(constraint_rows(model))),
-                   polynomial(expansion.load, place.tau), point);
+    const double load = polynomial(expansion.load, place.tau);
+    record<double>(model, inputs_at<double>(model, branch, load), q, q,
+                   Vector<double>(x.tail(constraint_rows(model))), load, point);
     return point;
 }
 
@@ -345,7 +339,8 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
         for (Eigen::Index c = 0; c < x.cols(); ++c) {
             displace(from, x.col(c), q);
             lambda = x.col(c).tail(constraint_rows(model));
-            record<double>(model, q, q, lambda, loads[static_cast<std::size_t>(c)], result.points[reached++]);
+            record<double>(model, inputs_at<double>(model, branch, loads[static_cast<std::size_t>(c)]), q, q,
+                           lambda, loads[static_cast<std::size_t>(c)], result.points[reached++]);
         }
     }
     result.points.resize(reached);

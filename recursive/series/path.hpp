@@ -16,15 +16,9 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/series/options.hpp"
 
 namespace elastocheck::recursive::series {
-
-struct Options {
-    int order = 16;            // p
-    double tolerance = 1e-12;  // truncation error of any body's position [m] and orientation times L [m]
-    int expansions = 200;      // at most
-    bool arc_length = false;   // as parameter instead of the load
-};
 
 // The pole or branch point nearest to τ = 0 as the coefficients tell it.
 struct Singularity {
@@ -74,7 +68,7 @@ struct Place {
 std::optional<Place> find(const Path& path, double load);
 
 // The configuration there, λ as joint wrenches; nothing is solved.
-Equilibrium evaluate(const Model& model, const Path& path, Place place);
+Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path, Place place);
 
 // The same at `points` equal increments of the load factor from 0 to branch.to, as far as the path leads;
 // with arc length as parameter at equal increments of it along the whole path.

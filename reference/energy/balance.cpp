@@ -51,11 +51,12 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     return at;
 }
 
-Balance balance(const Model& model, const Loading& loading, const Scales& scales, const Chart& chart) {
-    return balance(model, scales, potential(model, loading, chart).gradient, constraints(model, chart));
+Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales, const Chart& chart) {
+    return balance(model, scales, potential(model, prescribed, chart).gradient,
+                   constraints(model, prescribed, chart));
 }
 
-MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scales,
+MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                  const std::vector<Pose>& centre, const VectorXd& lambda) {
     const int n = coordinates(model);
     const VectorXd S = scales.coordinates(n);
@@ -65,24 +66,24 @@ MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scale
         VectorXd x = VectorXd::Zero(n);
         x[i] = S[i] * xi;
         move_to(chart, x);
-        return gradient_at_centre_stress(model, loading, chart) +
-               constraints(model, chart).Phi_q.transpose() * lambda_D;
+        return gradient_at_centre_stress(model, prescribed, chart) +
+               constraints(model, prescribed, chart).Phi_q.transpose() * lambda_D;
     };
     MatrixXd geometric(n, n);
     for (int i = 0; i < n; ++i)
         geometric.col(i) =
             (gradient_at(i, difference) - gradient_at(i, -difference)) / (2 * difference * S[i]);
     move_to(chart, VectorXd::Zero(n));
-    const MatrixXd H = stiffness(model, chart) + 0.5 * (geometric + geometric.transpose());
+    const MatrixXd H = stiffness(model, prescribed, chart) + 0.5 * (geometric + geometric.transpose());
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
 }
 
-// With g the gradient of everything but the moment, in ground axes:
-// ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ..., whereas the balance is g - m.
-// They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they balance.
-MatrixXd moment_stiffness(const Loading& loading, const Scales& scales, int n) {
+// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ...,
+// whereas the balance is g - m. They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they
+// balance.
+MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n) {
     MatrixXd A = MatrixXd::Zero(n, n);
-    for (const auto& moment : loading.moments) {
+    for (const auto& moment : prescribed.moments) {
         const int row = 6 * moment.body + 3;
         A.block<3, 3>(row, row) -= 0.5 * skew(moment.m) / scales.energy();
     }

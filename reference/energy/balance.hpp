@@ -1,5 +1,5 @@
-// How far a pose is from being a constrained minimum:
-// multipliers, what they leave over, and the modes of motion.
+// How far a pose is from being a constrained minimum: multipliers, what they leave over, and the modes of
+// motion.
 //
 // All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
 #pragma once
@@ -22,17 +22,17 @@ struct Balance {
 };
 Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd& gradient,
                 const ConstraintValues& values);
-Balance balance(const Model& model, const Loading& loading, const Scales& scales, const Chart& chart);
+Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales, const Chart& chart);
 
-// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly,
-// the rest by differences of hand-derived gradients at constant stress and λ.
-// It steers (metric, prediction, stability); no result depends on its last digits.
-Eigen::MatrixXd hessian(const Model& model, const Loading& loading, const Scales& scales,
+// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly, the rest by differences of hand-derived
+// gradients at constant stress and λ. It steers (metric, prediction, stability); no result depends on its
+// last digits.
+Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                         const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 
 // A dead moment has no symmetric stiffness: with a small rotation φ of its body, the balance of moments
 // changes by ½ φ × m more than the gradient of the chart's potential does. In ξ [6nb × 6nb].
-Eigen::MatrixXd moment_stiffness(const Loading& loading, const Scales& scales, int n);
+Eigen::MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n);
 
 // The modes of motion that the constraints allow: eigenvectors of the Hessian reduced to `along`.
 struct Modes {

@@ -1,14 +1,24 @@
 // The branch is one curve of minima. A minimiser left alone would snap through at a limit point and report
-// the far side. So a step counts only if it fits the tangents t = dξ/da = -Z W⁻¹ Zᵀ ∂²V/∂ξ∂a at both its
-// ends, which must fit each other (largest entries):
+// the far side. So a step counts only if it fits the tangents t = dξ/da at both its ends, which must fit each
+// other (largest entries):
 //
 //   |Δξ - t_0 Δa| ≤ ½ |t_0 Δa|,   |t_1 Δa - t_0 Δa| ≤ ½ |t_0 Δa|,   |Δξ - ½ (t_0 + t_1) Δa| ≤ ⅒ |t_0 Δa|
 //
 // Along a smooth curve these fall with the first, first and second power of Δa, but not from one curve to
-// another. The new pose must be a minimum (no mode of negative stiffness) and no bushing may have gone
-// through half a turn, where its law ends. If any of this fails the step is halved.
+// another. The new pose must be a minimum (no mode of negative stiffness), the stiffnesses must have come as
+// foreseen (stability.hpp) and no bushing may have gone through half a turn, where its law ends. If any of
+// this fails the step is halved.
+//
+// The tangent, by differentiating Φ(ξ; a) = 0 and Zᵀ ∂(V + λᵀΦ)/∂ξ = 0 with J = ∂Φ/∂ξ, J Z = 0, W = Zᵀ H Z:
+//
+//   J t = -∂Φ/∂a               t = p + Z y,   p = -J⁺ ∂Φ/∂a
+//   Zᵀ (H t + b) = 0           y = -W⁻¹ Zᵀ (b + H p),   b = ∂²(V + λᵀΦ)/∂ξ∂a
+//
+// where a dead moment adds its unsymmetric part A to H (balance.hpp).
 #include "reference/energy/branch.hpp"
 
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
@@ -20,16 +30,21 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int halvings = 12;           // of a step, one after the other
-constexpr double resolution = 1e-9;    // of the load factor: smallest step
-constexpr int internal_points = 2000;  // on the way from one load to the next
-constexpr double largest_step = 0.1;   // of L or 1 rad, as the tangent has it
-constexpr double negligible = 1e-6;    // of L or 1 rad
-constexpr double idle_push = 1e-8;     // of F or F·L: what counts as a load on an idle mode
-constexpr double spent = 0.01;         // of its first stiffness: a mode about to become unstable
+constexpr int halvings = 12;               // of a step, one after the other
+constexpr double resolution = 1e-9;        // of the parameter: smallest step
+constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
+constexpr double look =
+    1e-3;  // of the span: an instability that comes and goes within this is not looked for
+constexpr int internal_points = 2000;    // on the way from one value asked for to the next
+constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
+constexpr double largest_step = 0.1;     // of L or 1 rad, as the tangent has it
+constexpr double negligible = 1e-6;      // of L or 1 rad
+constexpr double idle_push = 1e-8;       // of F or F·L: what counts as a load on an idle mode
+constexpr double spent = 0.01;           // of its first stiffness: a mode about to become unstable
 
 constexpr const char* not_finite = "a number stopped being finite";
 constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
+constexpr const char* sudden = "the stiffness changes too fast to be followed";
 constexpr const char* unstable = "the equilibrium stops being a minimum of the potential";
 
 VectorXd coordinate_scales(const Path& path) { return path.scales.coordinates(coordinates(path.model)); }
@@ -51,25 +66,18 @@ VectorXd resisted_increment(const Path& path, const State& from, const State& to
     return xi - idle * (idle.transpose() * xi);
 }
 
-// -Z (W + ZᵀAZ)⁻¹ Zᵀ b over the modes that resist: where the balance b goes to zero, to first order. In ξ.
-VectorXd newton_increment(const Path& path, const State& state, const VectorXd& b) {
+// H + A
+MatrixXd tangent_stiffness(const Path& path, const State& state) {
+    return state.H +
+           moment_stiffness(at(path.course, state.a), path.scales, static_cast<int>(state.H.rows()));
+}
+
+// -Z (ZᵀKZ)⁻¹ Zᵀ b over the modes that resist: where the balance b goes to zero, to first order. In ξ.
+VectorXd newton_increment(const State& state, const MatrixXd& K, const VectorXd& b) {
     const auto resisting = state.modes.resisting();
     if (resisting.empty()) return VectorXd::Zero(b.size());
     const MatrixXd Z = state.modes.Z(Eigen::all, resisting);
-    const VectorXd W = state.modes.stiffness(resisting);
-    const Loading loading = path.loading(state.a);
-    if (loading.moments.empty()) return -Z * (Z.transpose() * b).cwiseQuotient(W);
-    MatrixXd K = Z.transpose() * moment_stiffness(loading, path.scales, static_cast<int>(b.size())) * Z;
-    K.diagonal() += W;
-    return -Z * K.partialPivLu().solve(Z.transpose() * b);
-}
-
-// t (a_to - a_from) at this pose.
-VectorXd tangent_increment(const Path& path, const State& state, double a_from, double a_to) {
-    const Chart chart = chart_about(state.poses);
-    const VectorXd db = potential(path.model, path.loading(a_to), chart).gradient -
-                        potential(path.model, path.loading(a_from), chart).gradient;
-    return newton_increment(path, state, coordinate_scales(path).cwiseProduct(db) / path.scales.energy());
+    return -Z * (Z.transpose() * K * Z).partialPivLu().solve(Z.transpose() * b);
 }
 
 bool is_near(const VectorXd& actual, const VectorXd& expected) {
@@ -84,14 +92,14 @@ bool is_continuous(const VectorXd& actual, const VectorXd& t_0, const VectorXd& 
 // On the same sheet of the logarithm as before.
 bool bushings_continue(const Path& path, const State& from, const State& to) {
     const Eigen::Matrix3Xd change =
-        bushing_rotations(path.model, to.poses) - bushing_rotations(path.model, from.poses);
+        rotations(path.model, path.turning, to.poses) - rotations(path.model, path.turning, from.poses);
     return change.cols() == 0 || change.colwise().norm().maxCoeff() <= std::numbers::pi;
 }
 
-// A motion that nothing resists, pushed by the load at factor a.
+// A motion that nothing resists, pushed by what is prescribed at a.
 bool idle_mode_loaded(const Path& path, const State& from, double a) {
-    const Balance at = balance(path.model, path.loading(a), path.scales, chart_about(from.poses));
-    const VectorXd push = from.modes.Z.transpose() * at.left;
+    const Balance then = balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
+    const VectorXd push = from.modes.Z.transpose() * then.left;
     for (int i = 0; i < from.modes.count(); ++i)
         if (from.modes.idle(i) && std::abs(push[i]) > idle_push) return true;
     return false;
@@ -109,32 +117,70 @@ Attempt lost(Attempt attempt, const char* why) {
 }
 
 // From one equilibrium to the next, `expected` by the tangent.
-Attempt step(const Path& path, const State& from, double a, const VectorXd& expected) {
+Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expected) {
+    const State& from = walk.state;
     Attempt attempt = minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
     if (!is_near(actual, expected)) return lost(attempt, jumped);
     if (attempt.failure) return attempt;
-    if (!is_continuous(actual, expected, tangent_increment(path, to, from.a, a)))
-        return lost(attempt, jumped);
-    if (!within_half_turn(path.model, to.poses)) return lost(attempt, turned_over);
+    if (!is_continuous(actual, expected, tangent(path, to) * (a - from.a))) return lost(attempt, jumped);
+    if (!within_half_turn(path.model, path.turning, to.poses)) return lost(attempt, turned_over);
     if (!bushings_continue(path, from, to)) return lost(attempt, turned_over);
     if (to.modes.unstable()) return lost(attempt, unstable);
+    if (std::abs(a - from.a) > look * path.span && !as_foreseen(walk.record, a, to.modes))
+        return lost(attempt, sudden);
     return attempt;
+}
+
+// Towards `to`: no longer than the stride, than the tangent may be trusted, than stability can be foreseen.
+double next_value(const Path& path, const Walk& walk, const VectorXd& t, double to) {
+    const double rest = to - walk.state.a;
+    double h = std::copysign(std::min(std::abs(rest), walk.stride), rest);
+    const double size = largest(t) * std::abs(h);
+    if (size > largest_step) h *= largest_step / size;
+    const double seen = std::abs(foreseen_step(walk.record, h));
+    h = std::copysign(std::min(std::abs(h), std::max(seen, look * path.span)), rest);
+    return std::abs(rest) <= std::abs(h) ? to : walk.state.a + h;
 }
 
 }  // namespace
 
+Walk walk_from(const Path& path, const State& state) {
+    Walk walk{state, first_stride * path.span, {}};
+    walk.record.add(state.a, state.modes);
+    return walk;
+}
+
 State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
-    const Loading loading = path.loading(a);
+    const Prescribed prescribed = at(path.course, a);
     State state{.a = a, .poses = poses, .at = {}, .H = {}, .modes = {}};
-    state.at = balance(path.model, loading, path.scales, chart_about(poses));
-    state.H = hessian(path.model, loading, path.scales, poses, state.at.lambda);
+    state.at = balance(path.model, prescribed, path.scales, chart_about(poses));
+    state.H = hessian(path.model, prescribed, path.scales, poses, state.at.lambda);
     state.modes = modes_of(state.at, state.H);
     path.counts.evaluations += 1 + 2 * coordinates(path.model);
     path.counts.factorisations += 1;
     return state;
+}
+
+VectorXd tangent(const Path& path, const State& state) {
+    const Prescribed prescribed = at(path.course, state.a);
+    const Prescribed& rate = path.course.rate;
+    const Chart chart = chart_about(state.poses);
+    const VectorXd S = coordinate_scales(path), D = path.scales.rows(path.model);
+    VectorXd b = S.cwiseProduct(gradient_rate(path.model, prescribed, rate, chart)) / path.scales.energy();
+    const MatrixXd K = tangent_stiffness(path, state);
+    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return newton_increment(state, K, b);
+
+    const ConstraintRates rates = constraint_rates(path.model, prescribed, rate, chart);
+    b += S.cwiseProduct(rates.Phi_qa.transpose() * D.cwiseProduct(state.at.lambda));
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+    J.setThreshold(rank_threshold);
+    J.compute(state.at.J_t.transpose());
+    path.counts.factorisations += 1;
+    const VectorXd p = J.solve(-D.cwiseProduct(rates.Phi_a));
+    return p + newton_increment(state, K, b + K * p);
 }
 
 bool is_stationary(const Path& path, const State& state) {
@@ -144,12 +190,12 @@ bool is_stationary(const Path& path, const State& state) {
 
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const MatrixXd& idle) {
     const Options& options = path.options;
-    const Loading loading = path.loading(a);
+    const Prescribed prescribed = at(path.course, a);
     const int per_chart = std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));
     long evaluations = 0;
     State state = state_at(path, a, start);
     for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
-        const Minimisation m = minimise(path.model, loading, path.scales, state.poses, state.at, state.H,
+        const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at, state.H,
                                         idle, options.tolerance, per_chart);
         evaluations += m.evaluations;
         path.counts.iterations += 1;
@@ -160,38 +206,37 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
         state = state_at(path, a, m.poses);
         if (is_stationary(path, state)) return {state, {}};
         if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same again
-        if (loading.moments.empty()) continue;
+        if (prescribed.moments.empty()) continue;
         // The new centre turns the moments against the bodies. Without this, charts converge only linearly.
-        const VectorXd ahead = newton_increment(path, state, state.at.left);
+        const VectorXd ahead = newton_increment(state, tangent_stiffness(path, state), state.at.left);
         if (largest(ahead) <= largest_step) state = state_at(path, a, moved(path, state.poses, ahead));
     }
     return {state, Failure{Outcome::iteration_limit, "the minimisation did not reach its tolerance"}};
 }
 
-std::optional<Failure> advance(const Path& path, State& state, double to) {
+std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
+    State& state = walk.state;
     const double smallest = resolution * std::max(std::abs(to), std::abs(state.a));
-    double h = to - state.a;
     int halved = 0;  // since the last equilibrium
     for (int points = 0; state.a != to; ++points) {
         if (points == internal_points)
-            return Failure{Outcome::iteration_limit, "too many steps were needed on the way to this load"};
-        const VectorXd tangent = tangent_increment(path, state, state.a, state.a + h);
-        const double size = largest(tangent);
-        if (!std::isfinite(size)) return Failure{Outcome::not_finite, not_finite};
-        const double reach = h * (size > largest_step ? largest_step / size : 1);
-        const double a = std::abs(to - state.a) <= std::abs(reach) ? to : state.a + reach;
-        const Attempt attempt = step(path, state, a, tangent * ((a - state.a) / h));
+            return Failure{Outcome::iteration_limit, "too many steps were needed on the way"};
+        const VectorXd t = tangent(path, state);
+        if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
+        const double a = next_value(path, walk, t, to), h = a - state.a;
+        const Attempt attempt = step(path, walk, a, t * h);
         if (!attempt.failure) {
-            h = 2 * (a - state.a);
+            walk.stride = std::max(a == to ? walk.stride : 0.0, 2 * std::abs(h));
             halved = 0;
             state = attempt.state;
+            walk.record.add(a, state.modes);
             continue;
         }
         if (idle_mode_loaded(path, state, a))
             return Failure{Outcome::loaded_idle_mode, "a motion that nothing resists is pushed by the load"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
-        h = 0.5 * (a - state.a);
-        if (++halved <= halvings && std::abs(h) > smallest) continue;
+        walk.stride = 0.5 * std::abs(h);
+        if (++halved <= halvings && walk.stride > smallest) continue;
         if (attempt.failure->outcome == Outcome::iteration_limit && is_spent(path.first, state.modes))
             return Failure{Outcome::branch_lost, unstable};
         return attempt.failure;

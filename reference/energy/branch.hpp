@@ -1,13 +1,13 @@
 // Following a branch from one accepted minimum to the next.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
 #include "models/equilibrium_path.hpp"
 #include "reference/energy/balance.hpp"
 #include "reference/energy/solve.hpp"
+#include "reference/energy/stability.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -21,30 +21,41 @@ struct Failure {
 
 // A pose and what is known about it.
 struct State {
-    double a = 0;  // load factor
+    double a = 0;  // parameter of the branch
     std::vector<Pose> poses;
     Balance at;
     Eigen::MatrixXd H;
     Modes modes;
 };
 
-// What a branch is made of: everything but the load factor.
+// What a branch is made of: everything but the parameter.
 struct Path {
     const Model& model;
     const Options& options;
     Scales scales;
-    std::function<Loading(double)> loading;  // at a load factor
+    Course course;
+    std::vector<int> turning;  // bushings that resist rotation
+    double span;               // the largest |a| asked for
     Counts& counts;
     Modes first = {};  // modes where the branch starts
 };
 
-// Pose, balance, Hessian and modes at load factor a, whether an equilibrium or not.
+// How far a branch has come.
+struct Walk {
+    State state;             // the last equilibrium
+    double stride;           // |step| to try next
+    StiffnessRecord record;  // of the equilibria so far
+};
+
+Walk walk_from(const Path& path, const State& state);
+
+// Pose, balance, Hessian and modes at parameter a, whether an equilibrium or not.
 State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 
 // Whether the state satisfies the constrained minimum's first-order conditions, to options.tolerance.
 bool is_stationary(const Path& path, const State& state);
 
-// Minimises at load factor a from `start`, chart after chart, until stationary. `idle` motions [6nb × their
+// Minimises at parameter a from `start`, chart after chart, until stationary. `idle` motions [6nb × their
 // number] are not made use of (minimise.hpp).
 struct Attempt {
     State state;
@@ -52,8 +63,11 @@ struct Attempt {
 };
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const Eigen::MatrixXd& idle);
 
-// Takes `state` to load factor `to`, halving the step where it must. On failure `state` is the last
-// equilibrium reached.
-std::optional<Failure> advance(const Path& path, State& state, double to);
+// dξ/da along the branch, as the equilibrium `state` and the constraints have it [6nb].
+Eigen::VectorXd tangent(const Path& path, const State& state);
+
+// Takes the walk to parameter `to`, in steps of its own. On failure it stands at the last equilibrium
+// reached.
+std::optional<Failure> advance(const Path& path, Walk& walk, double to);
 
 }  // namespace elastocheck::reference::energy

@@ -1,5 +1,8 @@
 #include "reference/energy/constraints.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "reference/energy/overloaded.hpp"
 #include "reference/energy/rotation.hpp"
 
@@ -13,9 +16,11 @@ using Eigen::RowVector3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+// The rows of one constraint, and by how much its length, offset or angle has been moved.
 struct Rows {
     ConstraintValues& out;
     int row;
+    double moved;
 
     // ∂Φ/∂(δr, δπ) of one body; ground has no coordinates.
     void add_row(BodyId body, const Vector3d& dr, const Vector3d& dpi) const {
@@ -40,14 +45,14 @@ void fill(const CoincidentPoints& c, const Chart& chart, const Rows& rows) {
     add(c.j.body, -1, j.lever);
 }
 
-// Φ = n·D, D = p_i - p_j:  δΦ = n·(δp_i - δp_j) + δπ_j·(n × D),  n·δp = n·δr + (u × n)·δπ
+// Φ = n·D - h, D = p_i - p_j:  δΦ = n·(δp_i - δp_j) + δπ_j·(n × D),  n·δp = n·δr + (u × n)·δπ
 // Φ - Φ_c = n·ΔD + Δn·D_c
 void fill(const PointInPlane& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
     const DirectionMotion n = turned(chart[c.normal_j.body], c.normal_j.u_local);
     const Vector3d D = i.p - j.p, dD = i.dp - j.dp;
-    rows.out.Phi[rows.row] = n.u.dot(D);
+    rows.out.Phi[rows.row] = n.u.dot(D) - (c.offset + rows.moved);
     rows.out.dPhi[rows.row] = n.u.dot(dD) + n.du.dot(D - dD);
     rows.add_row(c.i.body, n.u, i.lever.cross(n.u));
     rows.add_row(c.j.body, -n.u, -j.lever.cross(n.u));
@@ -69,30 +74,144 @@ void fill(const PerpendicularDirections& c, const Chart& chart, const Rows& rows
 void fill(const DistanceBetween& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
-    const Vector3d D = i.p - j.p, dD = i.dp - j.dp, n = D / c.length;
-    const double distance = D.norm();
-    rows.out.Phi[rows.row] = (distance - c.length) * (distance + c.length) / (2 * c.length);
-    rows.out.dPhi[rows.row] = dD.dot(D + (D - dD)) / (2 * c.length);
+    const Vector3d D = i.p - j.p, dD = i.dp - j.dp;
+    const double distance = D.norm(), length = c.length + rows.moved;
+    const Vector3d n = D / length;
+    rows.out.Phi[rows.row] = (distance - length) * (distance + length) / (2 * length);
+    rows.out.dPhi[rows.row] = dD.dot(D + (D - dD)) / (2 * length);
     rows.add_row(c.i.body, n, i.lever.cross(n));
     rows.add_row(c.j.body, -n, -j.lever.cross(n));
 }
 
-}  // namespace
+// The direction across α in the plane of x_j and y_j:  v(α) = cos α y_j - sin α x_j,  v(α + π/2) = dv/dα
+Direction across(const DirectionAtAngle& c, double alpha) {
+    return {c.j.body, std::cos(alpha) * c.y_j.u_local - std::sin(alpha) * c.j.u_local};
+}
 
-ConstraintValues constraints(const Model& model, const Chart& chart) {
-    const int m = constraint_rows(model), n = coordinates(model);
-    ConstraintValues values{VectorXd::Zero(m), VectorXd::Zero(m), MatrixXd::Zero(m, n)};
-    int row = 0;
-    for (const auto& constraint : model.constraints) {
-        std::visit([&](const auto& kind) { fill(kind, chart, Rows{values, row}); }, constraint.kind);
-        row += rows(constraint.kind);
-    }
-    // From (δr, δπ) to (δr, δφ): δπ = J δφ.
+// Φ = u_i·v(α), which is perpendicularity to v.
+void fill(const DirectionAtAngle& c, const Chart& chart, const Rows& rows) {
+    fill(PerpendicularDirections{c.i, across(c, c.angle + rows.moved)}, chart, rows);
+}
+
+// ---- ∂/∂a: Φ_a in `out.Phi` and ∂²Φ/∂x∂a in `out.Phi_q`, where the offset moves with `rate`.
+
+void fill_rate(const CoincidentPoints&, const Chart&, const Rows&, double) {}
+void fill_rate(const PerpendicularDirections&, const Chart&, const Rows&, double) {}
+
+// Φ = n·D - h:  ∂Φ/∂h = -1
+void fill_rate(const PointInPlane&, const Chart&, const Rows& rows, double rate) {
+    rows.out.Phi[rows.row] = -rate;
+}
+
+// Φ = D·D/(2ℓ) - ℓ/2:  ∂Φ/∂ℓ = -D·D/(2ℓ²) - ½,  Φ_x ~ 1/ℓ so that ∂Φ_x/∂ℓ = -Φ_x/ℓ
+void fill_rate(const DistanceBetween& c, const Chart& chart, const Rows& rows, double rate) {
+    fill(c, chart, rows);
+    const double length = c.length + rows.moved;
+    const Vector3d D = motion(chart[c.i.body], c.i.s_local).p - motion(chart[c.j.body], c.j.s_local).p;
+    rows.out.Phi[rows.row] = -rate * (0.5 * D.squaredNorm() / (length * length) + 0.5);
+    rows.out.Phi_q.row(rows.row) *= -rate / length;
+}
+
+// ∂Φ/∂α = u_i·v(α + π/2)
+void fill_rate(const DirectionAtAngle& c, const Chart& chart, const Rows& rows, double rate) {
+    fill(PerpendicularDirections{c.i, across(c, c.angle + rows.moved + std::numbers::pi / 2)}, chart, rows);
+    rows.out.Phi[rows.row] *= rate;
+    rows.out.Phi_q.row(rows.row) *= rate;
+}
+
+// From (δr, δπ) to (δr, δφ): δπ = J δφ.
+void to_chart(const Chart& chart, MatrixXd& Phi_q) {
     for (std::size_t b = 0; b < chart.placements.size(); ++b) {
-        auto columns = values.Phi_q.middleCols<3>(6 * static_cast<int>(b) + 3);
+        auto columns = Phi_q.middleCols<3>(6 * static_cast<int>(b) + 3);
         columns = (columns * chart.placements[b].J).eval();
     }
+}
+
+ConstraintValues zero_values(const Model& model) {
+    const int m = constraint_rows(model), n = coordinates(model);
+    return {VectorXd::Zero(m), VectorXd::Zero(m), MatrixXd::Zero(m, n)};
+}
+
+// f(kind, position in Model::constraints, first row) for every constraint.
+template <class F>
+void for_each_constraint(const Model& model, F f) {
+    int row = 0;
+    for (int k = 0; k < static_cast<int>(model.constraints.size()); ++k) {
+        const auto& kind = model.constraints[static_cast<std::size_t>(k)].kind;
+        f(kind, k, row);
+        row += rows(kind);
+    }
+}
+
+}  // namespace
+
+ConstraintValues constraints(const Model& model, const Prescribed& prescribed, const Chart& chart) {
+    ConstraintValues values = zero_values(model);
+    for_each_constraint(model, [&](const ConstraintKind& kind, int k, int row) {
+        std::visit([&](const auto& c) { fill(c, chart, Rows{values, row, prescribed.offset[k]}); }, kind);
+    });
+    values.Phi -= prescribed.gap;
+    to_chart(chart, values.Phi_q);
     return values;
+}
+
+ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
+                                 const Chart& chart) {
+    ConstraintValues rates = zero_values(model);
+    for_each_constraint(model, [&](const ConstraintKind& kind, int k, int row) {
+        if (rate.offset[k] == 0) return;
+        std::visit(
+            [&](const auto& c) {
+                fill_rate(c, chart, Rows{rates, row, prescribed.offset[k]}, rate.offset[k]);
+            },
+            kind);
+    });
+    to_chart(chart, rates.Phi_q);
+    return {rates.Phi - rate.gap, rates.Phi_q};
+}
+
+bool is_cosine(const ConstraintKind& kind) {
+    return std::visit(
+        overloaded{[](const CoincidentPoints&) { return false; }, [](const PointInPlane&) { return false; },
+                   [](const PerpendicularDirections&) { return true; },
+                   [](const DistanceBetween&) { return false; },
+                   [](const DirectionAtAngle&) { return true; }},
+        kind);
+}
+
+std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& chart) {
+    const auto between = [&](const auto& c) -> Vector3d {
+        return motion(chart[c.i.body], c.i.s_local).p - motion(chart[c.j.body], c.j.s_local).p;
+    };
+    const auto axis = [&](const Direction& d) { return turned(chart[d.body], d.u_local).u; };
+    using Measured = std::optional<double>;
+    return std::visit(
+        overloaded{[](const CoincidentPoints&) -> Measured { return {}; },
+                   [](const PerpendicularDirections&) -> Measured { return {}; },
+                   [&](const PointInPlane& c) -> Measured { return axis(c.normal_j).dot(between(c)); },
+                   [&](const DistanceBetween& c) -> Measured { return between(c).norm(); },
+                   [&](const DirectionAtAngle& c) -> Measured {
+                       const Vector3d u = axis(c.i);
+                       const double alpha = std::atan2(u.dot(axis(c.y_j)), u.dot(axis(c.j)));
+                       return c.angle + std::remainder(alpha - c.angle, 2 * std::numbers::pi);
+                   }},
+        kind);
+}
+
+double own_offset(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
+                                 [](const PerpendicularDirections&) { return 0.0; },
+                                 [](const PointInPlane& c) { return c.offset; },
+                                 [](const DistanceBetween& c) { return c.length; },
+                                 [](const DirectionAtAngle& c) { return c.angle; }},
+                      kind);
+}
+
+bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart) {
+    const auto* c = std::get_if<DirectionAtAngle>(&kind);
+    if (!c) return false;
+    const Direction along = across(*c, c->angle + offset - std::numbers::pi / 2);
+    return turned(chart[c->i.body], c->i.u_local).u.dot(turned(chart[along.body], along.u_local).u) < 0;
 }
 
 }  // namespace elastocheck::reference::energy

@@ -1,16 +1,40 @@
-// The four basic constraints as equations Φ(x) = 0, with their Jacobian by hand.
+// The basic constraints as equations Φ(x; a) = 0, with their derivatives by hand.
 #pragma once
+
+#include <optional>
 
 #include "models/model.hpp"
 #include "reference/energy/chart.hpp"
+#include "reference/energy/prescribed.hpp"
 
 namespace elastocheck::reference::energy {
 
 struct ConstraintValues {
-    Eigen::VectorXd Phi;    // [m]: lengths [m], cosines [-]
+    Eigen::VectorXd Phi;    // less the prescribed gap [m]: lengths [m], cosines [-]
     Eigen::VectorXd dPhi;   // Φ(x) - Φ(0), with its own relative accuracy [m]
     Eigen::MatrixXd Phi_q;  // ∂Φ/∂x [m × 6nb]
 };
-ConstraintValues constraints(const Model& model, const Chart& chart);
+ConstraintValues constraints(const Model& model, const Prescribed& prescribed, const Chart& chart);
+
+// ∂/∂a of both where `prescribed` moves with `rate`.
+struct ConstraintRates {
+    Eigen::VectorXd Phi_a;   // ∂Φ/∂a [m]
+    Eigen::MatrixXd Phi_qa;  // ∂²Φ/∂x∂a [m × 6nb]
+};
+ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
+                                 const Chart& chart);
+
+// Whether Φ is a cosine of directions [-], and not a length [m].
+bool is_cosine(const ConstraintKind& kind);
+
+// The length, offset [m] or angle [rad] that the bodies have at the centre of the chart, as the constraint
+// counts it: an angle within half a turn of the constraint's own. Nothing where there is none to measure.
+std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& chart);
+
+// The constraint's own length, offset or angle; 0 where it has none.
+double own_offset(const ConstraintKind& kind);
+
+// Whether the direction of a DirectionAtAngle lies the other way round, at α + π, where Φ = 0 too.
+bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart);
 
 }  // namespace elastocheck::reference::energy

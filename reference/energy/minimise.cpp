@@ -58,7 +58,7 @@ MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& mo
 
 struct Problem {
     const Model& model;
-    const Loading& loading;
+    const Prescribed& prescribed;
     const Scales& scales;
     const Balance& at;
     double tolerance;
@@ -97,8 +97,8 @@ void evaluate(Problem& p, const VectorXd& y) {
     if (p.best.evaluations > 0 && p.y == y) return;
     p.y = y;
     move_to(p.chart, p.ST * y);
-    const Potential V = potential(p.model, p.loading, p.chart);
-    const ConstraintValues Phi = constraints(p.model, p.chart);
+    const Potential V = potential(p.model, p.prescribed, p.chart);
+    const ConstraintValues Phi = constraints(p.model, p.prescribed, p.chart);
     const int n = coordinates(p.model), rank = static_cast<int>(p.at.independent.size());
     const double energy = p.scales.energy();
     const VectorXd S = p.scales.coordinates(n), DPhi = p.D.cwiseProduct(Phi.Phi);
@@ -151,7 +151,7 @@ void constraint_vector(unsigned m, double* result, unsigned n, const double* y, 
 
 }  // namespace
 
-Minimisation minimise(const Model& model, const Loading& loading, const Scales& scales,
+Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
                       const std::vector<Pose>& centre, const Balance& at, const MatrixXd& H,
                       const MatrixXd& idle, double tolerance, int evaluation_limit) {
     const int rank = static_cast<int>(at.independent.size());
@@ -161,7 +161,7 @@ Minimisation minimise(const Model& model, const Loading& loading, const Scales& 
     const VectorXd S = scales.coordinates(coordinates(model));
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
-              .loading = loading,
+              .prescribed = prescribed,
               .scales = scales,
               .at = at,
               .tolerance = tolerance,

@@ -15,7 +15,7 @@ struct Minimisation {
 // constraints. Stops when a point is well within `tolerance`, when it no longer improves, or at the limit.
 // NLopt's status is not asked. Of the equilibria that an idle motion (columns of `idle`, in ξ) leads through,
 // all alike, the nearest is taken.
-Minimisation minimise(const Model& model, const Loading& loading, const Scales& scales,
+Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
                       const std::vector<Pose>& centre, const Balance& at, const Eigen::MatrixXd& H,
                       const Eigen::MatrixXd& idle, double tolerance, int evaluation_limit);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/energy/laws.hpp"
 #include "reference/energy/overloaded.hpp"
 #include "reference/energy/rotation.hpp"
 
@@ -17,30 +18,29 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// One element in its chart. The law is U = ½ eᵀ K e + bᵀ e (a constant is dropped), so that
-//
-//   U - U_c = δᵀ (σ_c + ½ K δ),   ∂U/∂e = σ_c + K δ,   δ = e - e_c,   stress σ_c = K e_c + b.
+// The last bits of a rotation by π - this [rad] still tell its axis' sign, which the logarithm depends on.
+constexpr double closest_to_half_turn = 1e-3;
+
+// The geometry of one element in its chart: what deforms, by how much, and how that depends on the poses.
 template <int N>
-struct Element {
+struct Deformation {
     BodyId i, j;
-    Matrix<double, N, 1> sigma_c, delta;
-    Matrix<double, N, N> K;
-    Matrix<double, N, 6> E_i, E_j;  // ∂e/∂(δr, δπ) of either body
+    Matrix<double, N, 1> e_c, delta;  // e(x_c), and e(x) - e(x_c) without cancellation
+    Matrix<double, N, 6> E_i, E_j;    // ∂e/∂(δr, δπ) of either body
 };
 
 // ℓ = |D|, D = p_j - p_i:  δℓ = n·(δp_j - δp_i), n = D/ℓ, and δp = δr + δπ × u, so n·δp = n·δr + (u × n)·δπ.
 // ℓ - ℓ_c = ΔD·(D + D_c)/(ℓ + ℓ_c).
-Element<1> element(const AxialSpring& spring, const Chart& chart) {
+Deformation<1> deformation(const AxialSpring& spring, const Chart& chart) {
     const PointMotion i = motion(chart[spring.i.body], spring.i.s_local);
     const PointMotion j = motion(chart[spring.j.body], spring.j.s_local);
     const Vector3d D = j.p - i.p, dD = j.dp - i.dp, D_c = D - dD;
     const double l = D.norm(), l_c = D_c.norm();
     const Vector3d n = D / l;
-    Element<1> e;
+    Deformation<1> e;
     e.i = spring.i.body;
     e.j = spring.j.body;
-    e.K << spring.k;
-    e.sigma_c << spring.k * (l_c - spring.free_length);
+    e.e_c << l_c;
     e.delta << dD.dot(D + D_c) / (l + l_c);
     e.E_i << -n.transpose(), -i.lever.cross(n).transpose();
     e.E_j << n.transpose(), j.lever.cross(n).transpose();
@@ -56,7 +56,7 @@ Element<1> element(const AxialSpring& spring, const Chart& chart) {
 // relative quaternion:
 //
 //   d - d_c = A_Iᵀ ΔD + (T_i A_Ic)ᵀ D_c,   q - q_c = q_Icᴴ (Δ_iᴴ + Δ_j + Δ_iᴴ Δ_j) q_Jc.
-Element<6> element(const Bushing& bushing, const Chart& chart) {
+Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
     const Placement& body_i = chart[bushing.i.body];
     const Placement& body_j = chart[bushing.j.body];
     const PointMotion i = motion(body_i, bushing.i.s_local);
@@ -79,13 +79,10 @@ Element<6> element(const Bushing& bushing, const Chart& chart) {
     const LogChange log = log_change(q_c, dq);
     const Matrix3d G = inverse_turn_jacobian(log.theta_c + log.dtheta) * A.transpose();
 
-    Vector6 e_c;
-    e_c << A_c.transpose() * D_c, log.theta_c;
-    Element<6> e;
+    Deformation<6> e;
     e.i = bushing.i.body;
     e.j = bushing.j.body;
-    e.K = bushing.K;
-    e.sigma_c = bushing.K * e_c + bushing.preload;
+    e.e_c << A_c.transpose() * D_c, log.theta_c;
     e.delta << A.transpose() * dD + dA.transpose() * D_c, log.dtheta;
     // ⎡ -A_Iᵀ   A_Iᵀ (ũ_I + D̃) ⎤   ⎡ A_Iᵀ   -A_Iᵀ ũ_J    ⎤
     // ⎣   0      -J⁻¹ A_Iᵀ      ⎦   ⎣  0      J⁻¹ A_Iᵀ    ⎦
@@ -94,18 +91,37 @@ Element<6> element(const Bushing& bushing, const Chart& chart) {
     return e;
 }
 
+// The law with a preload: u(x) + bᵀ e.
+template <int N>
+LawValues<N> loaded(LawValues<N> law, const Matrix<double, N, 1>& b, const Matrix<double, N, 1>& delta) {
+    law.change += b.dot(delta);
+    law.stress_c += b;
+    law.stress += b;
+    return law;
+}
+
+// Geometry and law together: U(e) = u(e - e₀) + bᵀ e.
+template <int N>
+struct Element : Deformation<N>, LawValues<N> {};
+
+Element<1> element(const AxialSpring& spring, const Prescribed& prescribed, int k, const Chart& chart) {
+    const Deformation<1> e = deformation(spring, chart);
+    const Vector1 e_0(spring.free_length + prescribed.free_length[k]), b(prescribed.preload(0, k));
+    return {e, loaded<1>(values(spring.law, e.e_c - e_0, e.delta), b, e.delta)};
+}
+
+Element<6> element(const Bushing& bushing, const Prescribed& prescribed, int k, const Chart& chart) {
+    const Deformation<6> e = deformation(bushing, chart);
+    const Vector6 b = bushing.preload + prescribed.preload.col(k);
+    return {e, loaded<6>(values(bushing.law, e.e_c, e.delta), b, e.delta)};
+}
+
+// f(k, element) for every element, in the model's order.
 template <class F>
-void for_each_element(const Model& model, const Loading& loading, const Chart& chart, F f) {
-    const Chart design = loading.relief != 0 ? chart_about(design_poses(model)) : Chart{};
-    for (const auto& elastic : model.elastics) {
-        std::visit(
-            [&](const auto& kind) {
-                auto e = element(kind, chart);
-                if (loading.relief != 0) e.sigma_c -= loading.relief * element(kind, design).sigma_c;
-                f(e);
-            },
-            elastic.kind);
-    }
+void for_each_element(const Model& model, const Prescribed& prescribed, const Chart& chart, F f) {
+    for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k)
+        std::visit([&](const auto& kind) { f(k, element(kind, prescribed, k, chart)); },
+                   model.elastics[static_cast<std::size_t>(k)].kind);
 }
 
 template <int N>
@@ -115,9 +131,9 @@ void add_gradient(const Element<N>& e, const Matrix<double, N, 1>& stress, Vecto
 }
 
 // -f·Δp, and its gradient in (δr, δπ).
-double add_forces(const Loading& loading, const Chart& chart, VectorXd& g) {
+double add_forces(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
-    for (const auto& force : loading.forces) {
+    for (const auto& force : prescribed.forces) {
         const PointMotion at = motion(chart[force.at.body], force.at.s_local);
         change -= force.f.dot(at.dp);
         g.segment<3>(6 * force.at.body) -= force.f;
@@ -135,9 +151,9 @@ void to_chart(const Chart& chart, VectorXd& g) {
 }
 
 // -m·φ: its own chart coordinate, so after `to_chart`.
-double add_moments(const Loading& loading, const Chart& chart, VectorXd& g) {
+double add_moments(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
-    for (const auto& moment : loading.moments) {
+    for (const auto& moment : prescribed.moments) {
         change -= moment.m.dot(chart[moment.body].phi);
         g.segment<3>(6 * moment.body + 3) -= moment.m;
     }
@@ -146,35 +162,49 @@ double add_moments(const Loading& loading, const Chart& chart, VectorXd& g) {
 
 }  // namespace
 
-Potential potential(const Model& model, const Loading& loading, const Chart& chart) {
+Potential potential(const Model& model, const Prescribed& prescribed, const Chart& chart) {
     Potential V{0, VectorXd::Zero(coordinates(model))};
-    for_each_element(model, loading, chart, [&]<int N>(const Element<N>& e) {
-        const Matrix<double, N, 1> K_delta = e.K * e.delta;
-        V.change += e.delta.dot(e.sigma_c + 0.5 * K_delta);
-        add_gradient<N>(e, e.sigma_c + K_delta, V.gradient);
+    for_each_element(model, prescribed, chart, [&]<int N>(int, const Element<N>& e) {
+        V.change += e.change;
+        add_gradient<N>(e, e.stress, V.gradient);
     });
-    V.change += add_forces(loading, chart, V.gradient);
+    V.change += add_forces(prescribed, chart, V.gradient);
     to_chart(chart, V.gradient);
-    V.change += add_moments(loading, chart, V.gradient);
+    V.change += add_moments(prescribed, chart, V.gradient);
     return V;
 }
 
-VectorXd gradient_at_centre_stress(const Model& model, const Loading& loading, const Chart& chart) {
+VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
+                       const Chart& chart) {
     VectorXd g = VectorXd::Zero(coordinates(model));
-    for_each_element(model, loading, chart,
-                     [&]<int N>(const Element<N>& e) { add_gradient<N>(e, e.sigma_c, g); });
-    add_forces(loading, chart, g);
+    for_each_element(model, prescribed, chart, [&]<int N>(int k, const Element<N>& e) {
+        Matrix<double, N, 1> stress_rate = rate.preload.col(k).head<N>();
+        if constexpr (N == 1) stress_rate -= e.stiffness * rate.free_length[k];
+        add_gradient<N>(e, stress_rate, g);
+    });
+    add_forces(rate, chart, g);
     to_chart(chart, g);
-    add_moments(loading, chart, g);
+    add_moments(rate, chart, g);
     return g;
 }
 
-MatrixXd stiffness(const Model& model, const Chart& chart) {
+VectorXd gradient_at_centre_stress(const Model& model, const Prescribed& prescribed, const Chart& chart) {
+    VectorXd g = VectorXd::Zero(coordinates(model));
+    for_each_element(model, prescribed, chart,
+                     [&]<int N>(int, const Element<N>& e) { add_gradient<N>(e, e.stress_c, g); });
+    add_forces(prescribed, chart, g);
+    to_chart(chart, g);
+    add_moments(prescribed, chart, g);
+    return g;
+}
+
+MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart) {
     MatrixXd H = MatrixXd::Zero(coordinates(model), coordinates(model));
-    for_each_element(model, {}, chart, [&]<int N>(const Element<N>& e) {
+    for_each_element(model, prescribed, chart, [&]<int N>(int, const Element<N>& e) {
         const auto add_block = [&](BodyId a, const Matrix<double, N, 6>& E_a, BodyId b,
                                    const Matrix<double, N, 6>& E_b) {
-            if (a != ground && b != ground) H.block<6, 6>(6 * a, 6 * b) += E_a.transpose() * e.K * E_b;
+            if (a != ground && b != ground)
+                H.block<6, 6>(6 * a, 6 * b) += E_a.transpose() * e.stiffness * E_b;
         };
         add_block(e.i, e.E_i, e.i, e.E_i);
         add_block(e.i, e.E_i, e.j, e.E_j);
@@ -184,34 +214,53 @@ MatrixXd stiffness(const Model& model, const Chart& chart) {
     return H;
 }
 
-double stress_size(const Model& model, const Chart& chart, double length) {
-    double size = 0;
-    for_each_element(model, {}, chart, [&]<int N>(const Element<N>& e) {
-        if constexpr (N == 1)
-            size += std::abs(e.sigma_c[0]);
-        else
-            size += e.sigma_c.template head<3>().norm() + e.sigma_c.template tail<3>().norm() / length;
+Matrix<double, 6, Eigen::Dynamic> stresses(const Model& model, const Prescribed& prescribed,
+                                           const Chart& chart) {
+    Matrix<double, 6, Eigen::Dynamic> sigma =
+        Matrix<double, 6, Eigen::Dynamic>::Zero(6, static_cast<Eigen::Index>(model.elastics.size()));
+    for_each_element(model, prescribed, chart, [&]<int N>(int k, const Element<N>& e) {
+        sigma.col(k).template head<N>() = e.stress_c;
     });
-    return size;
+    return sigma;
 }
 
-Matrix3Xd bushing_rotations(const Model& model, const std::vector<Pose>& poses) {
+double stress_size(const Model& model, const Prescribed& prescribed, const Chart& chart, double length) {
+    const auto sigma = stresses(model, prescribed, chart);
+    return sigma.topRows<3>().colwise().norm().sum() + sigma.bottomRows<3>().colwise().norm().sum() / length;
+}
+
+std::vector<int> turning_bushings(const Model& model, const Course& course) {
+    std::vector<int> which;
+    for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
+        const auto driven = [&](const Prescribed& p) { return !p.preload.col(k).tail<3>().isZero(0); };
+        const bool turns = std::visit(overloaded{[](const AxialSpring&) { return false; },
+                                                 [&](const Bushing& b) {
+                                                     return resists_rotation(b.law) ||
+                                                            !b.preload.tail<3>().isZero(0) ||
+                                                            driven(course.start) || driven(course.rate);
+                                                 }},
+                                      model.elastics[static_cast<std::size_t>(k)].kind);
+        if (turns) which.push_back(k);
+    }
+    return which;
+}
+
+Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
     const auto axes = [&](const Marker& m) {
         return m.body == ground ? m.A_local : poses[static_cast<std::size_t>(m.body)].p * m.A_local;
     };
-    Matrix3Xd theta(3, model.elastics.size());
+    Matrix3Xd theta(3, static_cast<Eigen::Index>(bushings.size()));
     int column = 0;
-    for (const auto& elastic : model.elastics) {
-        const auto* b = std::get_if<Bushing>(&elastic.kind);
-        if (b && !(b->K.bottomRows<3>().isZero(0) && b->preload.tail<3>().isZero(0)))
-            theta.col(column++) = rotation_vector(axes(b->i).conjugate() * axes(b->j));
+    for (const int k : bushings) {
+        const auto& b = std::get<Bushing>(model.elastics[static_cast<std::size_t>(k)].kind);
+        theta.col(column++) = rotation_vector(axes(b.i).conjugate() * axes(b.j));
     }
-    return theta.leftCols(column);
+    return theta;
 }
 
-bool within_half_turn(const Model& model, const std::vector<Pose>& poses) {
-    const Matrix3Xd theta = bushing_rotations(model, poses);
-    return theta.cols() == 0 || theta.colwise().norm().maxCoeff() <= std::numbers::pi - 1e-3;
+bool within_half_turn(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
+    const Matrix3Xd theta = rotations(model, bushings, poses);
+    return theta.cols() == 0 || theta.colwise().norm().maxCoeff() <= std::numbers::pi - closest_to_half_turn;
 }
 
 }  // namespace elastocheck::reference::energy

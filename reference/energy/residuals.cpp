@@ -1,7 +1,9 @@
 // Any state judged by this leg's conditions.
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
+#include "models/branch.hpp"
 #include "reference/energy/balance.hpp"
 #include "reference/energy/solve.hpp"
 
@@ -11,33 +13,40 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double backwards = 2;  // between two opposite unit vectors
 
 double max_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b); }
 
 }  // namespace
 
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
+                                    "', or it goes two ways");
     if (state.poses.size() != model.bodies.size()) return {unknown, unknown, unknown, unknown};
     const Chart chart = chart_about(state.poses);
-    const Loading loading = loading_at(model, branch, state.load);
-    const double loads[] = {state.load};
-    const Scales scales = scales_of(model, branch, loads);
-    const ConstraintValues values = constraints(model, chart);
-    const Balance at = balance(model, scales, potential(model, loading, chart).gradient, values);
+    const Course course = course_of(model, branch);
+    const Prescribed prescribed = at(course, state.load);
+    const double ends[] = {branch.to, state.load};
+    const Scales scales = scales_of(model, course, ends);
+    const ConstraintValues values = constraints(model, prescribed, chart);
+    const Balance at = balance(model, scales, potential(model, prescribed, chart).gradient, values);
 
     Residuals worst;
     int row = 0;
-    for (const auto& constraint : model.constraints) {
-        const double error = largest(values.Phi.segment(row, rows(constraint.kind)));
-        double& kind =
-            std::holds_alternative<PerpendicularDirections>(constraint.kind) ? worst.direction : worst.length;
-        kind = max_or_nan(kind, error);
-        row += rows(constraint.kind);
+    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+        const auto& kind = model.constraints[k].kind;
+        double error = largest(values.Phi.segment(row, rows(kind)));
+        if (points_backwards(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart)) error = backwards;
+        double& of_kind = is_cosine(kind) ? worst.direction : worst.length;
+        of_kind = max_or_nan(of_kind, error);
+        row += rows(kind);
     }
     // A pose's p is a direction too: it must be a unit quaternion.
     for (const auto& pose : state.poses)
         worst.direction = max_or_nan(worst.direction, std::abs(pose.p.norm() - 1));
-    if (!within_half_turn(model, state.poses)) worst.force = worst.moment = unknown;
+    if (!within_half_turn(model, turning_bushings(model, course), state.poses))
+        worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {
         const VectorXd left = at.left.segment<6>(6 * static_cast<int>(b));
         worst.force = max_or_nan(worst.force, scales.force * largest(left.head<3>()));

@@ -1,20 +1,27 @@
 #include "reference/energy/scales.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "reference/energy/constraints.hpp"
 #include "reference/energy/overloaded.hpp"
 #include "reference/energy/potential.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+constexpr double coincident = 1e-9;      // [m] points closer than this give no length
+constexpr double linear_reach = 0.5;     // of L or 1 rad: how far stiffness at the design pose is believed
+constexpr double rank_threshold = 1e-9;  // of the pivots of scaled matrices
+
 // Every point at which something is attached, in ground axes at the design pose.
-std::vector<Vector3d> attachment_points(const Model& model, const Branch& branch, const Chart& design) {
+std::vector<Vector3d> attachment_points(const Model& model, const Course& course, const Chart& design) {
     std::vector<Vector3d> points;
     const auto add_point = [&](const auto& p) { points.push_back(motion(design[p.body], p.s_local).p); };
     const auto add_pair = [&](const auto& kind) {
@@ -22,23 +29,49 @@ std::vector<Vector3d> attachment_points(const Model& model, const Branch& branch
         add_point(kind.j);
     };
     for (const auto& constraint : model.constraints)
-        std::visit(overloaded{[](const PerpendicularDirections&) {}, add_pair}, constraint.kind);
+        std::visit(
+            overloaded{[](const PerpendicularDirections&) {}, [](const DirectionAtAngle&) {}, add_pair},
+            constraint.kind);
     for (const auto& elastic : model.elastics) std::visit(add_pair, elastic.kind);
-    for (const auto* loads : {&model.static_loads, &branch.loads}) {
-        for (const auto& load : *loads)
-            if (const auto* force = std::get_if<DeadForce>(&load.kind)) add_point(force->at);
-    }
+    for (const auto* prescribed : {&course.start, &course.rate})
+        for (const auto& force : prescribed->forces) add_point(force.at);
     return points;
 }
 
-double size_of(const std::vector<Load>& loads, double length) {
+double loads_size(const Prescribed& prescribed, double length) {
     double size = 0;
-    for (const auto& load : loads) {
-        size += std::visit(overloaded{[](const DeadForce& force) { return force.f.norm(); },
-                                      [&](const DeadMoment& moment) { return moment.m.norm() / length; }},
-                           load.kind);
-    }
+    for (const auto& force : prescribed.forces) size += force.f.norm();
+    for (const auto& moment : prescribed.moments) size += moment.m.norm() / length;
     return size;
+}
+
+// The work of leading the joints from the design pose to Φ = 0, divided by the way: with J dξ = -Φ, least
+// where the elements are free to give way along the null space Z of J,
+//
+//   dξ = p + Z y,   p = -J⁺ Φ,   y = -(Zᵀ K Z)⁺ Zᵀ K p,   F = dξᵀ K dξ / (L |dξ|).
+double drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,
+                  const Scales& scales) {
+    const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
+    const ConstraintValues values = constraints(model, prescribed, design);
+    const MatrixXd J = D.asDiagonal() * values.Phi_q * S.asDiagonal();
+    const MatrixXd K = S.asDiagonal() * stiffness(model, prescribed, design) * S.asDiagonal();
+    if (J.rows() == 0 || K.rows() == 0 || !J.allFinite() || !K.allFinite() || !values.Phi.allFinite())
+        return 0;
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
+    qr.setThreshold(rank_threshold);
+    qr.compute(J.transpose());
+    const VectorXd p = qr.pseudoInverse().transpose() * -D.cwiseProduct(values.Phi);
+    const MatrixXd Q = qr.householderQ(), Z = Q.rightCols(Q.cols() - qr.rank());
+    VectorXd dxi = p;
+    if (Z.cols() > 0) {
+        Eigen::CompleteOrthogonalDecomposition<MatrixXd> compliance;
+        compliance.setThreshold(rank_threshold);
+        compliance.compute(Z.transpose() * K * Z);
+        dxi -= Z * compliance.solve(Z.transpose() * K * p);
+    }
+    const double way = dxi.norm();
+    if (!(way > scales.roundoff)) return 0;
+    return dxi.dot(K * dxi) / (scales.length * way) * std::min(1.0, linear_reach / way);
 }
 
 }  // namespace
@@ -53,15 +86,15 @@ VectorXd Scales::rows(const Model& model) const {
     VectorXd D = VectorXd::Constant(constraint_rows(model), 1 / length);
     int row = 0;
     for (const auto& constraint : model.constraints) {
-        if (std::holds_alternative<PerpendicularDirections>(constraint.kind)) D[row] = 1;
+        if (is_cosine(constraint.kind)) D[row] = 1;
         row += elastocheck::rows(constraint.kind);
     }
     return D;
 }
 
-Scales scales_of(const Model& model, const Branch& branch, std::span<const double> loads) {
+Scales scales_of(const Model& model, const Course& course, std::span<const double> values) {
     const Chart design = chart_about(design_poses(model));
-    const auto points = attachment_points(model, branch, design);
+    const auto points = attachment_points(model, course, design);
     double extent = 0, distance = 0;
     for (const auto& p : points) {
         distance = std::max(distance, p.norm());
@@ -70,14 +103,20 @@ Scales scales_of(const Model& model, const Branch& branch, std::span<const doubl
     for (const auto& body : model.bodies) distance = std::max(distance, body.design.r.norm());
 
     Scales scales;
-    if (extent > 1e-9) scales.length = extent;
+    if (extent > coincident) scales.length = extent;
     scales.roundoff = std::numeric_limits<double>::epsilon() * (1 + distance / scales.length);
 
-    double a = std::abs(branch.to);
-    for (const double load : loads)
-        if (std::isfinite(load)) a = std::max(a, std::abs(load));
-    const double force = size_of(model.static_loads, scales.length) +
-                         a * size_of(branch.loads, scales.length) + stress_size(model, design, scales.length);
+    double a = 0;
+    for (const double value : values)
+        if (std::isfinite(value)) a = std::max(a, std::abs(value));
+    double force = loads_size(course.start, scales.length) + a * loads_size(course.rate, scales.length);
+    double elastic = 0;
+    for (const double end : {0.0, a, -a}) {
+        const Prescribed prescribed = at(course, end);
+        elastic = std::max(elastic, stress_size(model, prescribed, design, scales.length) +
+                                        drive_size(model, prescribed, design, scales));
+    }
+    force += elastic;
     if (force > 0 && std::isfinite(force)) scales.force = force;
     return scales;
 }

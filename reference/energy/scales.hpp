@@ -4,12 +4,14 @@
 #include <span>
 
 #include "models/model.hpp"
+#include "reference/energy/prescribed.hpp"
 
 namespace elastocheck::reference::energy {
 
 // Length: the largest distance between any two attachment points at the design pose (1 m when they coincide).
-// Force: all loads at their largest, and what the elements hold at the design pose (1 N when there are none).
-// Rotations are of order one as they are. An energy is force · length.
+// Force: what acts at the ends of the branch (1 N when nothing does): its loads, what the elements hold at
+// the design pose, and the force that it takes, to first order, to lead the joints from where they are drawn
+// to where they are held and driven. Rotations are of order one as they are. An energy is force · length.
 struct Scales {
     double length = 1;    // L [m]
     double force = 1;     // F [N]
@@ -20,6 +22,7 @@ struct Scales {
     Eigen::VectorXd rows(const Model& model) const;  // D [m]: D Φ of order one
 };
 
-Scales scales_of(const Model& model, const Branch& branch, std::span<const double> loads);
+// `values` of the parameter: where the branch is asked for.
+Scales scales_of(const Model& model, const Course& course, std::span<const double> values);
 
 }  // namespace elastocheck::reference::energy

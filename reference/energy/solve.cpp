@@ -2,102 +2,104 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
+#include <stdexcept>
 
+#include "models/branch.hpp"
 #include "reference/energy/branch.hpp"
 #include "reference/energy/reactions.hpp"
+#include "reference/energy/settle.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// The joint that cannot be closed: Gauss-Newton on |Φ|² from the design pose comes to rest with Φ ≠ 0.
-std::optional<std::string> contradicting_joint(const Path& path) {
-    const VectorXd S = path.scales.coordinates(coordinates(path.model)), D = path.scales.rows(path.model);
-    Chart chart = chart_about(design_poses(path.model));
-    double before = INFINITY;
-    for (int i = 0; i < 50; ++i) {
-        const ConstraintValues values = constraints(path.model, chart);
-        const VectorXd Phi = D.cwiseProduct(values.Phi);
-        const MatrixXd J = D.asDiagonal() * values.Phi_q * S.asDiagonal();
-        const double error = largest(Phi);
-        if (!std::isfinite(error) || error <= path.options.tolerance) return {};
-        if (Phi.norm() > 0.999 * before) {
-            int row = 0, worst = 0;
-            Phi.cwiseAbs().maxCoeff(&worst);
-            for (const auto& constraint : path.model.constraints) {
-                row += rows(constraint.kind);
-                if (row > worst) return path.model.joints[static_cast<std::size_t>(constraint.joint)].name;
-            }
-        }
-        before = Phi.norm();
-        Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
-        qr.setThreshold(1e-9);
-        qr.compute(J);
-        const VectorXd x = S.cwiseProduct(qr.solve(-Phi));
-        move_to(chart, x);
-        chart = chart_about(poses(chart));
-    }
-    return {};
-}
-
-// The equilibrium at load factor 0. The design pose need not be one: then preloads and static loads are
-// switched on along a branch of their own, from τ = 1 to 0.
-std::optional<Failure> settle(const Path& path, State& state) {
-    state = state_at(path, 0, design_poses(path.model));
-    if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
-        return Failure{Outcome::not_finite, "the design pose has no finite potential"};
-    if (!within_half_turn(path.model, state.poses)) return Failure{Outcome::branch_lost, turned_over};
-    if (is_stationary(path, state) && !state.modes.unstable()) return {};
-
-    Path settling = path;
-    settling.loading = [&](double tau) { return settling_at(path.model, tau); };
-    state = state_at(settling, 1, state.poses);
-    if (!is_stationary(settling, state)) {
-        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes.idle_motions());
-        if (closed.failure) {
-            if (const auto joint = contradicting_joint(path))
-                return Failure{Outcome::inconsistent_constraints,
-                               fmt::format("joint '{}' cannot be closed", *joint)};
-            return closed.failure;
-        }
-        state = closed.state;
-    }
-    settling.first = state.modes;
-    return advance(settling, state, 0);
-}
 
 Equilibrium equilibrium(const Path& path, const State& state) {
     const Chart chart = chart_about(state.poses);
-    const ConstraintValues values = constraints(path.model, chart);
+    const ConstraintValues values = constraints(path.model, at(path.course, state.a), chart);
     const VectorXd lambda = path.scales.energy() * path.scales.rows(path.model).cwiseProduct(state.at.lambda);
     return {state.a, state.poses, reactions(path.model, chart, values, lambda), values.Phi.norm()};
 }
 
+const char* symbol(ParameterUnit unit) {
+    switch (unit) {
+        case ParameterUnit::newton: return " N";
+        case ParameterUnit::newton_metre: return " N·m";
+        case ParameterUnit::metre: return " m";
+        case ParameterUnit::radian: return " rad";
+        case ParameterUnit::none: return "";
+    }
+    return "";
+}
+
+// A link whose length would not be positive.
+std::optional<Failure> impossible_length(const Path& path, double a) {
+    const Prescribed prescribed = at(path.course, a);
+    for (std::size_t k = 0; k < path.model.constraints.size(); ++k) {
+        const auto& constraint = path.model.constraints[k];
+        const auto* distance = std::get_if<DistanceBetween>(&constraint.kind);
+        if (!distance) continue;
+        const double length = distance->length + prescribed.offset[static_cast<Eigen::Index>(k)];
+        if (!(length > 0))
+            return Failure{
+                Outcome::inconsistent_constraints,
+                fmt::format("joint '{}' would have the length {:.6g} m",
+                            path.model.joints[static_cast<std::size_t>(constraint.joint)].name, length)};
+    }
+    return {};
+}
+
+// Why the branch ends before a: if a joint cannot be closed there, that is the reason.
+Failure reason(const Path& path, const State& last, double a, const Failure& failure) {
+    const bool may_open = !path.course.rate.offset.isZero(0) && (failure.outcome == Outcome::branch_lost ||
+                                                                 failure.outcome == Outcome::iteration_limit);
+    if (may_open)
+        if (const auto joint = contradicting_joint(path, a, last.poses))
+            return {Outcome::inconsistent_constraints, fmt::format("joint '{}' cannot be closed", *joint)};
+    return failure;
+}
+
 }  // namespace
 
-EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> loads,
+EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
                       const Options& options) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
+                                    "', or it goes two ways");
     EquilibriumPath result;
-    const auto fail = [&](const Failure& failure, double load, const std::string& reached) {
+    const auto fail = [&](const Failure& failure, const std::string& where, const std::string& reached) {
         result.outcome = failure.outcome;
-        result.detail =
-            fmt::format("branch '{}', load factor {:.10g}: {}{}", branch.name, load, failure.what, reached);
+        result.detail = fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);
         return result;
     };
-    Path path{model, options, scales_of(model, branch, loads),
-              [&](double a) { return loading_at(model, branch, a); }, result.counts};
-    State state;
-    if (const auto failure = settle(path, state)) return fail(*failure, 0, ", before any load of the branch");
-    path.first = state.modes;
-    for (const double load : loads) {
-        if (!std::isfinite(load)) return fail({Outcome::not_finite, "the load is not finite"}, load, "");
-        if (const auto failure = advance(path, state, load))
-            return fail(*failure, load, fmt::format("; the last equilibrium found is at {:.10g}", state.a));
-        result.points.push_back(equilibrium(path, state));
+    const auto in_units = [&](double a) { return fmt::format("{:.10g}{}", a, symbol(branch.unit)); };
+
+    std::vector<double> ends(values.begin(), values.end());
+    ends.push_back(branch.to);
+    const Course course = course_of(model, branch);
+    double span = 0;
+    for (const double a : ends)
+        if (std::isfinite(a)) span = std::max(span, std::abs(a));
+    Path path{model, options,      scales_of(model, course, ends), course, turning_bushings(model, course),
+              span,  result.counts};
+
+    const std::string settling = "settling from the design pose";
+    if (const auto failure = impossible_length(path, 0)) return fail(*failure, settling, "");
+    State settled;
+    if (const auto failure = settle(path, settled)) return fail(*failure, settling, "");
+    path.first = settled.modes;
+    Walk walk = walk_from(path, settled);
+    for (const double a : values) {
+        if (!std::isfinite(a))
+            return fail({Outcome::not_finite, "the value is not finite"}, "at " + in_units(a), "");
+        const std::string reached = "; the last equilibrium found is at ";
+        if (const auto failure = impossible_length(path, a))
+            return fail(*failure, "at " + in_units(a), reached + in_units(walk.state.a));
+        if (const auto failure = advance(path, walk, a))
+            return fail(reason(path, walk.state, a, *failure), "at " + in_units(a),
+                        reached + in_units(walk.state.a));
+        result.points.push_back(equilibrium(path, walk.state));
     }
     return result;
 }

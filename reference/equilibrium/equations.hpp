@@ -8,6 +8,8 @@
 #pragma once
 
 #include "models/model.hpp"
+#include "reference/equilibrium/laws.hpp"
+#include "reference/equilibrium/overloaded.hpp"
 #include "reference/equilibrium/rotations.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -38,29 +40,24 @@ Vec3<T> direction(const Frame<T>& body, const Eigen::Vector3d& u_local) {
     return turned(body.p, u_local);
 }
 
-// ---- Elastic elements
+// ---- Elastic elements: a geometry each, whatever the law
 
-// A spring pulls its ends together with N = k (ℓ - ℓ₀) along e = (p_j - p_i) / ℓ.
+// A spring pulls its ends together with N = u'(ℓ - ℓ₀) along e = (p_j - p_i) / ℓ.
 template <class T>
-Interaction<T> interaction(const AxialSpring& spring, const Frame<T>& i, const Frame<T>& j) {
+Interaction<T> interaction(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
+                           const Frame<T>& j) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, spring.i.s_local), p_j = position(j, spring.j.s_local);
     const Vec3<T> along = p_j - p_i;
     const T length = sqrt(dot(along, along));
-    const T pull = spring.k * (length - spring.free_length) / length;
+    const T pull = gradient(spring.law, T(length - free_length)) / length;
     Interaction<T> on_i;
     on_i.force = {pull * along[0], pull * along[1], pull * along[2]};
     on_i.at = p_i;
     return on_i;
 }
 
-// Whether a bushing cares how its markers are turned against each other; if not, half a turn is no obstacle.
-inline bool resists_rotation(const Bushing& bushing) {
-    return !(bushing.K.bottomRows<3>().isZero(0) && bushing.K.topRightCorner<3, 3>().isZero(0) &&
-             bushing.preload.tail<3>().isZero(0));
-}
-
-// (f, g) = K e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, in the axes of
+// (f, g) = ∂u/∂e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, in the axes of
 // marker i. Let the bodies move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_i f.
 //
 //   δd = A_iᵀ (δp_j - δp_i - δπ_i × D)   so   f · δd = F · (δp_j - δp_i) - δπ_i · (D × F)
@@ -69,26 +66,22 @@ inline bool resists_rotation(const Bushing& bushing) {
 //
 // (A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) A_iᵀ A_j, whence the left Jacobian.) The body feels -∂U: on j the
 // force -F at p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the
-// moment A_i m.
+// moment A_i m. Where neither law nor preload care how the markers are turned against each other (`rotational`
+// is false) they may turn any number of times, and the logarithm, which ends at half a turn, is not asked.
 template <class T>
-Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Frame<T>& j) {
+Interaction<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational,
+                           const Frame<T>& i, const Frame<T>& j) {
     const Vec3<T> p_i = position(i, bushing.i.s_local), p_j = position(j, bushing.j.s_local);
     const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local),
                                axes_j = product(j.p, bushing.j.A_local);
     const Eigen::Quaternion<T> to_i = conjugate(axes_i);
 
-    Eigen::Matrix<T, 6, 1> e;
     Logarithm<T> log{Vec3<T>::Constant(T(0.0)), T(0.0)};
-    const bool rotational = resists_rotation(bushing);
     if (rotational) log = logarithm(product(to_i, axes_j));
+    Vec6<T> e;
     e << turned(to_i, Vec3<T>(p_j - p_i)), log.theta;
 
-    Eigen::Matrix<T, 6, 1> fg;
-    for (int row = 0; row < 6; ++row) {
-        fg[row] = T(bushing.preload[row]);
-        for (int col = 0; col < 6; ++col)
-            if (bushing.K(row, col) != 0) fg[row] += bushing.K(row, col) * e[col];
-    }
+    const Vec6<T> fg = gradient(bushing.law, e) + preload;
     Interaction<T> on_i;
     on_i.force = turned(axes_i, Vec3<T>(fg.template head<3>()));
     on_i.at = p_j;
@@ -106,7 +99,7 @@ Interaction<T> interaction(const Bushing& bushing, const Frame<T>& i, const Fram
 
 // The rows of a constraint, and the interaction its reactions R [N, or N·m for directions] make. Without
 // friction a joint pushes only where it holds: along the normal, along the bar, about the common
-// perpendicular of the two directions.
+// perpendicular of the two directions. `value` is what a driver may move: the offset, length or angle.
 template <class T>
 struct Holding {
     Vec3<T> Phi;  // the first rows(kind) count; [m] or [-]
@@ -114,7 +107,7 @@ struct Holding {
 };
 
 template <class T>
-Holding<T> holding(const CoincidentPoints& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const CoincidentPoints& c, const T&, const Frame<T>& i, const Frame<T>& j, const T* R) {
     const Vec3<T> p_i = position(i, c.i.s_local);
     Holding<T> h;
     h.Phi = p_i - position(j, c.j.s_local);
@@ -125,17 +118,17 @@ Holding<T> holding(const CoincidentPoints& c, const Frame<T>& i, const Frame<T>&
 
 // The normal belongs to body j, the point that is held to body i: the contact is at that point.
 template <class T>
-Holding<T> holding(const PointInPlane& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const PointInPlane& c, const T& value, const Frame<T>& i, const Frame<T>& j, const T* R) {
     const Vec3<T> p_i = position(i, c.i.s_local), n = direction(j, c.normal_j.u_local);
     Holding<T> h;
-    h.Phi[0] = dot(n, Vec3<T>(p_i - position(j, c.j.s_local)));
+    h.Phi[0] = dot(n, Vec3<T>(p_i - position(j, c.j.s_local))) - value;
     h.reaction.force = {n[0] * R[0], n[1] * R[0], n[2] * R[0]};
     h.reaction.at = p_i;
     return h;
 }
 
 template <class T>
-Holding<T> holding(const PerpendicularDirections& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const PerpendicularDirections& c, const T&, const Frame<T>& i, const Frame<T>& j, const T* R) {
     const Vec3<T> u_i = direction(i, c.i.u_local), u_j = direction(j, c.j.u_local), about = cross(u_i, u_j);
     Holding<T> h;
     h.Phi[0] = dot(u_i, u_j);
@@ -146,19 +139,45 @@ Holding<T> holding(const PerpendicularDirections& c, const Frame<T>& i, const Fr
 
 // A bar that pushes its ends apart with R.
 template <class T>
-Holding<T> holding(const DistanceBetween& c, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j, const T* R) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, c.i.s_local), bar = p_i - position(j, c.j.s_local);
     const T length = sqrt(dot(bar, bar)), push = R[0] / length;
     Holding<T> h;
-    h.Phi[0] = length - c.length;
+    h.Phi[0] = length - value;
     h.reaction.force = {bar[0] * push, bar[1] * push, bar[2] * push};
     h.reaction.at = p_i;
     return h;
 }
 
+// u_i across the direction v_j = cos α y_j - sin α x_j, which turns with α. Then u_i = cos α x_j + sin α y_j, and
+// u_i × v_j is the axis: R is the moment about x_j × y_j on body i.
+template <class T>
+Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j,
+                   const T* R) {
+    using std::cos;
+    using std::sin;
+    const Vec3<T> u_i = direction(i, c.i.u_local), x_j = direction(j, c.j.u_local),
+                  y_j = direction(j, c.y_j.u_local);
+    const T cosine = cos(value), sine = sin(value);
+    Vec3<T> v_j;
+    for (int k = 0; k < 3; ++k) v_j[k] = cosine * y_j[k] - sine * x_j[k];
+    const Vec3<T> about = cross(u_i, v_j);
+    Holding<T> h;
+    h.Phi[0] = dot(u_i, v_j);
+    h.reaction.moment = {about[0] * R[0], about[1] * R[0], about[2] * R[0]};
+    h.reaction.at = i.r;
+    return h;
+}
+
+// Whether the rows are cosines of directions [-] and their reactions moments, or lengths and forces.
 inline bool is_direction(const ConstraintKind& kind) {
-    return std::holds_alternative<PerpendicularDirections>(kind);
+    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
+                                 [](const PointInPlane&) { return false; },
+                                 [](const PerpendicularDirections&) { return true; },
+                                 [](const DistanceBetween&) { return false; },
+                                 [](const DirectionAtAngle&) { return true; }},
+                      kind);
 }
 
 // ---- Loads
@@ -192,8 +211,9 @@ Pair bodies_of(const Kind& kind) {
 }
 
 inline BodyId body_of(const LoadKind& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load)) return force->at.body;
-    return std::get<DeadMoment>(load).body;
+    return std::visit(
+        overloaded{[](const DeadForce& l) { return l.at.body; }, [](const DeadMoment& l) { return l.body; }},
+        load);
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -24,13 +24,15 @@ std::string body_with_largest(const System& system, const VectorXd& n) {
     return name;
 }
 
-std::string joints_in(const System& system, const VectorXd& n) {
+// The joints that have a part in what the constraints make of each other, one entry a row [m].
+std::string joints_in(const System& system, const VectorXd& by_row) {
+    constexpr double no_part = 1e-6;  // below round-off's share
     std::string names;
-    int row = 6 * system.bodies, last = -1;
+    int row = 0, last = -1;
     for (const auto& constraint : system.model->constraints) {
-        const double part = n.segment(row, rows(constraint.kind)).norm();
+        const double part = by_row.segment(row, rows(constraint.kind)).norm();
         row += rows(constraint.kind);
-        if (!(part > 1e-6 * n.norm()) || constraint.joint == last) continue;
+        if (!(part > no_part * by_row.norm()) || constraint.joint == last) continue;
         last = constraint.joint;
         names +=
             (names.empty() ? "'" : ", '") + system.model->joints[static_cast<std::size_t>(last)].name + "'";
@@ -38,31 +40,36 @@ std::string joints_in(const System& system, const VectorXd& n) {
     return names;
 }
 
-// Whether the constraints alone can be met near x: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ.
-bool constraints_can_be_met(Walk& walk, VectorXd x) {
+// What the constraints alone leave open near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ. Where they
+// cannot be met it ends at Φ_qᵀ Φ = 0, so that Φ names those that stand against each other.
+VectorXd gap(Walk& walk, double a, VectorXd x) {
+    constexpr int iterations = 30;  // it is quadratic where they can be met, and need not be exact where not
     const System& system = walk.system;
     const int m = system.constraint_rows;
-    const auto Phi = [&] { return VectorXd(residual(system, {0, 0}, x).tail(m)); };
-    for (int iteration = 0; iteration < 30; ++iteration) {
-        const MatrixXd Phi_q = jacobian(system, 0, x, walk.counts).bottomLeftCorner(m, 6 * system.bodies);
+    const auto Phi = [&] { return VectorXd(residual(system, {a, 0}, x).tail(m)); };
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        const MatrixXd Phi_q = derivatives(system, a, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
         VectorXd dx = VectorXd::Zero(system.equations());
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
         decomposition.setThreshold(1e-10);
         dx.head(6 * system.bodies) = -decomposition.compute(Phi_q).solve(Phi());
-        if (!dx.allFinite()) return false;
+        if (!dx.allFinite()) break;
         x = moved(system, x, dx);
         ++walk.counts.factorisations;
     }
-    const double error = largest(Phi());
-    return std::isfinite(error) && error <= 1e-9;
+    return Phi();
 }
+
+// Of the scaled Φ: less is met.
+constexpr double closed = 1e-9;
 
 }  // namespace
 
 Failure unanswerable(const System& system, const VectorXd& left) {
     if (left.tail(system.constraint_rows).norm() > left.head(6 * system.bodies).norm())
         return {Outcome::inconsistent_constraints,
-                fmt::format("the joints {} contradict each other", joints_in(system, left))};
+                fmt::format("the joints {} contradict each other",
+                            joints_in(system, left.tail(system.constraint_rows)))};
     return {Outcome::loaded_idle_mode, fmt::format("body '{}' is pushed along a motion that nothing resists",
                                                    body_with_largest(system, left))};
 }
@@ -70,16 +77,25 @@ Failure unanswerable(const System& system, const VectorXd& left) {
 Failure failure(Walk& walk, double t, const Trial& trial) {
     const System& system = walk.system;
     const Attempt& attempt = trial.attempt;
+    const auto at = [&](double a) { return parameter(*system.branch, a); };
+    const bool settling = walk.stage == Stage::settling;
     const std::string where =
-        walk.stage == Stage::settling
-            ? fmt::format("while settling at load factor 0, {:.0f} % of the way", 100 * walk.here.t)
-            : fmt::format("between load factors {:.10g} and {:.10g}", walk.here.t, t);
+        settling ? fmt::format("while settling at {}, {:.0f} % of the way", at(0), 100 * walk.here.t)
+                 : fmt::format("between {} and {}", at(walk.here.t), at(t));
 
     if (trial.verdict == Verdict::turned_over)
         return {Outcome::singular,
                 "the system is singular and the branch may divide or lose its stability " + where};
-    if (walk.stage == Stage::settling && !constraints_can_be_met(walk, walk.here.x))
-        return {Outcome::inconsistent_constraints, "no pose near the design pose satisfies all joints"};
+    if (trial.verdict == Verdict::uncertain)
+        return {Outcome::singular, "the system is too nearly singular to say that the branch goes on " + where};
+    const double target = settling ? 0 : t;
+    const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
+    if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
+        return {Outcome::inconsistent_constraints,
+                settling ? fmt::format("no pose near the design pose satisfies all joints at {}: {} cannot be closed",
+                                       at(0), joints_in(system, Phi))
+                         : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
+                                       at(walk.here.t), joints_in(system, Phi))};
     if (const std::string bushing = bushing_at_half_turn(system, walk.here.x); !bushing.empty())
         return {Outcome::branch_lost,
                 fmt::format("bushing '{}' is turned by half a turn, where its rotation has no value, {}",
@@ -93,11 +109,13 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
             return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
         const VectorXd left_over = residual(system, loading_at(walk.stage, t), attempt.x);
         const MatrixXd& U = walk.here.linearised.modes.left;
-        if (U.cols() > 0 && (U.transpose() * left_over).norm() > 0.9 * left_over.norm())
+        constexpr double mostly = 0.9;
+        if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
             return unanswerable(system, U * (U.transpose() * left_over));
-        // At a limit point a good part of the load step finds no answer; far below, arithmetic is at its end.
+        // At a limit point a good part of the step finds no answer; far below, arithmetic is at its end.
+        constexpr double good_part = 1e-6, end_of_arithmetic = 1e-13;
         const double step = std::abs(t - walk.here.t) * largest(walk.here.E_rate);
-        if (attempt.out_of_time || attempt.residual <= std::max(1e-6 * step, 1e-13))
+        if (attempt.out_of_time || attempt.residual <= std::max(good_part * step, end_of_arithmetic))
             return {Outcome::iteration_limit,
                     fmt::format("the scaled residual is {:.1e} after the last iteration {}", attempt.residual,
                                 where)};

@@ -10,6 +10,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Of the equilibrated matrix: singular values below this, over the largest, are null. Healthy models stay above 1e-6.
+constexpr double null_threshold = 1e-11;
+
+// Sweeps of the equilibration; each halves the logarithm of what the sizes are apart.
+constexpr int equilibration_sweeps = 10;
+
+// What a tracked mode may have as stiffness, over the largest entry of J, and still be called idle.
+constexpr double idle_stiffness = 1e-10;
+
 // An orthonormal basis of the columns, oriented as they are (R with a positive diagonal).
 MatrixXd orthonormal(const MatrixXd& columns) {
     if (columns.cols() == 0) return columns;
@@ -26,7 +35,7 @@ MatrixXd orthonormal(const MatrixXd& columns) {
 NullSpaces null_spaces(const MatrixXd& J) {
     VectorXd D_r = VectorXd::Ones(J.rows()), D_c = VectorXd::Ones(J.cols());
     MatrixXd A = J;
-    for (int sweep = 0; sweep < 10; ++sweep) {
+    for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
         const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
         const VectorXd r = A.cwiseAbs().rowwise().maxCoeff().unaryExpr(scale);
         const VectorXd c = A.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(scale);
@@ -37,7 +46,7 @@ NullSpaces null_spaces(const MatrixXd& J) {
     const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const auto& sigma = svd.singularValues();
     Index rank = 0;
-    while (rank < sigma.size() && sigma[rank] > 1e-11 * sigma[0]) ++rank;
+    while (rank < sigma.size() && sigma[rank] > null_threshold * sigma[0]) ++rank;
     const Index k = sigma.size() - rank;
     return {orthonormal(D_c.asDiagonal() * svd.matrixV().rightCols(k)),
             orthonormal(D_r.asDiagonal() * svd.matrixU().rightCols(k))};
@@ -63,7 +72,7 @@ bool track(Linearisation& at) {
     ones.bottomRows(k).setIdentity();
     const MatrixXd right = at.bordered.solve(ones), left = at.bordered.transpose().solve(ones);
     const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
-    if (!right.allFinite() || !left.allFinite() || !(stiffness <= 1e-10 * at.J.cwiseAbs().maxCoeff()))
+    if (!right.allFinite() || !left.allFinite() || !(stiffness <= idle_stiffness * at.J.cwiseAbs().maxCoeff()))
         return false;
     at.modes = {orthonormal(right.topRows(n)), orthonormal(left.topRows(n))};
     return true;

@@ -12,10 +12,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A part of the system depends on two bodies and at most three
-// reactions: 7 + 7 + 3 derivatives, scattered afterwards.
-constexpr int first_reaction = 14;
-using Jet = ceres::Jet<double, 17>;
+// A part of the system depends on two bodies, at most three reactions and a: 7 + 7 + 3 + 1 derivatives, scattered
+// afterwards.
+constexpr int first_reaction = 14, parameter_a = 17;
+using Jet = ceres::Jet<double, 18>;
 
 // The first column of a body's or a row's unknowns.
 int column(BodyId body) { return 7 * body; }
@@ -43,10 +43,12 @@ struct Seeds {
 struct Scatter {
     const System& system;
     VectorXd E;
-    RowMajor dE;  // [n × (7 nb + m)]
+    RowMajor dE;   // ∂E/∂x [n × (7 nb + m)]
+    VectorXd E_a;  // ∂E/∂a [n]
 
     void add(const Part& part, int row, const Jet& term) {
         E[row] += term.a;
+        E_a[row] += term.v[parameter_a];
         if (part.i != ground) dE.row(row).segment<7>(column(part.i)) += term.v.segment<7>(0).transpose();
         if (part.j != ground) dE.row(row).segment<7>(column(part.j)) += term.v.segment<7>(7).transpose();
         for (int k = 0; k < part.rows; ++k)
@@ -61,10 +63,10 @@ struct Scatter {
     }
 };
 
-Scatter differentiated(const System& system, double load_factor, const VectorXd& x) {
+Scatter differentiated(const System& system, double a, const VectorXd& x) {
     Scatter sum{system, VectorXd::Zero(system.equations()),
-                RowMajor::Zero(system.equations(), system.unknowns())};
-    assemble<Jet>(system, load_factor, Seeds{system, x}, sum);
+                RowMajor::Zero(system.equations(), system.unknowns()), VectorXd::Zero(system.equations())};
+    assemble<Jet>(system, Jet(a, parameter_a), Seeds{system, x}, sum);
     return sum;
 }
 
@@ -87,7 +89,7 @@ class SystemCost final : public ceres::CostFunction {
             E = residual(system_, loading_, x_);
             return E.allFinite();
         }
-        const auto sum = differentiated(system_, loading_.factor, x_);
+        const auto sum = differentiated(system_, loading_.a, x_);
         E = sum.E - loading_.held * system_.at_design;
         for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
             if (jacobians[b] != nullptr)
@@ -102,13 +104,15 @@ class SystemCost final : public ceres::CostFunction {
     mutable VectorXd x_;  // room for the unknowns in one piece; a problem is solved by one thread
 };
 
-// Goes on until the residual is small and the corrections have died out: the step after a correction of 1e-8
-// would be of its square.
+// A step after a correction of this size would be of its square, which is round-off.
+constexpr double last_correction = 1e-8;
+
+// Goes on until the residual is small and the corrections have died out.
 struct StopAtFloor final : ceres::IterationCallback {
     explicit StopAtFloor(double limit) : tolerance(limit) {}
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
         if (now.iteration == 0) return ceres::SOLVER_CONTINUE;
-        const bool done = std::sqrt(2 * now.cost) <= tolerance && now.step_norm <= 1e-8;
+        const bool done = std::sqrt(2 * now.cost) <= tolerance && now.step_norm <= last_correction;
         return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
     }
     double tolerance;
@@ -120,10 +124,12 @@ ceres::Solver::Options solver_options(const Options& options) {
     o.max_num_iterations = options.iteration_limit;
     // Newton's method as nearly as can be; what damping is left turns idle modes and redundant rows into
     // minimum-norm steps.
-    o.initial_trust_region_radius = o.max_trust_region_radius = 1e16;
+    constexpr double hardly_any_damping = 1e16;  // the inverse of the damping, beside rows of order one
+    o.initial_trust_region_radius = o.max_trust_region_radius = hardly_any_damping;
     o.min_lm_diagonal = 1;
     o.jacobi_scaling = false;
-    // Tolerances are ours (StopAtFloor), except for a standstill.
+    // Tolerances are ours (StopAtFloor), except for a standstill: Newton's method makes the cost of a step much
+    // smaller, or has come as far as it will.
     o.function_tolerance = 1e-4;
     o.gradient_tolerance = 0;
     o.parameter_tolerance = 0;
@@ -173,22 +179,22 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
 }
 
 // A turn by δπ changes the quaternion by ½ (δπ, 0) p:  δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
-MatrixXd jacobian(const System& system, double load_factor, const VectorXd& x, Counts& counts) {
-    const auto sum = differentiated(system, load_factor, x);
+Derivatives derivatives(const System& system, double a, const VectorXd& x, Counts& counts) {
+    auto sum = differentiated(system, a, x);
     ++counts.evaluations;
     MatrixXd J(system.equations(), system.equations());
     for (int body = 0; body < system.bodies; ++body) {
-        const double a = x[7 * body + 3], b = x[7 * body + 4], c = x[7 * body + 5], w = x[7 * body + 6];
+        const Eigen::Vector4d p = x.segment<4>(7 * body + 3);
         Eigen::Matrix<double, 4, 3> turn;
-        turn << w, c, -b,  //
-            -c, w, a,      //
-            b, -a, w,      //
-            -a, -b, -c;
+        turn << p[3], p[2], -p[1],  //
+            -p[2], p[3], p[0],      //
+            p[1], -p[0], p[3],      //
+            -p[0], -p[1], -p[2];
         J.middleCols<3>(6 * body) = sum.dE.middleCols<3>(7 * body);
         J.middleCols<3>(6 * body + 3) = sum.dE.middleCols<4>(7 * body + 3) * (turn / 2);
     }
     J.rightCols(system.constraint_rows) = sum.dE.rightCols(system.constraint_rows);
-    return J;
+    return {std::move(J), std::move(sum.E_a)};
 }
 
 }  // namespace elastocheck::reference::equilibrium

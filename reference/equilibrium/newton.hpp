@@ -15,7 +15,12 @@ struct Attempt {
 Attempt newton(const System& system, const Loading& loading, const Eigen::VectorXd& start,
                const Options& options, Counts& counts);
 
-// ∂E/∂(step) [n × n], by automatic differentiation.
-Eigen::MatrixXd jacobian(const System& system, double load_factor, const Eigen::VectorXd& x, Counts& counts);
+struct Derivatives {
+    Eigen::MatrixXd J;    // ∂E/∂(step) [n × n]
+    Eigen::VectorXd E_a;  // ∂E/∂a [n]
+};
+
+// By automatic differentiation.
+Derivatives derivatives(const System& system, double a, const Eigen::VectorXd& x, Counts& counts);
 
 }  // namespace elastocheck::reference::equilibrium

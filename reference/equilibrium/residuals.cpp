@@ -41,28 +41,20 @@ struct Judge {
         balance.force += factor * on.force;
         balance.moment += factor * (on.moment + cross(Vector3d(on.at - frame(body).r), on.force));
     }
-    void apply(const Load& load, double factor) {
-        const BodyId body = body_of(load.kind);
-        if (body != ground)
-            apply(body, std::visit([&](const auto& k) { return on_body(k, frame(body)); }, load.kind),
-                  factor);
-    }
 };
 
 // What a joint's constraints push with, one column a row and unit
 // reaction, as (force; moment about `at` / L) [6 × rows].
 MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
     MatrixXd columns(6, 0);
-    for (const auto& constraint : judge.system.model->constraints) {
-        if (constraint.joint != joint) continue;
-        const auto [i, j] = bodies_of(constraint.kind);
-        for (int k = 0; k < rows(constraint.kind); ++k) {
+    const auto& constraints = judge.system.model->constraints;
+    for (std::size_t c = 0; c < constraints.size(); ++c) {
+        if (constraints[c].joint != joint) continue;
+        const auto [i, j] = bodies_of(constraints[c].kind);
+        for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
-            const auto on_i = std::visit(
-                [&, i = i, j = j](const auto& c) {
-                    return holding(c, judge.frame(i), judge.frame(j), unit.data()).reaction;
-                },
-                constraint.kind);
+            const auto on_i =
+                holding(judge.system, c, judge.state.load, judge.frame(i), judge.frame(j), unit.data()).reaction;
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
                 (on_i.moment + cross(Vector3d(on_i.at - at), on_i.force)) / judge.system.length;
@@ -79,8 +71,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     if (state.poses.size() != model.bodies.size() || state.reactions.size() != model.joints.size())
         return {nan, nan, nan, nan};
-    const double load = state.load;
-    const System system = make_system(model, branch, {&load, 1});
+    const double a = state.load;
+    const System system = make_system(model, branch, {&a, 1});
     Judge judge{system, state, {}, std::vector<Balance>(model.bodies.size())};
     Residuals worst;
 
@@ -91,27 +83,27 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         judge.frames.push_back({pose.r - system.centre, pose.p.normalized()});
     }
 
-    for (const auto& constraint : model.constraints) {
-        const auto [i, j] = bodies_of(constraint.kind);
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const auto& kind = model.constraints[c].kind;
+        const auto [i, j] = bodies_of(kind);
         const Vector3d none = Vector3d::Zero();
-        const auto h =
-            std::visit([&, i = i, j = j](
-                           const auto& c) { return holding(c, judge.frame(i), judge.frame(j), none.data()); },
-                       constraint.kind);
-        for (int k = 0; k < rows(constraint.kind); ++k)
-            raise(is_direction(constraint.kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
+        const auto h = holding(system, c, a, judge.frame(i), judge.frame(j), none.data());
+        for (int k = 0; k < rows(kind); ++k)
+            raise(is_direction(kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
     }
 
-    for (const auto& elastic : model.elastics) {
-        const auto [i, j] = bodies_of(elastic.kind);
-        const auto on_i = std::visit(
-            [&, i = i, j = j](const auto& k) { return interaction(k, judge.frame(i), judge.frame(j)); },
-            elastic.kind);
+    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        const auto [i, j] = bodies_of(model.elastics[e].kind);
+        const auto on_i = interaction(system, e, a, judge.frame(i), judge.frame(j));
         judge.apply(i, on_i, +1);
         judge.apply(j, on_i, -1);
     }
-    for (const auto& l : model.static_loads) judge.apply(l, 1);
-    for (const auto& l : branch.loads) judge.apply(l, load);
+    for (const auto& load : system.loads) {
+        const BodyId body = body_of(load.kind);
+        if (body == ground) continue;
+        const auto on = std::visit([&](const auto& k) { return on_body(k, judge.frame(body)); }, load.kind);
+        judge.apply(body, on, load.factor.at(a));
+    }
 
     for (std::size_t n = 0; n < model.joints.size(); ++n) {
         const auto& joint = model.joints[n];
@@ -129,7 +121,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         left_over << on_i.force, on_i.moment / system.length;
         if (C.cols() > 0 && C.allFinite()) {
             Eigen::ColPivHouseholderQR<MatrixXd> qr;
-            qr.setThreshold(1e-9);
+            qr.setThreshold(1e-9);  // of columns of size one: rows that say the same
             left_over -= C * qr.compute(C).solve(left_over).eval();
         }
         raise(worst.force, Vector3d(left_over.head<3>()));

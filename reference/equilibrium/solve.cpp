@@ -8,7 +8,7 @@
 
 namespace elastocheck::reference::equilibrium {
 
-EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> loads,
+EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options) {
     EquilibriumPath path;
     const auto ended = [&](const Failure& failed) {
@@ -16,20 +16,21 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         path.detail = fmt::format("branch '{}': {}", branch.name, failed.what);
         return path;
     };
-    const System system = make_system(model, branch, loads);
-    const Eigen::VectorXd design = design_unknowns(system);
-    if (!std::all_of(loads.begin(), loads.end(), [](double load) { return std::isfinite(load); }))
-        return ended({Outcome::not_finite, "a load factor is not finite"});
-    if (!design.allFinite() || !system.at_design.allFinite() || !load_rate(system, design).allFinite())
-        return ended(
-            {Outcome::not_finite, "the equations give a number that is not finite at the design pose"});
+    const System system = make_system(model, branch, points);
+    if (!std::ranges::all_of(points, [](double a) { return std::isfinite(a); }))
+        return ended({Outcome::not_finite, "a point of the branch is not finite"});
 
     Walk walk = start(system, options);
+    if (!walk.here.x.allFinite() || !system.at_design.allFinite() || !walk.here.E_a.allFinite())
+        return ended(
+            {Outcome::not_finite, "the equations give a number that is not finite at the design pose"});
+    double reach = 0;
+    for (const double a : points) reach = std::max(reach, std::abs(a));
     auto failed = advance(walk, 1);
-    if (!failed) begin_loading(walk);
-    for (auto load = loads.begin(); load != loads.end() && !failed; ++load) {
-        failed = advance(walk, *load);
-        if (!failed) path.points.push_back(state_of(system, loading_at(walk.stage, *load), walk.here.x));
+    if (!failed) failed = begin_branch(walk, reach);
+    for (auto a = points.begin(); a != points.end() && !failed; ++a) {
+        failed = advance(walk, *a);
+        if (!failed) path.points.push_back(state_of(system, loading_at(walk.stage, *a), walk.here.x));
     }
     path.counts = walk.counts;
     return failed ? ended(*failed) : path;

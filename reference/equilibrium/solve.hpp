@@ -1,4 +1,7 @@
 // Reference leg 1: the full nonlinear constraint and equilibrium equations, solved by Ceres.
+//
+// Everything is SI (m, N, N·m, rad). Nothing is kept between calls and nothing is shared: any number of threads may
+// solve and judge one model at the same time.
 #pragma once
 
 #include <span>
@@ -12,16 +15,25 @@ struct Options {
     double tolerance =
         1e-12;  // on the largest scaled residual; a point is accepted on this, never on a solver's word
     int iteration_limit = 100;  // per solve
-    int halvings = 12;          // of a load step that does not converge, before the branch is given up
+    int halvings = 16;          // of the whole branch: the smallest step, before the branch is given up
 };
 
-// The equilibria at `loads` (load factors of `branch`, in the order they are to be visited, warm-started one
-// from the other).
-EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> loads,
+// The equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the order they are to be
+// visited: E(x; a) = 0, each warm-started from the one before. Before the first, all that stands at a = 0 is settled:
+// static loads and preloads, what the drivers hold, constraints that the design pose misses.
+//
+// The path has one Equilibrium a point, up to the first that is not reached. It ends, whatever the points, where the
+// branch does: `branch_lost` where it turns back or steepens, `singular` where it divides or loses its stability,
+// `inconsistent_constraints` where the joints cannot be closed, by name, `loaded_idle_mode` where a load meets no
+// resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome has its reason in `detail`.
+//
+// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or element does
+// not have.
+EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options = {});
 
-// How well a state, from any leg, satisfies this leg's equations;
-// balances are formed from Equilibrium::reactions.
+// How well a state, from any leg, satisfies this leg's equations at a = state.load; balances are formed from
+// Equilibrium::reactions. NaN where the state has not one pose a body and one reaction a joint. Throws as `solve` does.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -1,6 +1,11 @@
 #include "reference/equilibrium/system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
+
+#include "models/branch.hpp"
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -32,75 +37,181 @@ struct Sum {
     void constraint(const Part& part, int k, double Phi) { E[6 * system.bodies + part.row + k] += Phi; }
 };
 
-VectorXd sum(const System& system, double factor, const VectorXd& x) {
+VectorXd sum(const System& system, double a, const VectorXd& x) {
     Sum total{system, VectorXd::Zero(system.equations())};
-    assemble<double>(system, factor, Values{system, x}, total);
+    assemble<double>(system, a, Values{system, x}, total);
     return std::move(total.E);
 }
 
+// ---- What the drivers move
+
+// The value of a constraint that a driver may move, as the model has it.
+double value_of(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
+                                 [](const PointInPlane& c) { return c.offset; },
+                                 [](const PerpendicularDirections&) { return 0.0; },
+                                 [](const DistanceBetween& c) { return c.length; },
+                                 [](const DirectionAtAngle& c) { return c.angle; }},
+                      kind);
+}
+
+ElementPath undriven(const ElasticKind& kind) {
+    ElementPath path;
+    std::visit(overloaded{[&](const AxialSpring& spring) { path.free_length.start = spring.free_length; },
+                          [&](const Bushing& bushing) {
+                              for (std::size_t k = 0; k < 6; ++k)
+                                  path.preload[k].start = bushing.preload[static_cast<int>(k)];
+                          }},
+               kind);
+    return path;
+}
+
+void add(Affine& to, const Driver& driver, double times) {
+    to.start += times * driver.start;
+    to.rate += times * driver.rate;
+}
+
+template <class Kind>
+void expect_kind(const Model& model, int elastic, const char* has_no) {
+    const auto& element = model.elastics.at(static_cast<std::size_t>(elastic));
+    if (!std::holds_alternative<Kind>(element.kind))
+        throw std::invalid_argument("element '" + element.name + "' has no " + has_no + " to be driven");
+}
+
+void set_paths(System& system) {
+    const Model& model = *system.model;
+    for (const auto& constraint : model.constraints) system.values.push_back({value_of(constraint.kind), 0});
+    for (const auto& elastic : model.elastics) system.elements.push_back(undriven(elastic.kind));
+    for (const auto& load : model.static_loads) system.loads.push_back({load.kind, {1, 0}});
+    for (const auto& driver : system.branch->drivers)
+        std::visit(overloaded{[&](const Load& load) {
+                                  system.loads.push_back({load.kind, {driver.start, driver.rate}});
+                              },
+                              [&](const Motion& motion) {
+                                  const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
+                                  if (joint.driven < 0)
+                                      throw std::invalid_argument("joint '" + joint.name +
+                                                                  "' has no offset to be driven");
+                                  add(system.values[static_cast<std::size_t>(joint.driven)], driver, 1);
+                              },
+                              [&](const FreeLength& length) {
+                                  expect_kind<AxialSpring>(model, length.elastic, "free length");
+                                  add(system.elements[static_cast<std::size_t>(length.elastic)].free_length,
+                                      driver, 1);
+                              },
+                              [&](const Preload& preload) {
+                                  expect_kind<Bushing>(model, preload.elastic, "preload");
+                                  auto& path = system.elements[static_cast<std::size_t>(preload.elastic)];
+                                  for (std::size_t k = 0; k < 6; ++k)
+                                      add(path.preload[k], driver, preload.direction[static_cast<int>(k)]);
+                              }},
+                   driver.what);
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        if (const auto* bushing = std::get_if<Bushing>(&model.elastics[e].kind)) {
+            ElementPath& path = system.elements[e];
+            path.rotational = resists_rotation(bushing->law);
+            for (std::size_t k = 3; k < 6; ++k)
+                path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;
+        }
+}
+
+// ---- Scales
+
 // Every point at which something is attached or acts, at the design pose.
-std::vector<Vector3d> hardpoints(const Model& model, const Branch& branch) {
+std::vector<Vector3d> hardpoints(const System& system) {
     std::vector<Vector3d> points;
     const auto add = [&](BodyId body, const Vector3d& s_local) {
         if (body == ground) return points.push_back(s_local);
-        const Pose& pose = model.bodies[static_cast<std::size_t>(body)].design;
+        const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
         points.push_back(pose.r + turned(pose.p, s_local));
     };
-    const auto add_ends = [&](const auto& kind) {
-        if constexpr (requires { kind.i.s_local; }) {
-            add(kind.i.body, kind.i.s_local);
-            add(kind.j.body, kind.j.s_local);
-        }
-    };
-    const auto add_load = [&](const Load& load) {
-        if (const auto* f = std::get_if<DeadForce>(&load.kind)) add(f->at.body, f->at.s_local);
-    };
-    for (const auto& body : model.bodies) points.push_back(body.design.r);
-    for (const auto& constraint : model.constraints) std::visit(add_ends, constraint.kind);
-    for (const auto& elastic : model.elastics) std::visit(add_ends, elastic.kind);
-    std::for_each(model.static_loads.begin(), model.static_loads.end(), add_load);
-    std::for_each(branch.loads.begin(), branch.loads.end(), add_load);
+    const auto add_end = overloaded{[&](const Point& p) { add(p.body, p.s_local); },
+                                    [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
+    const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
+    for (const auto& body : system.model->bodies) points.push_back(body.design.r);
+    for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
+    for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
+    for (const auto& load : system.loads)
+        std::visit(overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); }, [](const DeadMoment&) {}},
+                   load.kind);
     return points;
 }
 
-double force_of(const Load& load, double length) {
-    if (const auto* f = std::get_if<DeadForce>(&load.kind)) return f->f.norm();
-    return std::get<DeadMoment>(load.kind).m.norm() / length;
+double force_of(const LoadKind& load, double length) {
+    return std::visit(overloaded{[&](const DeadForce& l) { return l.f.norm(); },
+                                 [&](const DeadMoment& l) { return l.m.norm() / length; }},
+                      load);
 }
 
-// The forces to be reckoned with: stiffness times a hundredth of the length, and preload.
-double force_of(const AxialSpring& spring, double length) { return 0.01 * spring.k * length; }
-double force_of(const Bushing& b, double length) {
-    const double k = std::max({b.K.topLeftCorner<3, 3>().norm(), b.K.topRightCorner<3, 3>().norm() / length,
-                               b.K.bottomRightCorner<3, 3>().norm() / (length * length)});
-    return std::max({0.01 * k * length, b.preload.head<3>().norm(), b.preload.tail<3>().norm() / length});
+// The deformation, over L, whose force is reckoned with: its round-off is that of stiffness times length.
+constexpr double usual_deformation = 0.01;
+
+double force_of(const ScalarLaw& law, double length) {
+    return std::max(std::abs(gradient(law, usual_deformation * length)),
+                    std::abs(gradient(law, -usual_deformation * length)));
+}
+
+double force_of(const SpatialLaw& law, double length) {
+    double force = 0;
+    for (int k = 0; k < 6; ++k)
+        for (const double sign : {1., -1.}) {
+            const Vector6 e = sign * usual_deformation * (k < 3 ? length : 1) * Vector6::Unit(k);
+            const Vector6 g = gradient(law, e);
+            force = std::max({force, g.head<3>().norm(), g.tail<3>().norm() / length});
+        }
+    return force;
+}
+
+// The larger size at either end of the way from a = 0 to ±a.
+double size_of(const Affine& path, double a) { return std::abs(path.start) + std::abs(path.rate * a); }
+
+double force_scale(const System& system, double a) {
+    double force = 0;
+    for (const auto& load : system.loads)
+        force = std::max(force, size_of(load.factor, a) * force_of(load.kind, system.length));
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        const ElementPath& path = system.elements[e];
+        double preload = 0;
+        for (std::size_t k = 0; k < 6; ++k)
+            preload = std::max(preload, size_of(path.preload[k], a) / (k < 3 ? 1 : system.length));
+        const double usual = std::visit([&](const auto& k) { return force_of(k.law, system.length); },
+                                        system.model->elastics[e].kind);
+        force = std::max({force, preload, usual});
+    }
+    return force;
 }
 
 }  // namespace
 
-System make_system(const Model& model, const Branch& branch, std::span<const double> loads) {
+System make_system(const Model& model, const Branch& branch, std::span<const double> points) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("branch '" + branch.name + "' wants one way from 0, and the model as it "
+                                    "stands there (on_branch)");
     System system;
     system.model = &model;
     system.branch = &branch;
     system.bodies = static_cast<int>(model.bodies.size());
     system.constraint_rows = constraint_rows(model);
+    set_paths(system);
 
-    const auto points = hardpoints(model, branch);
-    for (const auto& p : points) system.centre += p / static_cast<double>(points.size());
+    const auto places = hardpoints(system);
+    for (const auto& p : places) system.centre += p / static_cast<double>(places.size());
     double radius = 0;
-    for (const auto& p : points) radius = std::max(radius, (p - system.centre).norm());
+    for (const auto& p : places) radius = std::max(radius, (p - system.centre).norm());
     if (std::isfinite(radius) && radius > 0) system.length = radius;
 
-    double a = 0, force = 0;
-    for (const double load : loads) a = std::max(a, std::abs(load));
-    for (const auto& load : branch.loads) force = std::max(force, a * force_of(load, system.length));
-    for (const auto& load : model.static_loads) force = std::max(force, force_of(load, system.length));
-    for (const auto& elastic : model.elastics)
-        force = std::max(force,
-                         std::visit([&](const auto& k) { return force_of(k, system.length); }, elastic.kind));
+    double a = 0;
+    for (const double point : points) a = std::max(a, std::abs(point));
+    const double force = force_scale(system, a);
     if (std::isfinite(force) && force > 0) system.force = force;
 
+    // What is stored at the design pose, in the scale so far.
     system.at_design = sum(system, 0, design_unknowns(system));
+    const double stored = system.at_design.head(6 * system.bodies).lpNorm<Eigen::Infinity>();
+    if (std::isfinite(stored) && stored > 1) {
+        system.force *= stored;
+        system.at_design.head(6 * system.bodies) /= stored;
+    }
     return system;
 }
 
@@ -115,23 +226,9 @@ VectorXd design_unknowns(const System& system) {
 }
 
 VectorXd residual(const System& system, const Loading& loading, const VectorXd& x) {
-    VectorXd E = sum(system, loading.factor, x);
+    VectorXd E = sum(system, loading.a, x);
     if (loading.held != 0) E -= loading.held * system.at_design;
     return E;
-}
-
-VectorXd load_rate(const System& system, const VectorXd& x) {
-    VectorXd rate = VectorXd::Zero(system.equations());
-    for (const auto& load : system.branch->loads) {
-        const BodyId body = body_of(load.kind);
-        if (body == ground) continue;
-        const auto frame = frame_of(system, x, body);
-        const auto on = std::visit([&](const auto& k) { return on_body(k, frame); }, load.kind);
-        rate.segment<3>(6 * body) += on.force / system.force;
-        rate.segment<3>(6 * body + 3) +=
-            (on.moment + cross(Vector3d(on.at - frame.r), on.force)) / (system.force * system.length);
-    }
-    return rate;
 }
 
 VectorXd moved(const System& system, const VectorXd& x, const VectorXd& dx) {
@@ -174,20 +271,33 @@ double largest(const VectorXd& E) {
 }
 
 std::string bushing_at_half_turn(const System& system, const VectorXd& x) {
-    for (const auto& elastic : system.model->elastics) {
+    constexpr double near = 0.025;  // cos(θ/2): within 0.05 rad of half a turn
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        const auto& elastic = system.model->elastics[e];
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-        if (bushing == nullptr || !resists_rotation(*bushing)) continue;
+        if (bushing == nullptr || !system.elements[e].rotational) continue;
         const auto axes_i = product(frame_of(system, x, bushing->i.body).p, bushing->i.A_local);
         const auto axes_j = product(frame_of(system, x, bushing->j.body).p, bushing->j.A_local);
-        if (std::abs(product(conjugate(axes_i), axes_j).w()) < 0.025) return elastic.name;  // cos(θ/2)
+        if (std::abs(product(conjugate(axes_i), axes_j).w()) < near) return elastic.name;
     }
     return {};
+}
+
+std::string parameter(const Branch& branch, double a) {
+    switch (branch.unit) {
+        case ParameterUnit::newton: return fmt::format("{:.8g} N", a);
+        case ParameterUnit::newton_metre: return fmt::format("{:.8g} N·m", a);
+        case ParameterUnit::metre: return fmt::format("{:.8g} mm", 1e3 * a);
+        case ParameterUnit::radian: return fmt::format("{:.8g} deg", a * 180 / EIGEN_PI);
+        case ParameterUnit::none: break;
+    }
+    return fmt::format("{:.8g}", a);
 }
 
 Equilibrium state_of(const System& system, const Loading& loading, const VectorXd& x) {
     const Model& model = *system.model;
     Equilibrium state;
-    state.load = loading.factor;
+    state.load = loading.a;
     for (int body = 0; body < system.bodies; ++body) {
         const auto frame = frame_of(system, x, body);
         state.poses.push_back({frame.r + system.centre, frame.p});
@@ -195,18 +305,14 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
     state.reactions.resize(model.joints.size());
     double Phi2 = 0;
     int row = 0;
-    for (const auto& constraint : model.constraints) {
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const auto& constraint = model.constraints[c];
         const auto [i, j] = bodies_of(constraint.kind);
         const double unit = is_direction(constraint.kind) ? system.force * system.length : system.force;
-        const Vector3d R = [&] {
-            Vector3d padded = Vector3d::Zero();
-            padded.head(rows(constraint.kind)) =
-                unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
-            return padded;
-        }();
-        const auto frame_i = frame_of(system, x, i), frame_j = frame_of(system, x, j);
-        const auto h = std::visit([&](const auto& k) { return holding(k, frame_i, frame_j, R.data()); },
-                                  constraint.kind);
+        Vector3d R = Vector3d::Zero();
+        R.head(rows(constraint.kind)) = unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
+        const auto h =
+            holding(system, c, loading.a, frame_of(system, x, i), frame_of(system, x, j), R.data());
         Phi2 += h.Phi.head(rows(constraint.kind)).squaredNorm();
 
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];

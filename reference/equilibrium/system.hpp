@@ -7,11 +7,15 @@
 //   per body   Σ forces / F,  Σ moments about its origin / (F L)
 //   per row    Φ / L, or Φ where it is a cosine
 //
-// L is the radius of the model about `centre`, F the larger of what is applied and of what the stiffest
-// element makes of a hundredth of L: then the round-off of stiff elements stays well below the tolerance,
-// whatever the units and wherever the ground frame sits.
+// L is the radius of the model about `centre`, F the largest of what is applied, of what is stored at the design
+// pose and of what the stiffest element makes of a hundredth of L: then the round-off of stiff elements stays well
+// below the tolerance, whatever moves the branch, whatever the units and wherever the ground frame sits.
+//
+// All that a driver may move, static or not, stands as start + rate·a. So E is a function of (x, a) like any other,
+// and ∂E/∂a comes out of the same automatic differentiation as ∂E/∂x.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "models/equilibrium_path.hpp"
@@ -19,32 +23,58 @@
 
 namespace elastocheck::reference::equilibrium {
 
+struct Affine {
+    double start = 0, rate = 0;
+    template <class T>
+    T at(const T& a) const {
+        return start + rate * a;
+    }
+};
+
+// What an element is along the branch; an element uses the one that its kind has.
+struct ElementPath {
+    Affine free_length;             // of a spring [m]
+    std::array<Affine, 6> preload;  // of a bushing [N, N·m]
+    bool rotational = false;        // whether the bushing cares how its markers are turned against each other
+};
+
+// A load, and what multiplies it: 1 for static ones.
+struct LoadPath {
+    LoadKind kind;
+    Affine factor;
+};
+
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
+    std::vector<Affine> values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    std::vector<ElementPath> elements;  // per Model::elastics
+    std::vector<LoadPath> loads;        // static and driven
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
     double length = 1;                                 // L [m]
     double force = 1;                                  // F [N]
     int bodies = 0;                                    // nb
     int constraint_rows = 0;                           // m
-    Eigen::VectorXd at_design;  // E at the design pose, no reactions, load factor 0 [n]
+    Eigen::VectorXd at_design;                         // E at the design pose, no reactions, a = 0 [n]
 
     int unknowns() const { return 7 * bodies + constraint_rows; }
     int equations() const { return 6 * bodies + constraint_rows; }
 };
 
-// What is asked of the system: E(x; factor) = held · at_design. With held = 1 the design pose is an
-// equilibrium because somebody holds it; letting go, to held = 0, settles static loads and preloads.
+// What is asked of the system: E(x; a) = held · at_design. With held = 1 the design pose is an equilibrium because
+// somebody holds it; letting go, to held = 0, settles all that stands at a = 0: static loads and preloads, what the
+// drivers hold, constraints that the design pose misses.
 struct Loading {
-    double factor = 0;  // a
-    double held = 0;    // [-]
+    double a = 0;
+    double held = 0;  // [-]
 };
 
-System make_system(const Model& model, const Branch& branch, std::span<const double> loads);
+// `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a driver
+// moves what its joint or element does not have.
+System make_system(const Model& model, const Branch& branch, std::span<const double> points);
 
 Eigen::VectorXd design_unknowns(const System& system);
 Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
-Eigen::VectorXd load_rate(const System& system, const Eigen::VectorXd& x);  // ∂E/∂a [n]
 
 Eigen::VectorXd moved(const System& system, const Eigen::VectorXd& x, const Eigen::VectorXd& dx);
 Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from, const Eigen::VectorXd& to);
@@ -53,14 +83,43 @@ Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from, 
 double pose_size(const System& system, const Eigen::VectorXd& dx);
 double largest(const Eigen::VectorXd& E);  // absolute entry, NaN when anything is not finite
 
-// The name of a bushing whose rotation is within 0.05 rad of where the logarithm ends, or empty.
+// The name of a bushing whose rotation is nearly where the logarithm ends, or empty.
 std::string bushing_at_half_turn(const System& system, const Eigen::VectorXd& x);
+
+// "1500 N", "-40 mm": the branch's parameter as reports show it.
+std::string parameter(const Branch& branch, double a);
 
 Equilibrium state_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
 // The ground in the frame of the system, whose origin is `centre`.
 inline Frame<double> ground_frame(const System& system) {
     return {-system.centre, Eigen::Quaterniond::Identity()};
+}
+
+// What element e does to its body i, and the opposite to its body j.
+template <class T>
+Interaction<T> interaction(const System& system, std::size_t e, const T& a, const Frame<T>& i,
+                           const Frame<T>& j) {
+    const ElementPath& path = system.elements[e];
+    return std::visit(
+        overloaded{[&](const AxialSpring& spring) {
+                       return interaction(spring, path.free_length.at(a), i, j);
+                   },
+                   [&](const Bushing& bushing) {
+                       Vec6<T> preload;
+                       for (int k = 0; k < 6; ++k) preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
+                       return interaction(bushing, preload, path.rotational, i, j);
+                   }},
+        system.model->elastics[e].kind);
+}
+
+// Constraint c with the reactions R of its rows [N, N·m].
+template <class T>
+Holding<T> holding(const System& system, std::size_t c, const T& a, const Frame<T>& i, const Frame<T>& j,
+                   const T* R) {
+    const T value = system.values[c].at(a);
+    return std::visit([&](const auto& kind) { return holding(kind, value, i, j, R); },
+                      system.model->constraints[c].kind);
 }
 
 // ---- Assembly, for double and for Jets
@@ -75,52 +134,48 @@ struct Part {
 // scaled reactions; `sink.balance(part, body, force, moment)` and `sink.constraint(part, k, Phi)` take the
 // scaled terms, to be summed.
 template <class T, class Source, class Sink>
-void assemble(const System& system, double load_factor, const Source& source, Sink& sink) {
+void assemble(const System& system, const T& a, const Source& source, Sink& sink) {
     const Model& model = *system.model;
     const double per_force = 1 / system.force, per_moment = per_force / system.length,
                  per_length = 1 / system.length;
 
     const auto apply = [&](const Part& part, BodyId body, const Frame<T>& frame, const Interaction<T>& on,
-                           double sign) {
+                           const T& factor) {
         if (body == ground) return;
         const Vec3<T> moment = on.moment + cross(Vec3<T>(on.at - frame.r), on.force);
-        sink.balance(part, body, Vec3<T>(on.force * T(sign * per_force)),
-                     Vec3<T>(moment * T(sign * per_moment)));
-    };
-    const auto load = [&](const Load& l, double factor) {
-        const Part part{body_of(l.kind), ground};
-        if (part.i == ground) return;
-        const Frame<T> body = source.frame(part, 0);
-        apply(part, part.i, body, std::visit([&](const auto& k) { return on_body(k, body); }, l.kind),
-              factor);
+        sink.balance(part, body, Vec3<T>(on.force * T(factor * per_force)),
+                     Vec3<T>(moment * T(factor * per_moment)));
     };
 
-    for (const auto& elastic : model.elastics) {
-        const auto [i, j] = bodies_of(elastic.kind);
+    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{i, j};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
-        const auto on_i =
-            std::visit([&](const auto& k) { return interaction(k, frame_i, frame_j); }, elastic.kind);
-        apply(part, i, frame_i, on_i, +1);
-        apply(part, j, frame_j, on_i, -1);
+        const auto on_i = interaction(system, e, a, frame_i, frame_j);
+        apply(part, i, frame_i, on_i, T(+1.0));
+        apply(part, j, frame_j, on_i, T(-1.0));
     }
-    for (const auto& l : model.static_loads) load(l, 1);
-    for (const auto& l : system.branch->loads) load(l, load_factor);
+    for (const auto& load : system.loads) {
+        const Part part{body_of(load.kind), ground};
+        if (part.i == ground) continue;
+        const Frame<T> body = source.frame(part, 0);
+        apply(part, part.i, body, std::visit([&](const auto& k) { return on_body(k, body); }, load.kind),
+              load.factor.at(a));
+    }
 
     int row = 0;
-    for (const auto& constraint : model.constraints) {
-        const auto [i, j] = bodies_of(constraint.kind);
-        const Part part{i, j, row, rows(constraint.kind)};
-        const bool directions = is_direction(constraint.kind);
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const auto& kind = model.constraints[c].kind;
+        const auto [i, j] = bodies_of(kind);
+        const Part part{i, j, row, rows(kind)};
+        const bool directions = is_direction(kind);
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
-        T reaction[3];
+        T R[3];
         for (int k = 0; k < part.rows; ++k)
-            reaction[k] =
-                source.reaction(part, k) * (directions ? system.force * system.length : system.force);
-        const auto h = std::visit([&](const auto& k) { return holding(k, frame_i, frame_j, reaction); },
-                                  constraint.kind);
-        apply(part, i, frame_i, h.reaction, +1);
-        apply(part, j, frame_j, h.reaction, -1);
+            R[k] = source.reaction(part, k) * (directions ? system.force * system.length : system.force);
+        const auto h = holding(system, c, a, frame_i, frame_j, R);
+        apply(part, i, frame_i, h.reaction, T(+1.0));
+        apply(part, j, frame_j, h.reaction, T(-1.0));
         for (int k = 0; k < part.rows; ++k)
             sink.constraint(part, k, T(h.Phi[k] * (directions ? 1.0 : per_length)));
         row += part.rows;

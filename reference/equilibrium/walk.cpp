@@ -10,9 +10,27 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// The chord and the tangents at its ends may be this far apart, over the chord.
+constexpr double straight = 0.25;
+
+// Steps of this part of the model's size are not argued about: their chord is round-off.
+constexpr double too_short_to_bend = 1e-6;
+
+// The longest step [L or rad]: a body turned further looks different from all sides.
+constexpr double longest_step = 0.2;
+
+// A further Newton step from an accepted state is at most this: a small residual alone says little about soft
+// directions beside stiff ones.
+constexpr double last_correction = 1e-8;
+
+// The part of a load that an idle mode may seem to carry by round-off.
+constexpr double unanswered_round_off = 1e-9;
+
+// However close the points, a step between two is halved this often before the branch is given up.
+constexpr int least_halvings = 6;
+
 void set_tangent(const Walk& walk, Station& station) {
-    station.E_rate =
-        walk.stage == Stage::settling ? walk.system.at_design : load_rate(walk.system, station.x);
+    station.E_rate = walk.stage == Stage::settling ? walk.system.at_design : station.E_a;
     const Rate rate = answer(station.linearised, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
@@ -22,8 +40,10 @@ Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) 
     Station station;
     station.t = t;
     station.x = std::move(x);
-    MatrixXd J = jacobian(walk.system, loading_at(walk.stage, t).factor, station.x, walk.counts);
-    station.linearised = linearise(std::move(J), last, walk.counts);
+    Derivatives by = derivatives(walk.system, loading_at(walk.stage, t).a, station.x, walk.counts);
+    station.linearised = linearise(std::move(by.J), last, walk.counts);
+    station.stiffness = stiffness(walk.system, station.linearised.J, station.linearised.modes);
+    station.E_a = std::move(by.E_a);
     set_tangent(walk, station);
     return station;
 }
@@ -38,20 +58,46 @@ VectorXd predicted_step(const Walk& walk, double h) {
     return dx;
 }
 
-// The chord against both tangents; steps of a millionth of the model's size are not argued about.
+// The chord against both tangents.
 bool is_continuation(const System& system, const Station& from, const Station& to) {
     const VectorXd chord = step_between(system, from.x, to.x);
     const double h = to.t - from.t, size = pose_size(system, chord);
     const double apart =
         std::max(pose_size(system, chord - h * from.tangent), pose_size(system, chord - h * to.tangent));
-    return std::isfinite(size) && std::isfinite(apart) && apart <= std::max(0.25 * size, 1e-6);
+    return std::isfinite(size) && std::isfinite(apart) &&
+           apart <= std::max(straight * size, too_short_to_bend);
+}
+
+// Half way between two equilibria the cubic through both with their tangents is h⁴ from the curve,
+//
+//   x_m = x₀ + (x₁ - x₀) / 2 + h (x₀' - x₁') / 8
+Stability stability_between(Walk& walk, const Station& from, const Station& to) {
+    const double h = to.t - from.t;
+    const VectorXd dx = step_between(walk.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
+    const auto by = derivatives(walk.system, loading_at(walk.stage, from.t + h / 2).a,
+                                moved(walk.system, from.x, dx), walk.counts);
+    return over_step(from.stiffness, stiffness(walk.system, by.J, from.linearised.modes), to.stiffness);
+}
+
+// Whether a continuation is on this side of every singular point. On the way from the design pose somebody holds the
+// bodies, and only the settled state is judged.
+Verdict side_of(Walk& walk, const Station& next) {
+    if (walk.stage == Stage::settling) return Verdict::accepted;
+    if (!next.linearised.modes_are_new && next.linearised.orientation != walk.here.linearised.orientation)
+        return Verdict::turned_over;
+    switch (stability_between(walk, walk.here, next)) {
+        case Stability::kept: return Verdict::accepted;
+        case Stability::lost: return Verdict::turned_over;
+        case Stability::uncertain: break;
+    }
+    return Verdict::uncertain;
 }
 
 Trial try_step(Walk& walk, double t) {
     const System& system = walk.system;
     const Loading loading = loading_at(walk.stage, t);
     const VectorXd dx = predicted_step(walk, t - walk.here.t);
-    if (!(pose_size(system, dx) <= 0.2)) return {Verdict::out_of_reach, {}, {}};
+    if (!(pose_size(system, dx) <= longest_step)) return {Verdict::out_of_reach, {}, {}};
 
     Trial trial{Verdict::unsolved,
                 newton(system, loading, moved(system, walk.here.x, dx), walk.options, walk.counts),
@@ -61,44 +107,51 @@ Trial try_step(Walk& walk, double t) {
 
     trial.station = station_at(walk, t, attempt.x, &walk.here.linearised);
     const Station& next = trial.station;
-    // A small residual alone says little about soft directions beside stiff ones.
     const double correction = answer(next.linearised, residual(system, loading, next.x)).dx.norm();
-    const bool same_side = walk.stage == Stage::settling || next.linearised.modes_are_new ||
-                           next.linearised.orientation == walk.here.linearised.orientation;
-    trial.verdict = !is_continuation(system, walk.here, next)            ? Verdict::another_branch
-                    : !(std::isfinite(correction) && correction <= 1e-8) ? Verdict::unsettled
-                    : !same_side                                         ? Verdict::turned_over
-                                                                         : Verdict::accepted;
+    if (!is_continuation(system, walk.here, next))
+        trial.verdict = Verdict::another_branch;
+    else if (!(std::isfinite(correction) && correction <= last_correction))
+        trial.verdict = Verdict::unsettled;
+    else
+        trial.verdict = side_of(walk, next);
     return trial;
 }
 
 }  // namespace
 
 Walk start(const System& system, const Options& options) {
-    Walk walk{system, options, Stage::settling, {}, std::nullopt, {}};
+    Walk walk{system, options, 1, Stage::settling, {}, std::nullopt, {}};
     walk.here = station_at(walk, 0, design_unknowns(system), nullptr);
     return walk;
 }
 
-void begin_loading(Walk& walk) {
-    walk.stage = Stage::loading;
+std::optional<Failure> begin_branch(Walk& walk, double reach) {
+    walk.stage = Stage::branch;
+    walk.length = std::max(std::abs(walk.system.branch->to), reach);
     walk.before.reset();
     walk.here.t = 0;
     set_tangent(walk, walk.here);
+    if (over_step(walk.here.stiffness, walk.here.stiffness, walk.here.stiffness) == Stability::kept)
+        return std::nullopt;
+    return Failure{Outcome::singular, fmt::format("the equilibrium that settles at {} is unstable",
+                                                  parameter(*walk.system.branch, 0))};
 }
 
 std::optional<Failure> advance(Walk& walk, double target) {
-    const double smallest = std::ldexp(std::abs(target - walk.here.t), -walk.options.halvings);
     double h = target - walk.here.t;
+    const double smallest = std::min(std::ldexp(walk.length, -walk.options.halvings),
+                                     std::ldexp(std::abs(h), -least_halvings));
+    std::optional<Trial> refused;  // the most telling since the last step
     while (walk.here.t != target) {
         const double rest = target - walk.here.t;
         const double unanswered = std::abs(rest) * walk.here.mu.norm(),
                      asked = std::abs(rest) * walk.here.E_rate.norm();
-        if (unanswered > std::max(walk.options.tolerance, 1e-9 * asked))
+        if (unanswered > std::max(walk.options.tolerance, unanswered_round_off * asked))
             return unanswerable(walk.system, walk.here.linearised.modes.left * walk.here.mu);
         if (!walk.here.tangent.allFinite())
-            return Failure{Outcome::singular, fmt::format("the system is singular at load factor {:.10g}",
-                                                          loading_at(walk.stage, walk.here.t).factor)};
+            return Failure{Outcome::singular,
+                           fmt::format("the system is singular at {}",
+                                       parameter(*walk.system.branch, loading_at(walk.stage, walk.here.t).a))};
 
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
         const double t = h == rest ? target : walk.here.t + h;
@@ -106,10 +159,14 @@ std::optional<Failure> advance(Walk& walk, double target) {
         if (trial.verdict == Verdict::accepted) {
             walk.before = std::move(walk.here);
             walk.here = std::move(trial.station);
+            refused.reset();
             h *= 2;
         } else {
+            const bool says_more = !refused || (refused->verdict != Verdict::turned_over &&
+                                                trial.verdict != Verdict::uncertain);
+            if (says_more) refused = std::move(trial);
             h /= 2;
-            if (std::abs(h) < smallest * (1 - 1e-9)) return failure(walk, t, trial);
+            if (std::abs(h) < smallest * (1 - 1e-9)) return failure(walk, t, *refused);
         }
     }
     return std::nullopt;

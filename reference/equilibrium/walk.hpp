@@ -1,21 +1,22 @@
-// Walking along a branch: from the design pose to the settled state at load factor 0, then from load to load.
+// Walking along a branch: from the design pose to the settled state at a = 0, then from point to point.
 //
-// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium
-// there is. So a step is believed only if it is a short, nearly straight piece of one curve: the chord
-// between two equilibria and the tangents at both its ends agree within a quarter, and the Jacobian is
-// oriented alike at both. Otherwise the step is halved, and if that does not help, the branch has ended here.
+// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium there is. So
+// a step is believed only if it is a short, nearly straight piece of one curve, on which nothing becomes singular: the
+// chord between two equilibria and the tangents at both its ends agree within a quarter, the Jacobian is oriented alike
+// at both, and the stiffness stays positive over all of it (stability.hpp), whatever points lie on it. Otherwise the
+// step is halved, and if that does not help, the branch has ended here.
 #pragma once
 
 #include <optional>
 
 #include "reference/equilibrium/linearisation.hpp"
 #include "reference/equilibrium/newton.hpp"
+#include "reference/equilibrium/stability.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
-// The way has two legs with a parameter t each:
-// letting go of the design pose (t from 0 to 1), loading (t = a).
-enum class Stage { settling, loading };
+// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), the branch (t = a).
+enum class Stage { settling, branch };
 
 inline Loading loading_at(Stage stage, double t) {
     return stage == Stage::settling ? Loading{0, 1 - t} : Loading{t, 0};
@@ -26,6 +27,8 @@ struct Station {
     double t = 0;
     Eigen::VectorXd x;
     Linearisation linearised;
+    Stiffness stiffness;
+    Eigen::VectorXd E_a;      // ∂E/∂a [n]
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
     Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]
@@ -34,6 +37,7 @@ struct Station {
 struct Walk {
     const System& system;
     const Options& options;
+    double length = 1;  // of the way in t, by which the smallest step is measured
     Stage stage = Stage::settling;
     Station here;
     std::optional<Station> before;
@@ -46,6 +50,7 @@ enum class Verdict {
     unsolved,        // the residual stays above the tolerance
     another_branch,  // an equilibrium, but not on this branch
     unsettled,       // on this branch, but a further Newton step would still move it
+    uncertain,       // on this branch, but what lies between is not told by its ends and middle
     turned_over,     // on this branch, but past a singular point
 };
 
@@ -61,12 +66,14 @@ struct Failure {
 };
 
 Walk start(const System& system, const Options& options);  // at the design pose, held
-void begin_loading(Walk& walk);                            // after settling, at load factor 0
+
+// After settling: from a = 0 along the branch, whose points reach out to `reach`.
+std::optional<Failure> begin_branch(Walk& walk, double reach);
 
 // From here to t = target, by as few steps as it takes.
 std::optional<Failure> advance(Walk& walk, double target);
 
-// Why the branch does not go on from here towards t, judged by the last and smallest trial.
+// Why the branch does not go on from here towards t, judged by the most telling trial.
 Failure failure(Walk& walk, double t, const Trial& trial);
 
 // What cannot be answered, as a left null vector: a load on an idle mode, or joints against each other.

@@ -1,0 +1,166 @@
+#include "compare/agreement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "compare/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double digits = 16;       // c: how many roundings meet in one stored force
+constexpr double no_force = 1e-12;  // [N]: where nothing acts, less than this is nothing
+constexpr double metre = 1;         // the least size that a length is a share of
+
+double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
+
+const Pose& pose(const std::vector<Pose>& poses, BodyId body) {
+    static const Pose at_rest;
+    return body == ground ? at_rest : poses[static_cast<std::size_t>(body)];
+}
+Vector3d position(const std::vector<Pose>& poses, BodyId body, const Vector3d& s_local) {
+    return pose(poses, body).r + pose(poses, body).p * s_local;
+}
+
+// ---- What the laws say, one function each: the force of a deformation, and the largest stiffness.
+
+double force(const LinearRate& u, double x) { return std::abs(u.k * x); }
+double stiffness(const LinearRate& u) { return u.k; }
+Vector6 force(const LinearStiffness& u, const Vector6& e) { return u.K * e; }
+// [N/m]: turning the lever L by an angle moves its end by L times that.
+double stiffness(const LinearStiffness& u, double L) {
+    const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
+                 K_R = u.K.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff(),
+                 coupled = u.K.topRightCorner<3, 3>().cwiseAbs().maxCoeff();
+    return std::max({K_T, coupled / L, K_R / (L * L)});
+}
+
+double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
+
+// Sum over the drivers of the branch that move element k: f(driver's kind, value).
+template <class Kind, class Sink>
+void moved(const Branch& branch, std::size_t k, double a, Sink&& sink) {
+    for (const auto& driver : branch.drivers)
+        if (const auto* kind = std::get_if<Kind>(&driver.what); kind && kind->elastic == static_cast<int>(k))
+            sink(*kind, value(driver, a));
+}
+
+double as_force(const Vector3d& f, const Vector3d& m, double L) { return larger(f.norm(), m.norm() / L); }
+
+double stored(const AxialSpring& e, std::size_t k, const Branch& branch, const Equilibrium& state, double) {
+    double free_length = e.free_length;
+    moved<FreeLength>(branch, k, state.load, [&](const FreeLength&, double more) { free_length += more; });
+    const double length =
+        (position(state.poses, e.j.body, e.j.s_local) - position(state.poses, e.i.body, e.i.s_local)).norm();
+    return std::visit([&](const auto& law) { return force(law, length - free_length); }, e.law);
+}
+double stored(const Bushing& e, std::size_t k, const Branch& branch, const Equilibrium& state, double L) {
+    const Eigen::Quaterniond A_i = pose(state.poses, e.i.body).p * e.i.A_local,
+                             A_j = pose(state.poses, e.j.body).p * e.j.A_local;
+    const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
+    Vector6 deformation;
+    deformation << A_i.conjugate() * (position(state.poses, e.j.body, e.j.s_local) -
+                                      position(state.poses, e.i.body, e.i.s_local)),
+        turn.angle() * turn.axis();
+    Vector6 F = e.preload + std::visit([&](const auto& law) { return force(law, deformation); }, e.law);
+    moved<Preload>(branch, k, state.load, [&](const Preload& p, double v) { F += v * p.direction; });
+    return as_force(F.head<3>(), F.tail<3>(), L);
+}
+
+double acting(const LoadKind& load, double factor, double L) {
+    return std::abs(factor) * std::visit(overloaded{[](const DeadForce& l) { return l.f.norm(); },
+                                                    [&](const DeadMoment& l) { return l.m.norm() / L; }},
+                                         load);
+}
+
+// Where something is attached, at the design pose.
+std::vector<Vector3d> attachments(const Model& model) {
+    std::vector<Pose> design;
+    for (const auto& body : model.bodies) design.push_back(body.design);
+    std::vector<Vector3d> points;
+    const auto add = [&](const auto& p) { points.push_back(position(design, p.body, p.s_local)); };
+    for (const auto& body : model.bodies) points.push_back(body.design.r);
+    for (const auto& joint : model.joints) add(joint.at);
+    for (const auto& elastic : model.elastics)
+        std::visit([&](const auto& e) { add(e.i), add(e.j); }, elastic.kind);
+    for (const auto& wheel : model.wheels) points.push_back(position(design, wheel.body, wheel.centre_local));
+    for (const auto& probe : model.probes) add(probe.at);
+    return points;
+}
+
+}  // namespace
+
+Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilibrium> states) {
+    Scale scale;
+    Eigen::AlignedBox3d box;
+    double reach = 0;  // X
+    for (const auto& p : attachments(model)) {
+        box.extend(p);
+        reach = larger(reach, p.norm());
+    }
+    const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+    scale.length = size > 0 ? size : metre;
+    const double L = scale.length;
+
+    double k = 0;
+    for (const auto& elastic : model.elastics)
+        k = larger(k, std::visit(overloaded{[](const AxialSpring& e) {
+                                                return std::visit([](const auto& u) { return stiffness(u); },
+                                                                  e.law);
+                                            },
+                                            [&](const Bushing& e) {
+                                                return std::visit(
+                                                    [&](const auto& u) { return stiffness(u, L); }, e.law);
+                                            }},
+                                 elastic.kind));
+    for (const auto& load : model.static_loads) scale.force = larger(scale.force, acting(load.kind, 1, L));
+    for (const auto& state : states) {
+        for (const auto& driver : branch.drivers)
+            if (const auto* load = std::get_if<Load>(&driver.what))
+                scale.force = larger(scale.force, acting(load->kind, value(driver, state.load), L));
+        for (std::size_t e = 0; e < model.elastics.size(); ++e)
+            scale.force = larger(
+                scale.force, std::visit([&](const auto& kind) { return stored(kind, e, branch, state, L); },
+                                        model.elastics[e].kind));
+        for (const auto& w : state.reactions)
+            scale.force = larger(scale.force, as_force(w.force, w.moment, L));
+        for (const auto& body : state.poses) reach = larger(reach, body.r.norm());
+    }
+    scale.round_off = epsilon * k * std::max(reach, L);
+    return scale;
+}
+
+Bounds bounds_of(const Agreement& agreement, const Scale& scale) {
+    const double F = std::max(scale.force, no_force), rounding = digits * scale.round_off;
+    const double lengths = 1e3 * std::max(scale.length, metre);  // [mm]
+    Bounds bounds;
+    bounds.scale = scale;
+    bounds.length = agreement.length * lengths;
+    bounds.angle = agreement.angle;
+    bounds.force = agreement.wrench * F + rounding;
+    bounds.moment = bounds.force * scale.length;
+    bounds.residual_force = agreement.residual_force * F + rounding;
+    bounds.residual_moment = bounds.residual_force * scale.length;
+    bounds.residual_length = agreement.residual_length * lengths;
+    return bounds;
+}
+
+std::string describe(const Bounds& b) {
+    return fmt::format(
+        "positions to {:.2g} mm, angles to {:.2g} deg, reactions to {:.2g} N and {:.2g} N·m, balances to "
+        "{:.2g} N "
+        "and {:.2g} N·m, constraints to {:.2g} mm (largest force {:.4g} N, size {:.3g} m, round-off of "
+        "stiffness "
+        "times length {:.2g} N)",
+        b.length, b.angle, b.force, b.moment, b.residual_force, b.residual_moment, b.residual_length,
+        b.scale.force, b.scale.length, b.scale.round_off);
+}
+
+}  // namespace elastocheck::compare

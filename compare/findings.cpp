@@ -1,0 +1,167 @@
+#include "compare/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are the arithmetic's
+
+const LegRun& run_of(const BranchComparison& branch, Leg leg) {
+    return branch.runs[static_cast<std::size_t>(leg)];
+}
+
+std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& reading) {
+    std::optional<Worst> worst;
+    for (const auto& branch : comparison.branches) {
+        const Reading& found = reading(branch);
+        for (std::size_t c = 0; c < found.channels.size(); ++c) {
+            const Channel& channel = comparison.channels[c];
+            if (!channel.main || channel.unit != unit) continue;
+            const Deviation& d = found.channels[c];
+            if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
+            worst = Worst{branch.branch, channel.name, unit, d.max, d.end, d.range};
+        }
+    }
+    return worst;
+}
+
+// ---- What a branch does to a wheel.
+
+bool vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
+
+Eigen::Vector3d at_design(const Model& model, const Direction& u) {
+    return u.body == ground ? u.u_local : model.bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
+}
+
+enum class Lift { none, load, jack };
+struct Lifted {
+    Lift by = Lift::none;
+    int joint = -1;  // of the jack
+};
+
+// The one thing that moves, if it is vertical and takes hold of this wheel's body.
+Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
+    Lifted found;
+    for (const auto& driver : branch.drivers) {
+        if (driver.rate == 0) continue;  // held
+        const Lifted one = std::visit(
+            overloaded{[&](const Load& load) {
+                           const auto* force = std::get_if<DeadForce>(&load.kind);
+                           const bool lifts =
+                               force != nullptr && force->at.body == wheel.body && vertical(force->f);
+                           return Lifted{lifts ? Lift::load : Lift::none, -1};
+                       },
+                       [&](const Motion& motion) {
+                           const ModelJoint& joint = model.joints[static_cast<std::size_t>(motion.joint)];
+                           if (joint.driven < 0 || joint.i != wheel.body) return Lifted{};
+                           const auto* plane = std::get_if<PointInPlane>(
+                               &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
+                           const bool lifts = plane != nullptr && vertical(at_design(model, plane->normal_j));
+                           return Lifted{lifts ? Lift::jack : Lift::none, motion.joint};
+                       },
+                       [](const FreeLength&) { return Lifted{}; }, [](const Preload&) { return Lifted{}; }},
+            driver.what);
+        if (one.by == Lift::none || found.by != Lift::none) return {};
+        found = one;
+    }
+    return found;
+}
+
+}  // namespace
+
+const Reading& reading_of(const Pair& pair, ReadingKind kind) {
+    return kind == ReadingKind::equal_parameter ? pair.equal_parameter : pair.equal_abscissa;
+}
+
+std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
+    return worst_of(comparison, unit, [&](const BranchComparison& branch) -> const Reading& {
+        return reading_of(branch.deviation, kind);
+    });
+}
+
+std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit) {
+    return worst_of(comparison, unit, [](const BranchComparison& branch) -> const Reading& {
+        return branch.uncertainty.equal_parameter;
+    });
+}
+
+std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison) {
+    std::vector<RateError> list;
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const BranchComparison& branch = comparison.branches[b];
+        const Curve &truth = run_of(branch, Leg::equilibrium).curve,
+                    &fast = run_of(branch, Leg::recursive).curve;
+        if (truth.a.empty() || truth.a.size() != fast.a.size() || truth.start != fast.start) continue;
+        for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+            const Wheel& wheel = model.wheels[w];
+            const Lifted by = lifted(model, model.branches[b], wheel);
+            if (by.by == Lift::none) continue;
+            const auto channel = [&](auto&& wanted) {
+                const auto found = std::ranges::find_if(comparison.channels, wanted);
+                return static_cast<std::size_t>(found - comparison.channels.begin());
+            };
+            const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
+            const std::size_t travel = channel([&](const Channel& c) { return c.name == prefix + "travel"; });
+            const std::size_t force = channel([&](const Channel& c) {
+                const auto* effort = std::get_if<Effort>(&c.reads);
+                return effort != nullptr && effort->joint == by.joint;
+            });
+            const auto gained = [](const Curve& curve, std::size_t c, std::size_t end) {
+                return curve.values[end][c] - curve.values[curve.start][c];
+            };
+            for (const std::size_t end : {std::size_t{0}, truth.a.size() - 1}) {
+                if (end == truth.start) continue;
+                RateError error{branch.branch, wheel.name, truth.a[end], branch.unit};
+                error.travel = fast.values[end][travel] - truth.values[end][travel];
+                if (by.by == Lift::load) {  // the same force over travels that differ
+                    error.off = gained(truth, travel, end) / gained(fast, travel, end) - 1;
+                } else {  // forces that differ over the same travel
+                    error.force = fast.values[end][force] - truth.values[end][force];
+                    error.off = gained(fast, force, end) / gained(truth, force, end) - 1;
+                }
+                if (std::isfinite(error.off)) list.push_back(error);
+            }
+        }
+    }
+    return list;
+}
+
+std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study, const std::string& method) {
+    std::optional<GapPart> found;
+    for (const auto& branch : comparison.branches) {
+        const BranchStudy* way = nullptr;  // the one that ends where the branch does
+        for (const auto& candidate : study.branches)
+            if (candidate.belongs_to == branch.branch) way = &candidate;
+        if (way == nullptr) continue;
+        for (const auto& m : way->methods) {
+            if (m.method != method || run_of(branch, Leg::recursive).method != method) continue;
+            for (std::size_t k = 0; k < m.equal_parameter.size(); ++k) {
+                if (study.channels[k].unit != Unit::mm) continue;
+                const int c = find_channel(comparison.channels, study.channels[k].name);
+                if (c < 0 || branch.deviation.equal_parameter.channels.empty()) continue;
+                const double end = branch.deviation.equal_parameter.channels[static_cast<std::size_t>(c)].end;
+                const ChannelStudy& s = m.equal_parameter[k];
+                if (!std::isfinite(s.gap) ||
+                    !(std::abs(end) > std::max(nothing, found ? std::abs(found->deviation) : 0)))
+                    continue;
+                found = GapPart{branch.branch, study.channels[k].name, end, s.gap, s.end.band};
+            }
+        }
+    }
+    if (!found) return std::nullopt;
+    const double share = found->gap / found->deviation;
+    found->role = std::abs(found->gap) <= std::max(std::isnan(found->band) ? 0 : found->band, nothing)
+                      ? GapRole::none
+                  : share < 0   ? GapRole::opposite
+                  : share > 1.1 ? GapRole::hidden
+                  : share > 0.9 ? GapRole::nearly_all
+                  : share < 0.1 ? GapRole::hardly_any
+                                : GapRole::part;
+    return found;
+}
+
+}  // namespace elastocheck::compare

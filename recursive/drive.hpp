@@ -1,0 +1,88 @@
+// How balance and Φ answer to the drivers of a branch at fixed q: their ∂/∂a, and ∂/∂t while settling.
+#pragma once
+
+#include "recursive/constraints.hpp"
+#include "recursive/elastic.hpp"
+#include "recursive/loads.hpp"
+
+namespace elastocheck::recursive {
+
+// What of a driver moves: its start while settling, its rate on the branch.
+enum class Drive { start, rate };
+
+template <class Real>
+Real speed(const Driver& driver, Drive drive) {
+    return static_cast<Real>(drive == Drive::start ? driver.start : driver.rate);
+}
+
+// Adds amount · ∂f_ext/∂a to `force` [6nb].
+template <class Real>
+void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<Real>& q,
+                   Vector<Real>& force) {
+    for (const auto& driver : branch.drivers)
+        std::visit(overloaded{
+                       [&](const Load& load) {
+                           add_load<Real>(load.kind, amount * speed<Real>(driver, drive), q, force);
+                       },
+                       [](const Motion&) {},
+                       [](const FreeLength&) {},
+                       [](const Preload&) {},
+                   },
+                   driver.what);
+}
+
+// amount · ∂f_elast/∂a, element by element: add(element number, (F, M) on its body j).
+template <class Real, class Add>
+void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
+                          Real amount, const State<Real>& q, Add&& add) {
+    for (const auto& driver : branch.drivers) {
+        const Real by = amount * speed<Real>(driver, drive);
+        std::visit(overloaded{
+                       [](const Load&) {},
+                       [](const Motion&) {},
+                       [&](const FreeLength& f) {
+                           const auto k = static_cast<std::size_t>(f.elastic);
+                           const auto& spring = std::get<AxialSpring>(model.elastics[k].kind);
+                           ElementForce<Real> force = force_of_free_length<Real>(spring, inputs.rest[k], q);
+                           force.F *= by;
+                           add(k, force);
+                       },
+                       [&](const Preload& p) {
+                           const auto k = static_cast<std::size_t>(p.elastic);
+                           const auto& bushing = std::get<Bushing>(model.elastics[k].kind);
+                           add(k, force_of_preload<Real>(bushing, by * p.direction.cast<Real>(), q));
+                       },
+                   },
+                   driver.what);
+    }
+}
+// Adds amount · ∂f_elast/∂a to `force` [6nb].
+template <class Real>
+void add_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
+                     Real amount, const State<Real>& q, Vector<Real>& force) {
+    for_each_stored_rate<Real>(model, branch, inputs, drive, amount, q,
+                               [&](std::size_t k, const ElementForce<Real>& stored) {
+                                   const auto [i, j] = bodies_of(model.elastics[k].kind);
+                                   add_element_force<Real>(i, j, stored, force);
+                               });
+}
+
+// Adds amount · ∂Φ/∂a to `Phi` [m].
+template <class Real>
+void add_constraint_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
+                         Real amount, const State<Real>& q, Vector<Real>& Phi) {
+    for (const auto& driver : branch.drivers)
+        std::visit(overloaded{
+                       [](const Load&) {},
+                       [&](const Motion& motion) {
+                           const std::size_t k = constraint_of(model, motion);
+                           Phi[inputs.row[k]] += amount * speed<Real>(driver, drive) *
+                                                 slope<Real>(model.constraints[k].kind, inputs.offset[k], q);
+                       },
+                       [](const FreeLength&) {},
+                       [](const Preload&) {},
+                   },
+                   driver.what);
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,110 @@
+// From the design position to the equilibrium under what is held, t from 0 to 1 (march.hpp): preloads, static
+// loads, what the drivers start at, joints that are not closed as drawn.
+#pragma once
+
+#include "recursive/steps.hpp"
+#include "recursive/walk.hpp"
+
+namespace elastocheck::recursive {
+
+// What pushes an idle mode is asked where the modes are known best: as drawn.
+template <class Real>
+bool pushes_idle_mode(const March<Real>& s) {
+    Vector<Real> f_ext, f_elast;
+    external_force<Real>(s.model, s.branch, s.inputs, s.q, f_ext);
+    elastic_force<Real>(s.model, s.inputs, s.q, f_elast);
+    const Real whole = size_of_force(s, f_ext) + size_of_force(s, f_elast);
+    const Real rounding = Real(guard::rounding) * std::numeric_limits<Real>::epsilon();
+    const Real blur = s.Phi_d.norm() / static_cast<Real>(std::min(1.0, s.length));
+    return !(load_on_idle_modes<Real>(s, f_ext - f_elast, whole) <=
+             rounding + Real(guard::share_per_error) * blur);
+}
+
+// With the stiffness of (19): in one step where the design position is an equilibrium, which gives λ⁻¹; else
+// in `steps` of them, as the branch is gone.
+template <class Real>
+Outcome settle(March<Real>& s, const Linear& method, int steps) {
+    const Real at_rest = Real(1e-9) * static_cast<Real>(s.length);  // less than that is rounding
+    for (const int N : {1, steps}) {
+        s.consistent = false;
+        s.q = s.before = design_state<Real>(s.model);
+        s.lambda.setZero();
+        go_to(s, {1, 0});
+        if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
+        go_to(s, {0, 0});
+        external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
+        s.applied -= s.R_d;
+        elastic_force<Real>(s.model, s.inputs, s.q, s.stored);
+        s.element.clear();
+        for (std::size_t k = 0; k < s.model.elastics.size(); ++k)
+            s.element.push_back(element_force<Real>(s.model.elastics[k].kind, s.inputs.rest[k], s.q));
+        drive_at(s, Drive::start, Real(1), s.q);
+        if (s.upper.isZero(0) && s.lower.isZero(0)) {  // nothing is held: λ⁻¹ = 0
+            go_to(s, {1, 0});
+            return Outcome::converged;
+        }
+        Outcome outcome = Outcome::converged;
+        for (int k = 1; k <= N && outcome == Outcome::converged; ++k)
+            outcome = step(s, method, {k == N ? Real(1) : static_cast<Real>(k) / static_cast<Real>(N), 0});
+        const bool rested = outcome == Outcome::converged && s.last.norm() <= at_rest;
+        s.swings = 0;
+        s.last.setZero();
+        if (rested || N == steps) return outcome;
+    }
+    return Outcome::converged;
+}
+
+// With the consistent tangent and the true forces: by steps of its own, each halved until it is believed,
+// and at the end to round-off.
+template <class Real>
+Outcome settle(March<Real>& s) {
+    s.consistent = true;
+    go_to(s, {1, 0});
+    if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
+    const Real length = static_cast<Real>(s.length);
+    // On the way a step need only be near enough to the path for Newton's method to stay on it.
+    const Going<Real> going{Drive::start, Real(1e-4) * length, Real(1e-4)};
+    Node<Real> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    go_to(s, {0, 0});
+    drive_at(s, Drive::start, Real(1), s.q);
+    if (!s.upper.isZero(0) || !s.lower.isZero(0)) {
+        s.applied.setZero();  // as drawn nothing pushes; pushes_idle_mode has seen what will
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
+            return outcome;
+        differentiate(s, going, node);
+        Vector<Real> curvature = Vector<Real>::Zero(s.n()), lambda_curvature = Vector<Real>::Zero(s.m());
+        Real h = 1;
+        while (node.p < Real(1)) {
+            next.p = node.p + h < Real(1) - h / 8 ? node.p + h : Real(1);
+            const Trial<Real> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+            const Real tried = next.p - node.p;
+            if (trial.verdict == Verdict::believed) {
+                curvature = (next.dq - node.dq) / tried;
+                lambda_curvature = (next.dlambda - node.dlambda) / tried;
+                std::swap(node, next);
+                h = 2 * tried;
+            } else if (h = tried / 4; h < Real(1e-6)) {
+                return why_it_ends(trial, node, curvature, tried);
+            }
+        }
+    }
+    // To round-off: corrections fall quadratically until they are it.
+    const Real enough = 100 * std::numeric_limits<Real>::epsilon() * length;
+    Real before = std::numeric_limits<Real>::infinity();
+    for (int k = 0; k < 8; ++k) {
+        Real unused = 0;
+        if (const Outcome outcome =
+                correct(s, Going<Real>{Drive::start, length, Real(1)}, node.q, node.lambda, Real(1), unused);
+            outcome != Outcome::converged)
+            return outcome;
+        const Real size = std::sqrt(size_of_solution(s));
+        if (size <= enough || !(size < before)) break;
+        before = size;
+    }
+    s.q = s.before = node.q;
+    s.lambda = node.lambda;
+    s.last.setZero();
+    return Outcome::converged;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,140 @@
+// Along a path of equilibria by steps of its own: a node, and what it takes to believe in the next.
+//
+// A node is a point z = (q, λ) of the path with its derivative z' = dz/dp, p the parameter that moves (t
+// while settling, a on the branch): ∂G z' = what the drivers add, one more right-hand side for factors that
+// are there anyway. From one node to the next:
+//
+//   forecast     z⁺ = z + h z' + ½ h² z'', z'' from the last two derivatives
+//   corrections  Newton steps, each with its own factors: their sizes fall quadratically, so the last one
+//                squared over the one before is what is left. (With the factors of the old node they hardly
+//                fall at all: where stiff bushings turn beside soft springs, the error of old factors is
+//                their angle times the ratio of the rates.)
+//
+// Newton's method knows nothing of branches: past a limit point it is glad to land on whatever equilibrium
+// there is. So a step is believed only where the determinant of the matrix has not changed its sign, and
+// where the chord between the nodes agrees with the derivatives at both ends.
+#pragma once
+
+#include "recursive/march.hpp"
+
+namespace elastocheck::recursive {
+
+template <class Real>
+struct Node {
+    State<Real> q;
+    Vector<Real> lambda, dq, dlambda;  // z' = (dq, dlambda) per unit of p
+    Real p = 0;
+    int orientation = 0;  // sign of the determinant
+};
+
+// Which way is gone, and how near is near enough.
+template <class Real>
+struct Going {
+    Drive drive = Drive::rate;
+    Real length_tolerance = 0, angle_tolerance = 0;  // of the corrections [m], [rad]
+
+    Place<Real> place(Real p) const { return drive == Drive::start ? Place<Real>{p, 0} : Place<Real>{1, p}; }
+};
+
+// z' at the node, with the factors now in the system.
+template <class Real>
+void differentiate(March<Real>& s, const Going<Real>& going, Node<Real>& node) {
+    go_to(s, going.place(node.p));
+    drive_at(s, going.drive, Real(1), node.q);
+    back_substitute(s);
+    node.dq = s.x.head(s.n());
+    node.dlambda = s.x.tail(s.m());
+    node.orientation = s.system.lu.orientation;
+}
+
+// The motion dq as a share of the tolerances: the worst of any body.
+template <class Real, class Motion>
+Real share(const Going<Real>& going, const Motion& dq) {
+    Real worst = 0;
+    for (Eigen::Index b = 0; b < dq.size() / 6; ++b) {
+        worst = std::max(worst, dq.template segment<3>(6 * b).norm() / going.length_tolerance);
+        worst = std::max(worst, dq.template segment<3>(6 * b + 3).norm() / going.angle_tolerance);
+    }
+    return worst;
+}
+
+// One Newton correction of (q, lambda) at p; its share of the tolerance goes to `size`.
+template <class Real>
+Outcome correct(March<Real>& s, const Going<Real>& going, State<Real>& q, Vector<Real>& lambda, Real p,
+                Real& size) {
+    go_to(s, going.place(p));
+    external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);  // what idle modes are checked against
+    if (const Outcome outcome = factorise_at(s, q, lambda); outcome != Outcome::converged) return outcome;
+    residual_at(s, q, lambda);
+    back_substitute(s);
+    if (!s.x.allFinite()) return Outcome::not_finite;
+    size = share<Real>(going, s.x.head(s.n()));
+    s.dq = s.x.head(s.n());
+    advance(q, s.dq);
+    lambda += s.x.tail(s.m());
+    return Outcome::converged;
+}
+
+// What a step came to.
+enum class Verdict {
+    believed,
+    unsolved,        // the corrections do not fall, or leave too much
+    another_branch,  // an equilibrium, but the chord and the derivatives disagree
+    turned_over      // on this path, but past a point where the matrix is singular
+};
+
+template <class Real>
+struct Trial {
+    Outcome outcome = Outcome::converged;  // of the linear algebra
+    Verdict verdict = Verdict::unsolved;
+    Real left = std::numeric_limits<Real>::infinity();  // of the corrections, as a share of the tolerance
+};
+
+// From `node` to next.p; `curvature` is z'' (q part, λ part) as far as known. Fills `next`, with derivative
+// where the verdict is another one than `unsolved`.
+template <class Real>
+Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>& node,
+                     const Vector<Real>& curvature, const Vector<Real>& lambda_curvature, Node<Real>& next) {
+    const Real h = next.p - node.p;
+    Trial<Real> trial;
+    next.q = node.q;
+    next.lambda = node.lambda + h * node.dlambda + h * h / 2 * lambda_curvature;
+    s.dq = h * node.dq + h * h / 2 * curvature;
+    // What the linearisation is worth ends at a radian.
+    for (int b = 0; b < s.n() / 6; ++b)
+        if (!(s.dq.template segment<3>(6 * b + 3).norm() <= Real(guard::largest_turn))) return trial;
+    const Real forecast = share<Real>(going, s.dq);
+    advance(next.q, s.dq);
+    Real before = std::numeric_limits<Real>::infinity(), size = 0, corrected = 0;
+    for (int k = 0; k < 6 && trial.left > Real(0.01); ++k) {
+        trial.outcome = correct(s, going, next.q, next.lambda, next.p, size);
+        if (trial.outcome != Outcome::converged) return trial;
+        if (!(size < before)) break;  // not falling: the step is too long
+        // The first correction has no ratio yet; one far below the tolerance may be rounding, whose ratio
+        // says nothing.
+        trial.left = k == 0 || size <= Real(1e-3) ? size : size * (size / before);
+        before = size;
+        corrected += size;
+    }
+    if (!(trial.left <= Real(0.01))) return trial;
+    differentiate(s, going, next);
+    // The forecast is of second order: where the corrections are half of it, it forecast something else.
+    const bool continues = corrected <= forecast / 2 + 1;
+    trial.verdict = !continues                             ? Verdict::another_branch
+                    : next.orientation != node.orientation ? Verdict::turned_over
+                                                           : Verdict::believed;
+    return trial;
+}
+
+// Why a path does not go on from `node`, judged by the smallest trial of length h that failed.
+template <class Real>
+Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vector<Real>& curvature, Real h) {
+    if (trial.outcome == Outcome::not_finite || trial.outcome == Outcome::loaded_idle_mode)
+        return trial.outcome;
+    // Towards a limit point p*, z' ~ (p* - p)^-½, so that z'' (p* - p) = ½ z' and h is about p* - p.
+    if (curvature.norm() * std::abs(h) > Real(0.02) * node.dq.norm()) return Outcome::limit_point;
+    if (trial.verdict == Verdict::turned_over || trial.outcome == Outcome::singular) return Outcome::singular;
+    return Outcome::branch_lost;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,13 @@
+// One function a kind: a kind that is forgotten does not compile.
+#pragma once
+
+namespace elastocheck::reference::equilibrium {
+
+template <class... F>
+struct overloaded : F... {
+    using F::operator()...;
+};
+template <class... F>
+overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce it
+
+}  // namespace elastocheck::reference::equilibrium

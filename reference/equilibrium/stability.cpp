@@ -1,0 +1,70 @@
+#include "reference/equilibrium/stability.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// Of Φ_q, whose rows have sizes of order one: less is a redundant row.
+constexpr double rank_threshold = 1e-10;
+
+// What round-off leaves of an eigenvalue, over the largest entry of ∂(balance)/∂q.
+constexpr double eigenvalue_round_off = 1e-13;
+
+// How far below its least node the parabola may go before the step is halved.
+constexpr double deepest_dip = 0.5;
+
+MatrixXd null_space(const MatrixXd& Phi_q) {
+    if (Phi_q.rows() == 0) return MatrixXd::Identity(Phi_q.cols(), Phi_q.cols());
+    Eigen::ColPivHouseholderQR<MatrixXd> qr;
+    qr.setThreshold(rank_threshold);
+    qr.compute(Phi_q.transpose());
+    const MatrixXd Q = qr.householderQ();
+    return Q.rightCols(Q.cols() - qr.rank());
+}
+
+}  // namespace
+
+Stiffness stiffness(const System& system, const MatrixXd& J, const NullSpaces& idle) {
+    const Index n = 6 * system.bodies;
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!J.allFinite()) return {nan, nan};
+    if (n == 0) return {};
+    const MatrixXd Z = null_space(J.bottomLeftCorner(system.constraint_rows, n));
+    if (Z.cols() == 0) return {};
+
+    const double size = J.topLeftCorner(n, n).cwiseAbs().maxCoeff();
+    MatrixXd M = -Z.transpose() * J.topLeftCorner(n, n) * Z;
+    // Idle modes are held as stiffly as anything else, and drop out of the question.
+    const MatrixXd held = Z.transpose() * idle.right.topRows(n);
+    M += std::max(size, 1.0) * held * held.transpose();
+
+    const Eigen::EigenSolver<MatrixXd> solver(M, false);
+    if (solver.info() != Eigen::Success) return {nan, nan};
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& mu : solver.eigenvalues())
+        least = std::min(least, mu.imag() == 0 ? mu.real() : std::abs(mu));
+    return {least, eigenvalue_round_off * size};
+}
+
+// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),  has its least value
+// λ₀ - b² / 4c where 0 < -b / 2c < 1.
+Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to) {
+    const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
+    const double round_off = std::max({from.round_off, middle.round_off, to.round_off});
+    const double least = std::min({l_0, l_m, l_1});
+    if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1)) || least < -round_off)
+        return Stability::lost;
+    const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
+    const bool dips = c > 0 && b < 0 && -b < 2 * c;
+    if (dips && l_0 - b * b / (4 * c) < deepest_dip * least - round_off) return Stability::uncertain;
+    return Stability::kept;
+}
+
+}  // namespace elastocheck::reference::equilibrium
