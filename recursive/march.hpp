@@ -64,7 +64,8 @@ struct March {
         element;  // of each elastic element, where stored forces are kept by element
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int swings = 0;  // steps in a row that reversed the one before and were larger
+    int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
+    int swings = 0;       // steps in a row that reversed the one before and were larger
 
     March(const Model& model_, const Branch& branch_, const Diagnosis& diagnosis)
         : model(model_),
