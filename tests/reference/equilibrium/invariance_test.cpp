@@ -39,7 +39,7 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
                 return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[n].name,
                                    loads[k]);
             };
-            const Wheel &w_a = *model_a.wheel, &w_b = *model_b.wheel;
+            const Wheel &w_a = model_a.wheels[0], &w_b = model_b.wheels[0];
             worst.see((position(at_a, {w_a.body, w_a.centre_local}) -
                        back.point(position(at_b, {w_b.body, w_b.centre_local})))
                           .norm(),
@@ -149,7 +149,7 @@ TEST(EquilibriumInvariance, NumberOfSteps) {
                 for (int n = 1; n <= steps; ++n) loads.push_back(branch.to * n / steps);
                 const auto other = solve(model, branch, loads);
                 ASSERT_EQ(other.outcome, Outcome::converged) << other.detail;
-                const auto body = static_cast<std::size_t>(model.wheel->body);
+                const auto body = static_cast<std::size_t>(model.wheels[0].body);
                 worst.see((other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(),
                           fmt::format("{} steps", steps));
                 worst.see(other.points.back().poses[body].p.angularDistance(fine.points.back().poses[body].p),
