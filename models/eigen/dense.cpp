@@ -7,8 +7,8 @@ template class ColPivHouseholderQR<MatrixXd>;
 template class CompleteOrthogonalDecomposition<MatrixXd>;
 template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 template class JacobiSVD<MatrixXd>;
-template SelfAdjointEigenSolver<Matrix6d>& SelfAdjointEigenSolver<Matrix6d>::compute(
-    const EigenBase<Matrix6d>&, int);
+template SelfAdjointEigenSolver<Matrix<double, 6, 6>>& SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(
+    const EigenBase<Matrix<double, 6, 6>>&, int);
 
 namespace internal {
 template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<const MatrixXd>&,

@@ -8,15 +8,13 @@
 
 namespace Eigen {
 
-using Matrix6d = Matrix<double, 6, 6>;
-
 extern template class HouseholderQR<MatrixXd>;
 extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class CompleteOrthogonalDecomposition<MatrixXd>;
 extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 extern template class JacobiSVD<MatrixXd>;
-extern template SelfAdjointEigenSolver<Matrix6d>& SelfAdjointEigenSolver<Matrix6d>::compute(
-    const EigenBase<Matrix6d>&, int);
+extern template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
+SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
 
 namespace internal {
 extern template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<const MatrixXd>&,
