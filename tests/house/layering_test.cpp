@@ -48,13 +48,13 @@ std::vector<std::string> violations(const std::string& file, const std::string& 
         std::string target = match[2];
         const bool prefixed = target.starts_with("elastocheck/");
         if (prefixed) target.erase(0, std::string("elastocheck/").size());
+        const bool relative = target.starts_with("../") || target.find("/../") != target.npos;
         const bool ours =
             std::ranges::any_of(rooms, [&](const Room& r) { return is_below(target, r.folder); });
         const bool generated = file.ends_with(".cpp") && target.find('/') == target.npos && quoted;
         if (prefixed || (ours != quoted && !generated && !relative))
             found.push_back(file +
                             ": the house is included as \"ROOM/...\", all else as <...>: " + match.str());
-        const bool relative = target.starts_with("../") || target.find("/../") != target.npos;
         if (relative) found.push_back(file + ": a relative include hides where it goes: " + target);
         if (target.starts_with("tests/")) found.push_back(file + " includes " + target);
         for (const Room& other : rooms) {
