@@ -22,17 +22,21 @@ constexpr double rank_threshold = 1e-9;  // on rows of unit length
 constexpr double stiffness_threshold = 1e-13;
 constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
 
+// Where on its body an end of a constraint or element is attached; a direction is attached nowhere.
+const Vector3d* lever(const Point& end) { return &end.s_local; }
+const Vector3d* lever(const Marker& end) { return &end.s_local; }
+const Vector3d* lever(const Direction&) { return nullptr; }
+
 // The root mean square lever of everything that is attached to a body:
 // invariant under motions of the ground frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
-    const auto take = [&](const auto& point) {
-        if constexpr (requires { point.s_local; }) {
-            if (point.body == ground || point.s_local.isZero(0)) return;
-            sum += point.s_local.squaredNorm();
-            ++count;
-        }
+    const auto take = [&](const auto& end) {
+        const Vector3d* s = lever(end);
+        if (!s || end.body == ground || s->isZero(0)) return;
+        sum += s->squaredNorm();
+        ++count;
     };
     const auto both = [&](const auto& e) { take(e.i), take(e.j); };
     for (const auto& c : model.constraints) std::visit(both, c.kind);
@@ -66,7 +70,8 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
 // turned to ground axes. What is soft in one of an element's own directions is told apart from what is nothing
 // only there: in other axes the rounding of the stiff directions covers it. K_e = S C S with a unit diagonal C,
 // so that rates of any size count alike.
-std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest, const State<double>& q) {
+std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
+                                       const State<double>& q) {
     const Axial<double> g = deformation<double>(e, q);
     if (!(hessian<double>(e.law, [&] { return g.length - rest.free_length; }) > 0)) return {};
     Vector6<double> row;
@@ -155,14 +160,12 @@ std::string describe(const Model& model, const State<double>& q, BodyId body, co
         q[body].r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
     const Vector3d u = w.normalized();
     std::vector<std::string> on_axis;
-    const auto look = [&](const std::string& what, const auto& point) {
-        if constexpr (requires { point.s_local; }) {
-            if (point.body != body) return;
-            const Vector3d p = q[body].r + q[body].lever(point.s_local);
-            if ((p - foot).cross(u).norm() < 1e-6 * length &&
-                std::ranges::find(on_axis, what) == on_axis.end())
-                on_axis.push_back(what);
-        }
+    const auto look = [&](const std::string& what, const auto& end) {
+        const Vector3d* s = lever(end);
+        if (!s || end.body != body) return;
+        const Vector3d p = q[body].r + q[body].lever(*s);
+        if ((p - foot).cross(u).norm() < 1e-6 * length && std::ranges::find(on_axis, what) == on_axis.end())
+            on_axis.push_back(what);
     };
     for (const auto& c : model.constraints)
         std::visit(
@@ -198,13 +201,15 @@ void find_undetermined(const Model& model, const MatrixXd& Y, Diagnosis& result)
             const int one = joint_of_row[static_cast<std::size_t>(k)],
                       other = joint_of_row[static_cast<std::size_t>(l)];
             result.determined[static_cast<std::size_t>(one)] = false;
-            const auto [low, high] = std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
+            const auto [low, high] =
+                std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
             std::ranges::replace(set, int(high), int(low));
         }
     for (int first = 0; first < static_cast<int>(joints); ++first) {
         std::vector<int> members;
         for (int joint = first; joint < static_cast<int>(joints); ++joint)
-            if (set[static_cast<std::size_t>(joint)] == first && !result.determined[static_cast<std::size_t>(joint)])
+            if (set[static_cast<std::size_t>(joint)] == first &&
+                !result.determined[static_cast<std::size_t>(joint)])
                 members.push_back(joint);
         if (!members.empty()) result.redundant_sets.push_back(members);
     }

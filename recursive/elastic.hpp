@@ -1,14 +1,14 @@
 // Elastic elements: the stiffness matrix of eqs. (8)-(20), and the force of the full nonlinear law.
 //
-// The paper's displacement of the attachment points, eqs. (12)-(13),
-// and its relative motion seen from body i,
+// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen from body
+// i,
 //
 //   Δe = ⎧ Δr_j' - Δr_i' ⎫ = B ⎧ Δq_i ⎫ ,   B = ⎡ -I   s̃_i   I   -s̃_j ⎤      Δr' = Δr - s̃ Δπ
 //        ⎩ Δπ_j  - Δπ_i  ⎭     ⎩ Δq_j ⎭         ⎣  0   -I    0    I   ⎦
 //
-// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections: its sign, so that
-// f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block row, third and
-// fourth block. Written out,
+// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections:
+// its sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block
+// row, third and fourth block. Written out,
 //
 //   ⎡ K_ii  K_ij ⎤   ⎡  K_T         -K_T s̃_i              -K_T          K_T s̃_j            ⎤
 //   ⎣ K_ji  K_jj ⎦ = ⎢  s̃_i K_T     -s̃_i K_T s̃_i + K_R    -s̃_i K_T      s̃_i K_T s̃_j - K_R  ⎥      (19)
@@ -103,8 +103,8 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>&, co
     return k;
 }
 
-// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20);
-// `target` is [6nb × 6nb] or has it as its top left corner.
+// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top left
+// corner.
 template <class Real, class Target>
 void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
     // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b).
@@ -163,8 +163,8 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
     Eigen::Quaternion<Real> p(R);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces
-    // the quotient, which is exact to the last bit there.
+    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit
+    // there.
     const Real factor =
         sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
     return factor * p.vec();

@@ -1,5 +1,5 @@
-// How far a pose is from being a constrained minimum:
-// multipliers, what they leave over, and the modes of motion.
+// How far a pose is from being a constrained minimum: multipliers, what they leave over, and the modes of
+// motion.
 //
 // All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
 #pragma once

@@ -3,13 +3,23 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix "-DCMAKE_CXX_FLAGS=${FLAGS}")
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-execute_process(COMMAND ${WORK}/build/consumer ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml
-                OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
-if(NOT said MATCHES "converged in 100 steps")
-  message(FATAL_ERROR "the consumer said: ${said}")
-endif()
+
+# consumer(name expected WITHOUT package... ARGUMENTS ...): a project that finds the package where others are not to
+# be found, builds, and says what is expected.
+function(consumer name expected)
+  cmake_parse_arguments(arg "" "" "WITHOUT;ARGUMENTS" ${ARGN})
+  list(TRANSFORM arg_WITHOUT REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
+  run(${CMAKE_COMMAND} -S ${CONSUMERS}/${name} -B ${WORK}/build/${name} -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+      "-DCMAKE_CXX_FLAGS=${FLAGS}" ${arg_WITHOUT})
+  run(${CMAKE_COMMAND} --build ${WORK}/build/${name})
+  execute_process(COMMAND ${WORK}/build/${name}/${name} ${arg_ARGUMENTS} OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT said MATCHES "${expected}")
+    message(FATAL_ERROR "${name} said: ${said}")
+  endif()
+endfunction()
+consumer(recursion "converged at -0.01 m" WITHOUT Ceres NLopt yaml-cpp CLI11 nlohmann_json pugixml)
+consumer(consumer "converged in 100 steps" WITHOUT Ceres NLopt CLI11 nlohmann_json pugixml
+         ARGUMENTS ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml)
 execute_process(COMMAND ${WORK}/prefix/bin/elastocheck inspect ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 

@@ -1,0 +1,20 @@
+#include "models/eigen/dense.hpp"
+
+namespace Eigen {
+
+template class HouseholderQR<MatrixXd>;
+template class ColPivHouseholderQR<MatrixXd>;
+template class CompleteOrthogonalDecomposition<MatrixXd>;
+template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+template class JacobiSVD<MatrixXd>;
+template SelfAdjointEigenSolver<Matrix<double, 6, 6>>& SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(
+    const EigenBase<Matrix<double, 6, 6>>&, int);
+
+namespace internal {
+template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<const MatrixXd>&,
+                                                  const VectorBlock<const VectorXd>&, bool);
+template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>, 4, 4, false,
+                            false>;
+}  // namespace internal
+
+}  // namespace Eigen

@@ -1,0 +1,26 @@
+// Eigen's decompositions of a MatrixXd, compiled once (dense.cpp) instead of in every file that uses one.
+//
+// Part of the precompiled headers and of nothing else. Nothing is defined here: a file that includes Eigen alone
+// compiles its own, which is the same.
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace Eigen {
+
+extern template class HouseholderQR<MatrixXd>;
+extern template class ColPivHouseholderQR<MatrixXd>;
+extern template class CompleteOrthogonalDecomposition<MatrixXd>;
+extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+extern template class JacobiSVD<MatrixXd>;
+extern template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
+SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
+
+namespace internal {
+extern template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<const MatrixXd>&,
+                                                         const VectorBlock<const VectorXd>&, bool);
+extern template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>, 4, 4,
+                                   false, false>;
+}  // namespace internal
+
+}  // namespace Eigen
