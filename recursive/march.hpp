@@ -66,7 +66,8 @@ struct March {
         element;  // of each elastic element, where stored forces are kept by element
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int swings = 0;  // steps in a row that reversed the one before and were larger
+    int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
+    int swings = 0;       // steps in a row that reversed the one before and were larger
 
     March(const Model& model_, const Branch& branch_, const Analysis& analysis)
         : model(model_),
