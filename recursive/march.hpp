@@ -35,6 +35,9 @@ inline constexpr double strain_per_error = 100, share_per_error = 10;
 // ... and with rounding: in multiples of the unit round-off, since the share is a small difference of forces
 // that the conditioning has blown up.
 inline constexpr double rounding = 1e7;
+// Joints that are open by less than this [m, rad] as drawn are closed: their points have been written down
+// with nine digits.
+inline constexpr double closed = 1e-9;
 // The linearisation of a rotation, eq. (6), is off by half at a radian.
 inline constexpr double largest_turn = 1;
 // One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
@@ -85,6 +88,7 @@ struct March {
         for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
         for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
+        if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
         set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
     }
     int n() const { return system.n; }

@@ -24,7 +24,7 @@ bool pushes_idle_mode(const March<Real>& s) {
 // only (u_i·w = 0 has two).
 template <class Real>
 bool stayed_open(const March<Real>& s, Real share) {
-    const Real open = s.Phi_d.norm(), rounding = Real(1e-9);
+    const Real open = s.Phi_d.norm(), rounding = Real(10 * guard::closed);
     Vector<Real> Phi = constraint_values<Real>(s.model, s.inputs, s.q);
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
@@ -37,7 +37,7 @@ bool stayed_open(const March<Real>& s, Real share) {
 template <class Real>
 Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
     if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
-    const bool was_open = !(s.Phi_d.norm() <= Real(1e-9));
+    const bool was_open = s.Phi_d.norm() > Real(0);
     if (outcome != Outcome::converged) return was_open ? Outcome::inconsistent_constraints : outcome;
     return stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
 }
@@ -46,7 +46,8 @@ Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
 // in `steps` of them, as the branch is gone.
 template <class Real>
 Outcome settle(March<Real>& s, const Linear& method, int steps) {
-    const Real at_rest = Real(1e-9) * static_cast<Real>(s.length);  // less than that is rounding
+    // What one linear step gets wrong is the square of its size: here less than rounding.
+    const Real at_rest = Real(1e-6) * static_cast<Real>(s.length);
     for (const int N : {1, steps}) {
         s.consistent = false;
         s.q = s.before = design_state<Real>(s.model);

@@ -315,10 +315,13 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium, the
     // way to one begins there; where it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
+        s.Phi_d = analysis.Phi_d;  // to the last digit: the series is exact, from an equilibrium that is
         Walk settling(s, options, Drive::start);
         if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
-        if (const Outcome o = settled(s, walk(settling), 0.0); o != Outcome::converged) return finish(settling, o);
+        const Outcome walked = walk(settling);
+        if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+        if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged) return finish(settling, o);
         Walk w(s, options, Drive::rate);
         w.go_to(0);
         return finish(w, walk(w));

@@ -66,7 +66,7 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
 
 TEST(Constraints, JointsLeaveTheFreedomTheirNameSays) {
     Random random;
-    const int rows[] = {3, 5, 4, 4, 5, 3, 6, 1, 1, 2, 1, 2};
+    const int rows[] = {3, 5, 4, 4, 5, 3, 6, 1, 1, 2, 1, 2, 1};
     for (const auto& joint : every_joint(0, 1, random))
         EXPECT_EQ(constraint_rows(model_of(joint, 2)), rows[joint.index()]);
 }
