@@ -50,7 +50,43 @@ double bound_of(Unit unit, const Bounds& bounds) {
     return 0;
 }
 
-// Why the references do not count as one truth on this branch.
+int count(const Reading& reading, const std::vector<bool>& determined) {
+    int sum = 0;
+    for (std::size_t c = 0; c < reading.channels.size(); ++c)
+        if (determined[c]) sum += reading.channels[c].compared;
+    return sum;
+}
+
+// Whether a channel reads wrenches that are there and determined; a total is there to be.
+bool is_determined(const Channel& channel, const Determination& known, const Model& standing) {
+    std::vector<bool> stands(standing.joints.size(), false);
+    for (const auto& constraint : standing.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    const bool total = std::holds_alternative<Total>(channel.reads);
+    return std::ranges::all_of(channel.joints(), [&](int k) {
+        const auto j = static_cast<std::size_t>(k);
+        return stands[j] && (total || known.joint[j]);
+    });
+}
+
+}  // namespace
+
+void Objections::add(std::string what, double share) {
+    constexpr std::size_t told = 3;
+    ++count;
+    const auto place = std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
+    worst.insert(place, {std::move(what), share});
+    if (worst.size() > told) worst.pop_back();
+}
+
+std::vector<std::string> Objections::texts() const {
+    std::vector<std::string> list;
+    for (const auto& objection : worst) list.push_back(objection.what);
+    if (const int more = count - static_cast<int>(worst.size()); more > 0)
+        list.push_back(fmt::format("and {} more, none of them worse", more));
+    return list;
+}
+
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
                          const BranchComparison& branch) {
     Objections objections;
@@ -91,43 +127,6 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                 part);
     }
     return objections;
-}
-
-int count(const Reading& reading, const std::vector<bool>& determined) {
-    int sum = 0;
-    for (std::size_t c = 0; c < reading.channels.size(); ++c)
-        if (determined[c]) sum += reading.channels[c].compared;
-    return sum;
-}
-
-// Whether a channel reads wrenches that are there and determined; a total is there to be.
-bool is_determined(const Channel& channel, const Determination& known, const Model& standing) {
-    std::vector<bool> stands(standing.joints.size(), false);
-    for (const auto& constraint : standing.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
-    const bool total = std::holds_alternative<Total>(channel.reads);
-    return std::ranges::all_of(channel.joints(), [&](int k) {
-        const auto j = static_cast<std::size_t>(k);
-        return stands[j] && (total || known.joint[j]);
-    });
-}
-
-}  // namespace
-
-void Objections::add(std::string what, double share) {
-    constexpr std::size_t told = 3;
-    ++count;
-    const auto place = std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
-    worst.insert(place, {std::move(what), share});
-    if (worst.size() > told) worst.pop_back();
-}
-
-std::vector<std::string> Objections::texts() const {
-    std::vector<std::string> list;
-    for (const auto& objection : worst) list.push_back(objection.what);
-    if (const int more = count - static_cast<int>(worst.size()); more > 0)
-        list.push_back(fmt::format("and {} more, none of them worse", more));
-    return list;
 }
 
 bool Comparison::conclusive() const {
