@@ -131,9 +131,9 @@ struct Driven {
 TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
     // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j, which is
     // -y of the ground; and an angle about x.
-    const Driven rod(DistanceBetween{{0, {}}, {1, {}}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
+    const Driven rod(DistanceBetween{Point{0}, Point{1}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
     EXPECT_NEAR(value(rod.model, rod.state, "drive.drive_force"), 5, 1e-12);
-    const Driven plane(PointInPlane{{0, {}}, {1, {}}, {1, {0, 0, 1}}, 0},
+    const Driven plane(PointInPlane{Point{0}, Point{1}, {1, {0, 0, 1}}, 0},
                        {Vector3d(1, 7, 2), Vector3d::Zero()});
     EXPECT_NEAR(value(plane.model, plane.state, "drive.drive_force"), -7, 1e-12);
     const Driven angle(DirectionAtAngle{{0, {0, 1, 0}}, {1, {0, 1, 0}}, {1, {0, 0, 1}}, 0},

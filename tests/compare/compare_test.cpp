@@ -222,7 +222,9 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
             EXPECT_EQ(branch.determined[c], !shared) << channel.name;
             const bool total = channel.name.starts_with(pin + "+again.");
             totals_seen += total;
-            if (total) EXPECT_GT(branch.uncertainty.equal_parameter.channels[c].compared, 0) << channel.name;
+            if (total) {
+                EXPECT_GT(branch.uncertainty.equal_parameter.channels[c].compared, 0) << channel.name;
+            }
         }
     }
     EXPECT_EQ(totals_seen, 6 * static_cast<int>(comparison.branches.size()));
@@ -253,7 +255,7 @@ Scene one_arm(double k, double load) {
     Scene scene;
     scene.name = "one arm";
     scene.bodies.push_back({"arm", {}});
-    scene.joints.push_back({"pin", Revolute{{0, {}}, {ground, {}}, {0, {1, 0, 0}}, {ground, {1, 0, 0}}}});
+    scene.joints.push_back({"pin", Revolute{Point{0}, Point{}, {0, {1, 0, 0}}, {ground, {1, 0, 0}}}});
     Bushing bushing{{0, {0, 0.5, 0}}, {ground, {0, 0.5, 0}}, LinearStiffness{}};
     std::get<LinearStiffness>(bushing.law).K.diagonal() << k, k, k, 0, 0, 0;
     scene.elastics.push_back({"mount", bushing});

@@ -146,7 +146,7 @@ TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
     const Curve a = made(1, [](double x) { return (x - 4) * (x - 4); });
     EXPECT_EQ(abscissa(outputs, 0, a, a).why_not, "");
     EXPECT_EQ(abscissa(outputs, 1, a, a).why_not, "y turns back at 4 N (at 0 mm)");
-    const Curve still = made(1, [](double) { return 7; });
+    const Curve still = made(1, [](double) { return 7.0; });
     EXPECT_EQ(abscissa(outputs, 1, still, still).why_not, "y does not move");
     EXPECT_EQ(abscissa(outputs, 0, a, made(-1, [](double x) { return x; })).why_not,
               "travel goes opposite ways");

@@ -83,8 +83,9 @@ TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
             ASSERT_TRUE(worst);
             for (const auto& branch : compared().branches)
                 for (std::size_t c = 0; c < compared().channels.size(); ++c)
-                    if (compared().channels[c].main && compared().channels[c].unit == unit)
+                    if (compared().channels[c].main && compared().channels[c].unit == unit) {
                         EXPECT_LE(reading_of(branch.deviation, kind).channels[c].max, worst->max);
+                    }
         }
     Comparison broken = compared();
     broken.branches[0].deviation.equal_parameter.channels[0].max = std::nan("");

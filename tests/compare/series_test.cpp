@@ -38,8 +38,9 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
                     if (all[k].kinematic()) largest = std::max(largest, std::abs(slope(k)));
                 for (std::size_t k = 0; k < all.size(); ++k) {
                     EXPECT_EQ(std::isnan(rates[k]), !all[k].kinematic()) << all[k].name;
-                    if (all[k].kinematic())
+                    if (all[k].kinematic()) {
                         EXPECT_NEAR(rates[k], slope(k), 1e-7 * largest) << name << " " << all[k].name;
+                    }
                 }
             }
         }

@@ -456,8 +456,9 @@ TEST(Trade, WhatIsRecommendedIsToldNoMoreThanIsAskedFor) {
         // and of the rungs that cost the same, the loosest that may be
         for (const auto& point : result.points)
             if (point.method == chosen.method && point.own_tolerance > chosen.own_tolerance &&
-                1e3 * point.own_tolerance <= asked.mm && 100 * point.own_tolerance <= asked.deg)
+                1e3 * point.own_tolerance <= asked.mm && 100 * point.own_tolerance <= asked.deg) {
                 EXPECT_GT(point.work.price, chosen.work.price) << describe(point);
+            }
     }
 }
 
@@ -475,8 +476,9 @@ TEST(Trade, ThePriceIsCountedInBackSubstitutions) {
                         static_cast<double>(point.work.solves + point.work.evaluations),
                     1e-9 * point.work.price)
             << describe(point);
-        if (point.method == "tangent" && share_of(result.tolerance, point.error) <= 1)
+        if (point.method == "tangent" && share_of(result.tolerance, point.error) <= 1) {
             EXPECT_LE(chosen.work.price, point.work.price) << describe(point);
+        }
     }
     EXPECT_LE(result.recommendation->confirmed.mm, 0.01);
     options.rounds = -1;
@@ -603,3 +605,6 @@ TEST(Precision, AMethodWithStepsOfItsOwnIsRefused) {
     options.methods = {"publshed"};
     EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
 }
+
+}  // namespace
+}  // namespace elastocheck::compare
