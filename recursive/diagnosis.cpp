@@ -18,6 +18,9 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // on rows of unit length
+// Eigenvalues of a 6×6 with a unit diagonal that are more than its rounding (some 1e-15).
+constexpr double stiffness_threshold = 1e-13;
+constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
 
 // The root mean square lever of everything that is attached to a body: invariant under motions of the ground
 // frame.
@@ -59,30 +62,55 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
     return Q.rightCols(columns - qr.rank());
 }
 
-// √K_e B_e of every element, stacked [? × 6nb]: K_e = S C S with a unit diagonal C, so that rates of any size
-// count alike.
+// The rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment point,
+// turned to ground axes. What is soft in one of an element's own directions is told apart from what is nothing
+// only there: in other axes the rounding of the stiff directions covers it. K_e = S C S with a unit diagonal C,
+// so that rates of any size count alike.
+std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest, const State<double>& q) {
+    const Axial<double> g = deformation<double>(e, q);
+    if (!(hessian<double>(e.law, [&] { return g.length - rest.free_length; }) > 0)) return {};
+    Vector6<double> row;
+    row << g.D / g.length, Vector3d::Zero();
+    return {row};
+}
+std::vector<Vector6<double>> root_rows(const Bushing& e, const Rest<double>&, const State<double>& q) {
+    const Spatial<double> g = deformation<double>(e, q);
+    const Matrix6<double> K = hessian<double>(e.law, [&] { return g.e; });
+    const Vector6<double> S = K.diagonal().cwiseMax(0).cwiseSqrt();
+    const Vector6<double> inverse = S.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
+    const Matrix6<double> C = inverse.asDiagonal() * K * inverse.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6<double>> eigen(C);
+    std::vector<Vector6<double>> rows;
+    for (int k = 0; k < 6; ++k) {
+        if (!(eigen.eigenvalues()[k] > stiffness_threshold)) continue;
+        const Vector6<double> own = (S.asDiagonal() * eigen.eigenvectors().col(k)).normalized();
+        Vector6<double> row;
+        row << g.A_i * own.head<3>(), g.A_i * own.tail<3>();
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+// √K_e B_e of every element, stacked [? × 6nb].
 MatrixXd elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
     std::vector<VectorXd> rows;
-    for (std::size_t at = 0; at < model.elastics.size(); ++at) {
-        const auto e = element_stiffness<double>(model.elastics[at].kind, inputs.rest[at], q);
-        const Eigen::Matrix<double, 6, 1> s = e.K.diagonal().cwiseMax(0).cwiseSqrt();
-        const Eigen::Matrix<double, 6, 1> inverse = s.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
-        const Matrix6<double> C = inverse.asDiagonal() * e.K * inverse.asDiagonal();
-        const Eigen::SelfAdjointEigenSolver<Matrix6<double>> eigen(C);
-        for (int k = 0; k < 6; ++k) {
-            if (eigen.eigenvalues()[k] <= rank_threshold) continue;
-            const Vector6<double> g = s.asDiagonal() * eigen.eigenvectors().col(k);  // a row of √K_e
-            VectorXd row = VectorXd::Zero(coordinates(model));
-            const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
-                if (b == ground) return;
-                row.segment<3>(6 * b) += sign * g.head<3>();
-                row.segment<3>(6 * b + 3) += sign * (lever.cross(g.head<3>()) + g.tail<3>());
-            };
-            add(e.i, e.s_i, -1);
-            add(e.j, e.s_j, +1);
-            rows.push_back(row);
-        }
-    }
+    for (std::size_t at = 0; at < model.elastics.size(); ++at)
+        std::visit(
+            [&](const auto& e) {
+                const Vector3d s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
+                for (const Vector6<double>& g : root_rows(e, inputs.rest[at], q)) {
+                    VectorXd row = VectorXd::Zero(coordinates(model));
+                    const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
+                        if (b == ground) return;
+                        row.segment<3>(6 * b) += sign * g.head<3>();
+                        row.segment<3>(6 * b + 3) += sign * (lever.cross(g.head<3>()) + g.tail<3>());
+                    };
+                    add(e.i.body, s_i, -1);
+                    add(e.j.body, s_j, +1);
+                    rows.push_back(row);
+                }
+            },
+            model.elastics[at].kind);
     MatrixXd stacked(static_cast<Eigen::Index>(rows.size()), coordinates(model));
     for (std::size_t k = 0; k < rows.size(); ++k) stacked.row(static_cast<Eigen::Index>(k)) = rows[k];
     return stacked;
@@ -154,6 +182,34 @@ std::string describe(const Model& model, const State<double>& q, BodyId body, co
                        name, motion, shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
 }
 
+// Which joints share a dependency yᵀ Φ_q = 0. The projector Y Yᵀ on all of them couples two rows only where a
+// dependency does, whichever basis Y [m × r] it is made from, so its blocks are the sets.
+void find_undetermined(const Model& model, const MatrixXd& Y, Diagnosis& result) {
+    const std::size_t joints = model.joints.size();
+    result.determined.assign(joints, true);
+    std::vector<int> joint_of_row;
+    for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
+    std::vector<int> set(joints);  // the smallest joint of the set that a joint is in
+    std::iota(set.begin(), set.end(), 0);
+    const MatrixXd P = Y * Y.transpose();
+    for (Eigen::Index k = 0; k < P.rows(); ++k)
+        for (Eigen::Index l = 0; l < P.cols(); ++l) {
+            if (!(std::abs(P(k, l)) > part_threshold)) continue;
+            const int one = joint_of_row[static_cast<std::size_t>(k)],
+                      other = joint_of_row[static_cast<std::size_t>(l)];
+            result.determined[static_cast<std::size_t>(one)] = false;
+            const auto [low, high] = std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
+            std::ranges::replace(set, int(high), int(low));
+        }
+    for (int first = 0; first < static_cast<int>(joints); ++first) {
+        std::vector<int> members;
+        for (int joint = first; joint < static_cast<int>(joints); ++joint)
+            if (set[static_cast<std::size_t>(joint)] == first && !result.determined[static_cast<std::size_t>(joint)])
+                members.push_back(joint);
+        if (!members.empty()) result.redundant_sets.push_back(members);
+    }
+}
+
 // κ₂ without the `nullity` smallest singular values.
 double condition_number(const MatrixXd& M, Eigen::Index nullity) {
     if (M.rows() <= nullity) return 1;
@@ -197,6 +253,9 @@ Diagnosis diagnose(const Model& model) {
         rank_before = rank;
     }
 
+    const MatrixXd redundant = result.rank < m ? null_space_of(Phi_q.transpose(), m) : MatrixXd(m, 0);
+    find_undetermined(model, redundant, result);
+
     MatrixXd elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
     normalise_rows(elastic);
     MatrixXd noticed(m + elastic.rows(), n);
@@ -214,7 +273,6 @@ Diagnosis diagnose(const Model& model) {
         result.idle.push_back(mode);
     }
 
-    const MatrixXd redundant = result.rank < m ? null_space_of(Phi_q.transpose(), m) : MatrixXd(m, 0);
     result.null_space.setZero(n + m, idle.cols() + redundant.cols());
     result.null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
     if (redundant.cols() > 0)  // λ of the unscaled rows

@@ -7,7 +7,8 @@
 // stacked rows
 //
 //   ⎡ Φ_q           ⎤
-//   ⎣ √K_e B_e, ... ⎦     one block per elastic element, Bᵀ K_e B its stiffness (elastic.hpp)
+//   ⎣ √K_e B_e, ... ⎦     one block per elastic element, Bᵀ K_e B its stiffness (elastic.hpp), taken in the
+//                         element's own axes
 #pragma once
 
 #include <string>
@@ -38,6 +39,10 @@ struct Diagnosis {
     double imbalance =
         0;  // largest force [N] (or moment/L) that is left at load factor 0 at the design position
     std::vector<Redundancy> redundant;
+    // Per joint: whether its reaction follows from the loads. It does not where one of its rows has a part in a
+    // dependency yᵀ Φ_q = 0; then only the total over the joints that share one does, which are a set each.
+    std::vector<bool> determined;
+    std::vector<std::vector<int>> redundant_sets;  // positions in Model::joints, ascending
     std::vector<IdleMode> idle;
     Eigen::MatrixXd
         null_space;  // of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d]

@@ -33,6 +33,9 @@ inline constexpr double strain_per_error = 100, share_per_error = 10;
 // ... and with rounding: in multiples of the unit round-off, since the share is a small difference of forces
 // that the conditioning has blown up.
 inline constexpr double rounding = 1e7;
+// Joints that are open by less than this [m, rad] as drawn are closed: their points have been written down
+// with nine digits.
+inline constexpr double closed = 1e-9;
 // The linearisation of a rotation, eq. (6), is off by half at a radian.
 inline constexpr double largest_turn = 1;
 // One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
@@ -64,7 +67,8 @@ struct March {
         element;  // of each elastic element, where stored forces are kept by element
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int swings = 0;  // steps in a row that reversed the one before and were larger
+    int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
+    int swings = 0;       // steps in a row that reversed the one before and were larger
 
     March(const Model& model_, const Branch& branch_, const Diagnosis& diagnosis)
         : model(model_),
@@ -88,6 +92,7 @@ struct March {
         external_force<Real>(model, branch, inputs, q, R_d);
         R_d -= elastic_force<Real>(model, inputs, q);
         Phi_d = constraint_values<Real>(model, inputs, q);
+        if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
     }
     int n() const { return system.n; }
     int m() const { return system.m; }

@@ -20,11 +20,34 @@ bool pushes_idle_mode(const March<Real>& s) {
              rounding + Real(guard::share_per_error) * blur);
 }
 
+// Joints that are open as drawn, and that settling has not closed: an angle counts as closed on its own side
+// only (u_i·w = 0 has two).
+template <class Real>
+bool stayed_open(const March<Real>& s, Real share) {
+    const Real open = s.Phi_d.norm(), rounding = Real(10 * guard::closed);
+    Vector<Real> Phi = constraint_values<Real>(s.model, s.inputs, s.q);
+    for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
+        const ConstraintKind& kind = s.model.constraints[c].kind;
+        if (std::holds_alternative<DirectionAtAngle>(kind) && !(slope<Real>(kind, s.inputs.offset[c], s.q) < 0))
+            return true;
+    }
+    return !(Phi.norm() <= share * open + rounding);
+}
+// What settling came to, where the joints were open: that they cannot be closed explains the rest.
+template <class Real>
+Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
+    if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
+    const bool was_open = s.Phi_d.norm() > Real(0);
+    if (outcome != Outcome::converged) return was_open ? Outcome::inconsistent_constraints : outcome;
+    return stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
+}
+
 // With the stiffness of (19): in one step where the design position is an equilibrium, which gives λ⁻¹; else
 // in `steps` of them, as the branch is gone.
 template <class Real>
 Outcome settle(March<Real>& s, const Linear& method, int steps) {
-    const Real at_rest = Real(1e-9) * static_cast<Real>(s.length);  // less than that is rounding
+    // What one linear step gets wrong is the square of its size: here less than rounding.
+    const Real at_rest = Real(1e-6) * static_cast<Real>(s.length);
     for (const int N : {1, steps}) {
         s.consistent = false;
         s.q = s.before = design_state<Real>(s.model);
@@ -49,7 +72,8 @@ Outcome settle(March<Real>& s, const Linear& method, int steps) {
         const bool rested = outcome == Outcome::converged && s.last.norm() <= at_rest;
         s.swings = 0;
         s.last.setZero();
-        if (rested || N == steps) return outcome;
+        // What the linear steps leave open falls with their number; more than half is not being closed.
+        if (rested || N == steps) return settled(s, outcome, Real(0.5));
     }
     return Outcome::converged;
 }
@@ -57,7 +81,7 @@ Outcome settle(March<Real>& s, const Linear& method, int steps) {
 // With the consistent tangent and the true forces: by steps of its own, each halved until it is believed,
 // and at the end to round-off.
 template <class Real>
-Outcome settle(March<Real>& s) {
+Outcome settle_truly(March<Real>& s) {
     s.consistent = true;
     go_to(s, {1, 0});
     if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
@@ -103,8 +127,13 @@ Outcome settle(March<Real>& s) {
     }
     s.q = s.before = node.q;
     s.lambda = node.lambda;
+    s.orientation = s.system.lu.orientation;
     s.last.setZero();
     return Outcome::converged;
+}
+template <class Real>
+Outcome settle(March<Real>& s) {
+    return settled(s, settle_truly(s), Real(0));
 }
 
 }  // namespace elastocheck::recursive

@@ -20,10 +20,16 @@ std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outc
             detail.pop_back();
             break;
         case Outcome::singular:
+            detail += ": the branch divides, turns back or loses its stability before";
             if (diagnosis.null_space.cols() > 0)
-                detail +=
-                    ": the matrix lost rank, or what was idle or redundant at the design position no longer "
-                    "is";
+                detail += ", or what was idle or redundant at the design position no longer is";
+            break;
+        case Outcome::inconsistent_constraints:
+            detail = fmt::format("the joints cannot be closed; as drawn they are open by |Φ| = {:.3g}",
+                                 diagnosis.constraint_error);
+            break;
+        case Outcome::limit_point:
+            detail += ": a limit point, past it no equilibrium continues the branch";
             break;
         case Outcome::diverged:
             detail +=
@@ -33,10 +39,8 @@ std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outc
                     : ": what a step misses is more than half of it; take more steps";
             break;
         case Outcome::converged:
-        case Outcome::inconsistent_constraints:
         case Outcome::not_finite:
         case Outcome::iteration_limit:
-        case Outcome::limit_point:
         case Outcome::branch_lost: break;
     }
     return detail;

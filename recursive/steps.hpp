@@ -121,6 +121,9 @@ Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     go_to(s, next);
     external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);  // what idle modes are checked against
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
+    // A determinant that has changed its sign since a = 0 went through zero on the way: there the branch
+    // turned back, divided, or lost its stability.
+    if (s.system.lu.orientation != s.orientation) return Outcome::singular;
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
     s.before = s.q;

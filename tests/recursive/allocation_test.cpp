@@ -8,7 +8,7 @@
 #include "models/compile.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/solve.hpp"
-#include "recursive/steps.hpp"
+#include "recursive/settle.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -51,12 +51,11 @@ TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
-        const Method method = *find_method("tangent");
         const Diagnosis diagnosis = diagnose(model);
-        March<double> s(model, branch, method, diagnosis);
+        March<double> s(model, branch, diagnosis);
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied.setZero();
-        ASSERT_EQ(factorise_at(s, s.q, s.lambda, s.a), Outcome::converged);
+        ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
         series::Equations e = series::equations(model, branch, 16);
         series::Coefficients c = series::reserve_coefficients(s, 16);
         const Vector<double> ahead = Vector<double>::Zero(s.n() + s.m());

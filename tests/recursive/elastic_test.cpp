@@ -15,13 +15,15 @@ using Eigen::Vector3d;
 Marker marker(BodyId body, Random& r) { return {body, r.vector(), r.rotation()}; }
 
 Bushing random_bushing(BodyId i, BodyId j, Random& r, bool coupled = true) {
-    Bushing bushing{marker(i, r), marker(j, r), Matrix6<double>::Zero(), Vector6<double>::Zero()};
+    LinearStiffness law;
+    Bushing bushing{marker(i, r), marker(j, r), {}, Vector6<double>::Zero()};
     if (coupled) {
-        bushing.K = r.stiffness();
+        law.K = r.stiffness();
         for (int k = 0; k < 6; ++k) bushing.preload[k] = r(-500, 500);
     } else {
-        bushing.K.diagonal() << r(1e5, 1e6), r(1e5, 1e6), r(1e5, 1e6), r(100, 900), r(100, 900), r(100, 900);
+        law.K.diagonal() << r(1e5, 1e6), r(1e5, 1e6), r(1e5, 1e6), r(100, 900), r(100, 900), r(100, 900);
     }
+    bushing.law = law;
     return bushing;
 }
 
@@ -30,6 +32,13 @@ Model model_of(const ElasticKind& element, int bodies) {
     model.bodies.resize(static_cast<std::size_t>(bodies));
     model.elastics.push_back({"element", element});
     return model;
+}
+
+Matrix<double> stiffness_of(const Model& model, const State<double>& q) {
+    return stiffness<double>(model, inputs_as_drawn<double>(model), q);
+}
+Vector<double> force_of(const Model& model, const State<double>& q) {
+    return elastic_force<double>(model, inputs_as_drawn<double>(model), q);
 }
 
 // The configuration in which the element's markers coincide, at a random place.
@@ -47,7 +56,7 @@ double energy(const ElasticKind& kind, const State<double>& q) {
     if (const auto* e = std::get_if<AxialSpring>(&kind)) {
         const double stretch =
             (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() - e->free_length;
-        return e->k * stretch * stretch / 2;
+        return std::get<LinearRate>(e->law).k * stretch * stretch / 2;
     }
     const auto& b = std::get<Bushing>(kind);
     const Eigen::Quaterniond A_i = q[b.i.body].p * b.i.A_local, A_j = q[b.j.body].p * b.j.A_local;
@@ -55,7 +64,7 @@ double energy(const ElasticKind& kind, const State<double>& q) {
     Vector6<double> e;
     e << A_i.conjugate() * (place(b.j.body, b.j.s_local) - place(b.i.body, b.i.s_local)),
         turn.angle() * turn.axis();
-    return e.dot(b.K * e) / 2 + b.preload.dot(e);
+    return e.dot(std::get<LinearStiffness>(b.law).K * e) / 2 + b.preload.dot(e);
 }
 
 TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
@@ -63,9 +72,9 @@ TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
     for (int trial = 0; trial < 50; ++trial) {
         const std::vector<ElasticKind> kinds{
             random_bushing(0, 1, random), random_bushing(0, 1, random, false),
-            AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+            AxialSpring{{0, random.vector()}, {1, random.vector()}, LinearRate{3e4}, 0.3}};
         for (const auto& kind : kinds) {
-            const auto K = stiffness<double>(model_of(kind, 2), random.state(2));
+            const auto K = stiffness_of(model_of(kind, 2), random.state(2));
             EXPECT_LE((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
             const Eigen::SelfAdjointEigenSolver<Matrix<double>> eigen(K);
             EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff());
@@ -77,14 +86,14 @@ TEST(Stiffness, RigidMotionGivesNoForce) {
     Random random;
     for (int trial = 0; trial < 50; ++trial) {
         const Bushing bushing = random_bushing(0, 1, random);
-        const AxialSpring spring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3};
+        const AxialSpring spring{{0, random.vector()}, {1, random.vector()}, LinearRate{3e4}, 0.3};
         const State<double> together = assembled(bushing, random), anywhere = random.state(2);
         for (const auto& [kind, q] :
              {std::pair<ElasticKind, State<double>>{bushing, together}, {spring, anywhere}}) {
             const Vector3d turn = random.unit(), centre = random.vector();
             Vector<double> dq(12);
             for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r - centre), turn;
-            const auto K = stiffness<double>(model_of(kind, 2), q);
+            const auto K = stiffness_of(model_of(kind, 2), q);
             EXPECT_LE((K * dq).cwiseAbs().maxCoeff(), 1e-13 * K.cwiseAbs().maxCoeff());
         }
     }
@@ -106,8 +115,8 @@ TEST(Stiffness, PrintedEquation19IsNeitherSymmetricNorFreeOfForceUnderRigidMotio
     Random random;
     const Bushing bushing = random_bushing(0, 1, random, false);
     const State<double> q = assembled(bushing, random);
-    const auto printed = printed_equation_19(element_stiffness<double>(bushing, q));
-    const auto K = stiffness<double>(model_of(bushing, 2), q);
+    const auto printed = printed_equation_19(element_stiffness<double>(bushing, Rest<double>{}, q));
+    const auto K = stiffness_of(model_of(bushing, 2), q);
     Vector<double> dq(12);
     const Vector3d turn = random.unit();
     for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r), turn;
@@ -127,7 +136,7 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
             bushing.preload.setZero();
             const State<double> q = assembled(bushing, random);
             const Model model = model_of(bushing, first + 2);
-            const auto K = stiffness<double>(model, q);
+            const auto K = stiffness_of(model, q);
             for (int c = 0; c < K.cols(); ++c) {
                 constexpr double h = 1e-6;
                 Vector<double> dq = Vector<double>::Zero(K.cols());
@@ -136,7 +145,7 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
                 advance(plus, dq);
                 advance(minus, (-dq).eval());
                 const Vector<double> difference =
-                    (elastic_force<double>(model, plus) - elastic_force<double>(model, minus)) / (2 * h);
+                    (force_of(model, plus) - force_of(model, minus)) / (2 * h);
                 EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(), 1e-7 * K.cwiseAbs().maxCoeff());
             }
         }
@@ -149,7 +158,7 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
         const std::vector<ElasticKind> kinds{
             random_bushing(0, 1, random), random_bushing(ground, 1, random),
             random_bushing(0, ground, random),
-            AxialSpring{{0, random.vector()}, {1, random.vector()}, 3e4, 0.3}};
+            AxialSpring{{0, random.vector()}, {1, random.vector()}, LinearRate{3e4}, 0.3}};
         for (const auto& kind : kinds) {
             // Markers within 2.5 rad of each other: the law ends at π.
             State<double> q = random.state(2);
@@ -163,7 +172,7 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
                 q[free].p = (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
                 q[free].A = q[free].p.toRotationMatrix();
             }
-            const auto f = elastic_force<double>(model_of(kind, 2), q);
+            const auto f = force_of(model_of(kind, 2), q);
             for (int c = 0; c < 12; ++c) {
                 constexpr double h = 1e-5;
                 Vector<double> dq = Vector<double>::Zero(12);
@@ -183,13 +192,13 @@ TEST(ElasticForce, IsRegularWhereTheRotationVanishes) {
     Random random;
     Bushing bushing = random_bushing(0, 1, random);
     const State<double> together = assembled(bushing, random);
-    const auto f0 = elastic_force<double>(model_of(bushing, 2), together);
+    const auto f0 = force_of(model_of(bushing, 2), together);
     for (const double angle : {0.0, 1e-320, 1e-200, 1e-17, 1e-9}) {
         State<double> q = together;
         Vector<double> dq = Vector<double>::Zero(12);
         dq.tail<3>() = angle * random.unit();
         advance(q, dq);
-        const auto f = elastic_force<double>(model_of(bushing, 2), q);
+        const auto f = force_of(model_of(bushing, 2), q);
         EXPECT_TRUE(f.allFinite());
         EXPECT_LE((f - f0).cwiseAbs().maxCoeff(), 1e-9 + 1e7 * angle) << angle;
     }

@@ -101,7 +101,7 @@ TEST(SparseLU, WhatIsZeroInTheGenericMatrixStaysZeroAlongEveryBranch) {
             const auto path = solve(model, branch, {.method = *find_method("chord"), .steps = 60});
             for (const auto& point : path.points) {
                 Matrix<double> M = Matrix<double>::Zero(N, N);
-                assemble_consistent<double>(model, branch, point.load, state_of<double>(point.poses),
+                assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, point.load), state_of<double>(point.poses),
                                             1e3 * Vector<double>::Random(constraint_rows(model)), M, Phi);
                 for (Eigen::Index i = 0; i < N; ++i)
                     for (Eigen::Index j = 0; j < N; ++j) {

@@ -37,10 +37,15 @@ void add(Case& c, const ConstraintKind& kind, Random& random) {
     c.lambda = Vector<double>::NullaryExpr(constraint_rows(c.model), [&] { return random(-1e3, 1e3); });
 }
 
+template <class Real>
+Inputs<Real> inputs_of(const Case& c) {
+    return inputs_at<Real>(c.model, c.branch, static_cast<Real>(c.a));
+}
+
 Marker marker(BodyId body, Random& random) { return {body, random.vector(), random.rotation()}; }
 
 Bushing bushing(BodyId i, BodyId j, Random& random) {
-    Bushing e{marker(i, random), marker(j, random), random.stiffness(), {}};
+    Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};
     e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
     return e;
 }
@@ -61,10 +66,10 @@ template <class Real>
 Vector<Real> G(const Case& c, const State<Real>& q) {
     Vector<Real> f, Phi(constraint_rows(c.model)), part;
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    elastic_force<Real>(c.model, q, f);
-    constraint_force<Real>(c.model, q, lambda, part, Phi);
+    elastic_force<Real>(c.model, inputs_of<Real>(c), q, f);
+    constraint_force<Real>(c.model, inputs_of<Real>(c), q, lambda, part, Phi);
     f += part;
-    external_force<Real>(c.model, c.branch, static_cast<Real>(c.a), q, part);
+    external_force<Real>(c.model, c.branch, inputs_of<Real>(c), q, part);
     return f - part;
 }
 
@@ -72,7 +77,7 @@ template <class Real>
 Matrix<Real> tangent(const Case& c) {
     Matrix<Real> T = Matrix<Real>::Zero(6 * bodies, 6 * bodies);
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    add_consistent_tangent<Real>(c.model, c.branch, static_cast<Real>(c.a), state_of<Real>(c.poses), lambda,
+    add_consistent_tangent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses), lambda,
                                  T);
     return T;
 }
@@ -116,7 +121,7 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
             c.model.elastics.push_back(
-                {"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, 3e4, random(0.1, 3)}});
+                {"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)}});
             // The fifth derivative of a direction grows as ℓ⁻⁵ when the random ends come close.
             const auto& e = std::get<AxialSpring>(c.model.elastics[0].kind);
             const State<double> q = state_of<double>(c.poses);
@@ -147,9 +152,10 @@ TEST(Tangent, OfEveryConstraintIsTheDerivativeOfItsForce) {
             const Direction u_i{i, random.unit()}, u_j{j, random.unit()};
             const std::pair<const char*, ConstraintKind> kinds[] = {
                 {"coincident points", CoincidentPoints{at_i, at_j}},
-                {"point in plane", PointInPlane{at_i, at_j, u_j}},
+                {"point in plane", PointInPlane{at_i, at_j, u_j, random()}},
                 {"perpendicular", PerpendicularDirections{u_i, u_j}},
-                {"distance", DistanceBetween{at_i, at_j, random(0.1, 2)}}};
+                {"distance", DistanceBetween{at_i, at_j, random(0.1, 2)}},
+                {"angle", DirectionAtAngle{u_i, u_j, {j, random.unit()}, random(-4, 4)}}};
             Case all = anywhere(random);
             for (const auto& [name, kind] : kinds) {
                 Case c = anywhere(random);
@@ -169,8 +175,8 @@ TEST(Tangent, OfLoadsIsTheDerivativeOfTheirMoments) {
             c.a = a;
             c.model.static_loads = {{"weight", DeadForce{{body, random.vector()}, random.vector(600)}},
                                     {"torque", DeadMoment{body, random.vector(50)}}};
-            c.branch.loads = {{"push", DeadForce{{body, random.vector()}, random.unit()}},
-                              {"turn", DeadMoment{1 - body, random.unit()}}};
+            c.branch.drivers = {{Load{"push", DeadForce{{body, random.vector()}, random.unit()}}, 30, 1},
+                                {Load{"turn", DeadMoment{1 - body, random.unit()}}, 0, -2}};
             expect_derivative(c, fmt::format("body {}, a = {}", body, a));
         }
 }
@@ -181,7 +187,7 @@ Case everything_at_once(Random& random) {
         c.model.elastics.push_back({"bushing", bushing(i, j, random)});
         c.model.elastics.push_back(
             {"spring",
-             AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, 3e4, 0.3}});
+             AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, LinearRate{3e4}, 0.3}});
         const Point at_i{i, random.vector()}, at_j{j, random.vector()};
         add(c, CoincidentPoints{at_i, at_j}, random);
         add(c, PointInPlane{at_i, at_j, {j, random.unit()}}, random);
@@ -189,7 +195,7 @@ Case everything_at_once(Random& random) {
         add(c, DistanceBetween{at_i, at_j, 0.7}, random);
     }
     c.model.static_loads = {{"weight", DeadForce{{0, random.vector()}, random.vector(600)}}};
-    c.branch.loads = {{"push", DeadForce{{1, random.vector()}, random.vector(1e3)}}};
+    c.branch.drivers = {{Load{"push", DeadForce{{1, random.vector()}, random.vector(1e3)}}, 0, 1}};
     return c;
 }
 
@@ -231,7 +237,7 @@ TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
         else
             c.poses[static_cast<std::size_t>(i)].r += D;
         c.model.elastics.push_back({"bushing", e});
-        const Matrix<double> K = stiffness<double>(c.model, state_of<double>(c.poses));
+        const Matrix<double> K = stiffness<double>(c.model, inputs_of<double>(c), state_of<double>(c.poses));
         EXPECT_LE(apart(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13) << i << " " << j;
     }
 }

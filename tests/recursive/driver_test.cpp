@@ -1,0 +1,285 @@
+// Branches that drive more than loads: exact geometry, closed forms, and two routes to one state.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::Vector3d;
+
+Body body(const char* name, const Vector3d& r) { return {name, {r, Eigen::Quaterniond::Identity()}}; }
+Point on_ground(const Vector3d& p) { return {ground, p}; }
+
+// A branch of one driver, and the model as it stands there.
+struct Driven1 {
+    Model model;
+    Branch branch;
+};
+Driven1 driven(Scene scene, Driver driver, double to, int steps) {
+    Branch branch{"driven", 0, to, steps, ParameterUnit::none, {std::move(driver)}};
+    scene.branches = {branch};
+    const Model model = compile(scene);
+    return {on_branch(model, model.branches[0]), model.branches[0]};
+}
+EquilibriumPath run(const Driven1& d, const Method& method, int steps = 0, int record = 0) {
+    auto path = solve(d.model, d.branch, {.method = method, .steps = steps, .record = record});
+    EXPECT_EQ(path.outcome, Outcome::converged) << method.name << ": " << path.detail;
+    return path;
+}
+Method rung(const char* name) { return *find_method(name); }
+Method adaptive(double tolerance) { return {"adaptive", 3, Adaptive{tolerance, tolerance}}; }
+bool steps_or_adapts(const Method& method) { return !std::holds_alternative<Series>(method.kind); }
+
+// ---- Mechanisms without elasticity: a crank about y, driven through a full turn by its angle, x towards -z.
+
+constexpr double crank_length = 0.1, full_turn = 2 * 3.14159265358979323846;
+const Direction y_axis{ground, Vector3d::UnitY()};
+Direction own_y(BodyId b) { return {b, Vector3d::UnitY()}; }
+Angle crank_angle() {
+    return {{0, Vector3d::UnitX()}, {ground, Vector3d::UnitX()}, {ground, -Vector3d::UnitZ()}, 0};
+}
+Vector3d crank_pin(double angle) { return crank_length * Vector3d(std::cos(angle), 0, -std::sin(angle)); }
+
+// The rod's far end stays in the plane z = 0.
+constexpr double rod_length = 0.3;
+Driven1 slider_crank(int steps) {
+    Scene scene;
+    scene.bodies = {body("crank", Vector3d::Zero()), body("rod", {crank_length, 0, 0})};
+    const Vector3d pin(crank_length, 0, 0), end(rod_length, 0, 0);
+    scene.joints = {{"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
+                    {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
+                    {"slide", InPlane{{1, end}, on_ground({0, 0, 0}), {ground, Vector3d::UnitZ()}}},
+                    {"motor", crank_angle(), true}};
+    scene.probes = {{"slider", {1, end}}};
+    return driven(scene, {Motion{3}, 0, 1}, full_turn, steps);
+}
+double slider(const Equilibrium& state) {
+    return (state.poses[1].r + state.poses[1].p * Vector3d(rod_length, 0, 0)).x();
+}
+double exact_slider(double angle) {
+    const double height = crank_length * std::sin(angle);
+    return crank_length * std::cos(angle) + std::sqrt(rod_length * rod_length - height * height);
+}
+double worst_slider(const EquilibriumPath& path) {
+    double worst = 0;
+    for (const auto& point : path.points)
+        worst = std::max(worst, std::abs(slider(point) - exact_slider(point.load)));
+    return worst;
+}
+
+TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
+    const Driven1 d = slider_crank(360);
+    EXPECT_LE(worst_slider(run(d, adaptive(1e-12), 36)), 1e-12 * 0.4);
+    // Each rung's error at a point is that of its last step: the order of one step.
+    for (const auto& [name, order] : {std::pair{"closed", 2.0}, {"tangent", 2.0}, {"chord", 3.0}, {"midpoint", 3.0}}) {
+        const double coarse = worst_slider(run(d, rung(name), 360, 36)), fine = worst_slider(run(d, rung(name), 720, 36));
+        if (fine > 1e-13) EXPECT_GE(std::log2(coarse / fine), order - 0.2) << name << " " << coarse << " " << fine;
+    }
+}
+
+TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
+    const Driven1 d = slider_crank(360);
+    const auto error = [&](int steps) { return run(d, rung("published"), steps, 4).points.back().constraint_error; };
+    const double coarse = error(720), fine = error(1440);
+    EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1) << coarse << " " << fine;
+}
+
+// Crank 0.1, coupler 0.3, rocker 0.25, ground 0.32: a crank-rocker.
+TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
+    constexpr double coupler = 0.3, rocker = 0.25, base = 0.32;
+    const Vector3d pivot(base, 0, 0);
+    // The circle about the pin meets that about the pivot, above their line (+z).
+    const auto meet = [&](const Vector3d& pin) -> Vector3d {
+        const Vector3d along = (pivot - pin).normalized();
+        const double distance = (pivot - pin).norm();
+        const double x = (distance * distance + coupler * coupler - rocker * rocker) / (2 * distance);
+        const Vector3d up(-along.z(), 0, along.x());
+        return pin + x * along + std::sqrt(coupler * coupler - x * x) * up;
+    };
+    const Vector3d pin = crank_pin(0), end = meet(pin);
+    Scene scene;
+    scene.bodies = {body("crank", Vector3d::Zero()), body("coupler", pin), body("rocker", pivot)};
+    scene.joints = {{"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
+                    {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
+                    {"pivot", Revolute{{2, Vector3d::Zero()}, on_ground(pivot), own_y(2), y_axis}},
+                    {"knee", InLine{{1, end - pin}, {2, end - pivot}, own_y(2)}},
+                    {"motor", crank_angle(), true}};
+    scene.probes = {{"knee", {2, end - pivot}}};
+    const Driven1 d = driven(scene, {Motion{4}, 0, 1}, full_turn, 360);
+    double worst = 0;
+    for (const auto& point : run(d, adaptive(1e-12), 36).points)
+        worst = std::max(worst, (point.poses[2].r + point.poses[2].p * (end - pivot) - meet(crank_pin(point.load))).norm());
+    EXPECT_LE(worst, 1e-12 * base);
+}
+
+// ---- Elastic scenes lifted by a jack.
+
+Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, double to, int steps) {
+    Scene with = scene;
+    with.joints.push_back({"jack", InPlane{at, on_ground(drawn), {ground, Vector3d::UnitZ()}}, true});
+    return driven(with, {Motion{static_cast<int>(with.joints.size()) - 1}, 0, 1}, to, steps);
+}
+
+TEST(Driver, TravelAndLoadLeadTheMcPhersonToTheSameStates) {
+    const Scene scene = support::scene("mcpherson");
+    const Model loaded = compile(scene);
+    for (const auto& branch : loaded.branches) {
+        const auto by_load = run({loaded, branch}, adaptive(1e-9), 4);
+        const Wheel& wheel = scene.wheels[0];
+        const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+                               scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+        const auto centre = [&](const Equilibrium& state) -> Vector3d {
+            const Pose& pose = state.poses[static_cast<std::size_t>(loaded.wheels[0].body)];
+            return pose.r + pose.p * wheel.centre_local;
+        };
+        const double travel = centre(by_load.points.back()).z() - drawn.z();
+        const Driven1 d = jacked(scene, {wheel.body, wheel.centre_local}, drawn, travel, 300);
+        const auto by_travel = run(d, adaptive(1e-9), 4);
+        EXPECT_LE((centre(by_travel.points.back()) - centre(by_load.points.back())).norm(), 1e-9);
+        EXPECT_NEAR(by_travel.points.back().reactions.back().force.z(), branch.to, 1e-9 * std::abs(branch.to) + 1e-3);
+        const auto left = residuals(d.model, d.branch, by_travel.points.back());
+        EXPECT_LE(std::max(left.force, left.moment), 1e-2);
+    }
+}
+
+TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
+    const Scene scene = support::scene("two_spring_arch");
+    constexpr double k = 1e5, half_span = 0.3, height = 0.08;
+    const double free = std::hypot(half_span, height);
+    const auto force = [&](double z) { return 2 * k * (std::hypot(half_span, z) - free) * z / std::hypot(half_span, z); };
+    const Driven1 d = jacked(scene, scene.probes[0].at, {0, 0, height}, -2 * height - 0.02, 400);
+    for (const auto& method : methods) {
+        if (!steps_or_adapts(method)) continue;
+        const auto path = run(d, method, 400);
+        const bool truth = method.formal_order > 0;
+        double work = 0, worst = 0;
+        for (std::size_t n = 0; n < path.points.size(); ++n) {
+            const double jack = path.points[n].reactions.back().force.z(), z = height + path.points[n].load;
+            worst = std::max(worst, std::abs(jack - force(z)));
+            work += jack * (n == 0 || n + 1 == path.points.size() ? 1 : n % 2 == 1 ? 4 : 2);
+        }
+        work *= d.branch.to / 400 / 3;
+        const double stretch = std::hypot(half_span, height + d.branch.to) - free;
+        if (!truth) continue;
+        EXPECT_LE(worst, method.formal_order > 1 ? 1e-6 : 1) << method.name;
+        if (method.formal_order > 1) EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-7) << method.name;
+    }
+}
+
+// ---- Elements as drivers, closed forms: exact for every method, since nothing turns.
+
+Scene carriage() {
+    Scene scene;
+    scene.bodies = {body("carriage", Vector3d::Zero())};
+    const Direction along{ground, Vector3d::UnitX()}, own{0, Vector3d::UnitX()};
+    scene.joints = {{"guide", Translational{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own, along}}};
+    scene.probes = {{"carriage", {0, Vector3d::Zero()}}};
+    return scene;
+}
+
+TEST(Driver, FreeLengthMovesTwoSpringsInSeriesByTheShareOfItsRate) {
+    Scene scene = carriage();
+    const Point own{0, Vector3d::Zero()};
+    scene.elastics = {{"left", AxialSpring{on_ground({-1, 0, 0}), own, LinearRate{3e4}, 1}},
+                      {"right", AxialSpring{own, on_ground({1, 0, 0}), LinearRate{1e4}, 1}}};
+    for (const double start : {0.0, 0.02}) {
+        const Driven1 d = driven(scene, {FreeLength{0}, start, 2}, 0.05, 10);
+        for (const auto& method : methods) {
+            if (!steps_or_adapts(method)) continue;
+            for (const auto& point : run(d, method).points)
+                EXPECT_NEAR(point.poses[0].r.x(), 0.75 * (start + 2 * point.load), 1e-13) << method.name;
+        }
+    }
+}
+
+TEST(Driver, PreloadPullsABushingBackByItsRate) {
+    Scene scene = carriage();
+    LinearStiffness law;
+    law.K.diagonal() << 2e5, 1e5, 1e5, 10, 10, 10;
+    scene.elastics = {{"mount", Bushing{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, law, Vector6::Zero()}}};
+    Vector6 direction = Vector6::Zero();
+    direction[0] = 1;
+    for (const double start : {0.0, -400.0}) {
+        const Driven1 d = driven(scene, {Preload{0, direction}, start, 1}, 1000, 10);
+        for (const auto& method : methods) {
+            if (!steps_or_adapts(method)) continue;
+            for (const auto& point : run(d, method).points)
+                EXPECT_NEAR(point.poses[0].r.x(), -(start + point.load) / 2e5, 1e-13) << method.name;
+        }
+    }
+}
+
+TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
+    // A pinned bar whose rod is drawn too short, a jack that begins 30 mm up: every method begins there.
+    const Scene scene = support::scene("mcpherson");
+    const Wheel& wheel = scene.wheels[0];
+    const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+                           scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+    Driven1 d = jacked(scene, {wheel.body, wheel.centre_local}, drawn, 0.02, 100);
+    d.branch.drivers[0].start = 0.03;
+    for (auto& constraint : d.model.constraints)
+        if (auto* rod = std::get_if<DistanceBetween>(&constraint.kind)) rod->length += 1e-3;
+    for (const auto& method : methods) {
+        if (!steps_or_adapts(method)) continue;
+        const auto path = run(d, method, 100);
+        const Equilibrium& first = path.points.front();
+        const Pose& pose = first.poses[static_cast<std::size_t>(d.model.wheels[0].body)];
+        const bool follows = method.formal_order > 0, closes = method.name != "published";
+        EXPECT_NEAR((pose.r + pose.p * wheel.centre_local).z(), drawn.z() + 0.03, closes ? 1e-6 : 1e-3) << method.name;
+        const auto left = residuals(d.model, d.branch, first);
+        EXPECT_LE(left.length, closes ? 1e-6 : 1e-3) << method.name;
+        if (follows) EXPECT_LE(std::max(left.force, left.moment), 1e-5) << method.name;
+    }
+}
+
+// ---- Scenes that broke something.
+
+Model found(const std::string& name) {
+    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+}
+
+TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {
+    for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
+                             "straight-column-one-body", "straight-column-two-bodies"}) {
+        const Model model = found(name);
+        for (const char* method : {"tangent", "chord", "midpoint", "adaptive"})
+            for (const int steps : {5, 20, 200}) {
+                const auto path = solve(model, model.branches[0], {.method = rung(method), .steps = steps});
+                EXPECT_NE(path.outcome, Outcome::converged) << name << " " << method << " " << steps;
+            }
+        (void)solve(model, model.branches[0]);
+    }
+}
+
+TEST(Found, AdaptiveEndsAtTheLimitPointOfTheArch) {
+    Scene scene = support::scene("two_spring_arch");
+    scene.branches[0].to = -219.0436;
+    const Model model = compile(scene);
+    for (const double tolerance : {1e-4, 1e-5, 1e-7}) {
+        const auto path = solve(model, model.branches[0], {.method = adaptive(tolerance), .steps = 100});
+        EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
+        ASSERT_FALSE(path.points.empty());
+        EXPECT_GT(path.points.back().load, -211.6);
+        EXPECT_LT(path.points.back().load, -208);
+    }
+}
+
+TEST(Found, AnUnstableStretchIsSeenFromAnyStepsOfItsOwn) {
+    // A body on a vertical slide through a ring of springs that push it sideways off its axis: unstable near
+    // the ring. Adaptive takes as many steps as it needs, not as many as points are asked for.
+    const Model model = found("adaptive-segfault-arch");
+    for (const int points : {1, 5, 20, 60}) {
+        const auto path = solve(model, model.branches[0], {.method = adaptive(1e-5), .steps = points});
+        EXPECT_NE(path.outcome, Outcome::converged) << points;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive
