@@ -46,9 +46,9 @@ VectorXd gap(Walk& walk, double a, VectorXd x) {
     constexpr int iterations = 30;  // it is quadratic where they can be met, and need not be exact where not
     const System& system = walk.system;
     const int m = system.constraint_rows;
-    const auto Phi = [&] { return VectorXd(residual(system, {a, 0}, x).tail(m)); };
+    const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        const MatrixXd Phi_q = derivatives(system, a, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
+        const MatrixXd Phi_q = derivatives(system, {a}, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
         VectorXd dx = VectorXd::Zero(system.equations());
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
         decomposition.setThreshold(1e-10);
@@ -88,7 +88,9 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
                 "the system is singular and the branch may divide or lose its stability " + where};
     if (trial.verdict == Verdict::uncertain)
         return {Outcome::singular, "the system is too nearly singular to say that the branch goes on " + where};
-    const double target = settling ? 0 : t;
+    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen some steps further.
+    constexpr double further = 12;
+    const double target = settling ? 0 : walk.here.t + further * (t - walk.here.t);
     const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
     if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
         return {Outcome::inconsistent_constraints,

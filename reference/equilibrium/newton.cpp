@@ -12,9 +12,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A part of the system depends on two bodies, at most three reactions and a: 7 + 7 + 3 + 1 derivatives, scattered
+// A part of the system depends on two bodies, at most three reactions and the parameter: 7 + 7 + 3 + 1 derivatives, scattered
 // afterwards.
-constexpr int first_reaction = 14, parameter_a = 17;
+constexpr int first_reaction = 14, the_parameter = 17;
 using Jet = ceres::Jet<double, 18>;
 
 // The first column of a body's or a row's unknowns.
@@ -44,11 +44,11 @@ struct Scatter {
     const System& system;
     VectorXd E;
     RowMajor dE;   // ∂E/∂x [n × (7 nb + m)]
-    VectorXd E_a;  // ∂E/∂a [n]
+    VectorXd E_rate;  // dE/dt [n]
 
     void add(const Part& part, int row, const Jet& term) {
         E[row] += term.a;
-        E_a[row] += term.v[parameter_a];
+        E_rate[row] += term.v[the_parameter];
         if (part.i != ground) dE.row(row).segment<7>(column(part.i)) += term.v.segment<7>(0).transpose();
         if (part.j != ground) dE.row(row).segment<7>(column(part.j)) += term.v.segment<7>(7).transpose();
         for (int k = 0; k < part.rows; ++k)
@@ -63,10 +63,15 @@ struct Scatter {
     }
 };
 
-Scatter differentiated(const System& system, double a, const VectorXd& x) {
+Scatter differentiated(const System& system, const Loading& loading, const VectorXd& x) {
     Scatter sum{system, VectorXd::Zero(system.equations()),
                 RowMajor::Zero(system.equations(), system.unknowns()), VectorXd::Zero(system.equations())};
-    assemble<Jet>(system, Jet(a, parameter_a), Seeds{system, x}, sum);
+    Jet a(loading.a), held(loading.held);
+    a.v[the_parameter] = loading.a_rate;
+    held.v[the_parameter] = loading.held_rate;
+    assemble<Jet>(system, a, held, Seeds{system, x}, sum);
+    sum.E -= loading.held * system.at_design;
+    sum.E_rate -= loading.held_rate * system.at_design;
     return sum;
 }
 
@@ -89,8 +94,8 @@ class SystemCost final : public ceres::CostFunction {
             E = residual(system_, loading_, x_);
             return E.allFinite();
         }
-        const auto sum = differentiated(system_, loading_.a, x_);
-        E = sum.E - loading_.held * system_.at_design;
+        const auto sum = differentiated(system_, loading_, x_);
+        E = sum.E;
         for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
             if (jacobians[b] != nullptr)
                 Eigen::Map<RowMajor>(jacobians[b], system_.equations(), sizes[b]) =
@@ -179,8 +184,8 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
 }
 
 // A turn by δπ changes the quaternion by ½ (δπ, 0) p:  δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
-Derivatives derivatives(const System& system, double a, const VectorXd& x, Counts& counts) {
-    auto sum = differentiated(system, a, x);
+Derivatives derivatives(const System& system, const Loading& loading, const VectorXd& x, Counts& counts) {
+    auto sum = differentiated(system, loading, x);
     ++counts.evaluations;
     MatrixXd J(system.equations(), system.equations());
     for (int body = 0; body < system.bodies; ++body) {
@@ -194,7 +199,7 @@ Derivatives derivatives(const System& system, double a, const VectorXd& x, Count
         J.middleCols<3>(6 * body + 3) = sum.dE.middleCols<4>(7 * body + 3) * (turn / 2);
     }
     J.rightCols(system.constraint_rows) = sum.dE.rightCols(system.constraint_rows);
-    return {std::move(J), std::move(sum.E_a)};
+    return {std::move(J), std::move(sum.E_rate)};
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -16,11 +16,11 @@ Attempt newton(const System& system, const Loading& loading, const Eigen::Vector
                const Options& options, Counts& counts);
 
 struct Derivatives {
-    Eigen::MatrixXd J;    // ∂E/∂(step) [n × n]
-    Eigen::VectorXd E_a;  // ∂E/∂a [n]
+    Eigen::MatrixXd J;       // ∂E/∂(step) [n × n]
+    Eigen::VectorXd E_rate;  // dE/dt at fixed x along the way that `loading` is on: ∂E/∂a where t = a [n]
 };
 
 // By automatic differentiation.
-Derivatives derivatives(const System& system, double a, const Eigen::VectorXd& x, Counts& counts);
+Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x, Counts& counts);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -54,7 +54,7 @@ MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
         for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
             const auto on_i =
-                holding(judge.system, c, judge.state.load, judge.frame(i), judge.frame(j), unit.data()).reaction;
+                holding(judge.system, c, judge.state.load, 0., judge.frame(i), judge.frame(j), unit.data()).reaction;
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
                 (on_i.moment + cross(Vector3d(on_i.at - at), on_i.force)) / judge.system.length;
@@ -87,9 +87,17 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         const auto& kind = model.constraints[c].kind;
         const auto [i, j] = bodies_of(kind);
         const Vector3d none = Vector3d::Zero();
-        const auto h = holding(system, c, a, judge.frame(i), judge.frame(j), none.data());
+        const auto h = holding(system, c, a, 0., judge.frame(i), judge.frame(j), none.data());
         for (int k = 0; k < rows(kind); ++k)
             raise(is_direction(kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
+        if (const auto* angle = std::get_if<DirectionAtAngle>(&kind)) {
+            // The row alone is met by the opposite direction too.
+            const double value = system.values[c].at(a);
+            const Frame<double> on_j = judge.frame(j);
+            const Vector3d there = std::cos(value) * direction(on_j, angle->j.u_local) +
+                                   std::sin(value) * direction(on_j, angle->y_j.u_local);
+            if (direction(judge.frame(i), angle->i.u_local).dot(there) < 0) raise(worst.direction, 1);
+        }
     }
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {

@@ -21,7 +21,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         return ended({Outcome::not_finite, "a point of the branch is not finite"});
 
     Walk walk = start(system, options);
-    if (!walk.here.x.allFinite() || !system.at_design.allFinite() || !walk.here.E_a.allFinite())
+    if (!walk.here.x.allFinite() || !system.at_design.allFinite() || !walk.here.E_rate.allFinite())
         return ended(
             {Outcome::not_finite, "the equations give a number that is not finite at the design pose"});
     double reach = 0;

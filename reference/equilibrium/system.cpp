@@ -37,9 +37,9 @@ struct Sum {
     void constraint(const Part& part, int k, double Phi) { E[6 * system.bodies + part.row + k] += Phi; }
 };
 
-VectorXd sum(const System& system, double a, const VectorXd& x) {
+VectorXd sum(const System& system, double a, double held, const VectorXd& x) {
     Sum total{system, VectorXd::Zero(system.equations())};
-    assemble<double>(system, a, Values{system, x}, total);
+    assemble<double>(system, a, held, Values{system, x}, total);
     return std::move(total.E);
 }
 
@@ -113,6 +113,19 @@ void set_paths(System& system) {
             for (std::size_t k = 3; k < 6; ++k)
                 path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;
         }
+}
+
+// From the value that stands at a = 0 to where u_i is drawn between x_j and y_j.
+void set_turns(System& system) {
+    const VectorXd x = design_unknowns(system);
+    for (std::size_t c = 0; c < system.values.size(); ++c) {
+        system.turns.push_back(0);
+        const auto* angle = std::get_if<DirectionAtAngle>(&system.model->constraints[c].kind);
+        if (angle == nullptr) continue;
+        const auto drawn = [&](const Direction& d) { return direction(frame_of(system, x, d.body), d.u_local); };
+        const Vector3d u_i = drawn(angle->i);
+        system.turns[c] = std::atan2(u_i.dot(drawn(angle->y_j)), u_i.dot(drawn(angle->j))) - system.values[c].at(0.0);
+    }
 }
 
 // ---- Scales
@@ -200,13 +213,15 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     for (const auto& p : places) radius = std::max(radius, (p - system.centre).norm());
     if (std::isfinite(radius) && radius > 0) system.length = radius;
 
+    set_turns(system);
+
     double a = 0;
     for (const double point : points) a = std::max(a, std::abs(point));
     const double force = force_scale(system, a);
     if (std::isfinite(force) && force > 0) system.force = force;
 
     // What is stored at the design pose, in the scale so far.
-    system.at_design = sum(system, 0, design_unknowns(system));
+    system.at_design = sum(system, 0, 1, design_unknowns(system));
     const double stored = system.at_design.head(6 * system.bodies).lpNorm<Eigen::Infinity>();
     if (std::isfinite(stored) && stored > 1) {
         system.force *= stored;
@@ -226,7 +241,7 @@ VectorXd design_unknowns(const System& system) {
 }
 
 VectorXd residual(const System& system, const Loading& loading, const VectorXd& x) {
-    VectorXd E = sum(system, loading.a, x);
+    VectorXd E = sum(system, loading.a, loading.held, x);
     if (loading.held != 0) E -= loading.held * system.at_design;
     return E;
 }
@@ -312,7 +327,7 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
         Vector3d R = Vector3d::Zero();
         R.head(rows(constraint.kind)) = unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
         const auto h =
-            holding(system, c, loading.a, frame_of(system, x, i), frame_of(system, x, j), R.data());
+            holding(system, c, loading.a, loading.held, frame_of(system, x, i), frame_of(system, x, j), R.data());
         Phi2 += h.Phi.head(rows(constraint.kind)).squaredNorm();
 
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];

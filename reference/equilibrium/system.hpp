@@ -48,6 +48,7 @@ struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
     std::vector<Affine> values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    std::vector<double> turns;   // per Model::constraints: from such an angle to the drawn one [rad], or 0
     std::vector<ElementPath> elements;  // per Model::elastics
     std::vector<LoadPath> loads;        // static and driven
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
@@ -61,12 +62,14 @@ struct System {
     int equations() const { return 6 * bodies + constraint_rows; }
 };
 
-// What is asked of the system: E(x; a) = held · at_design. With held = 1 the design pose is an equilibrium because
+// What is asked of the system: E(x; a, held) = held · at_design. With held = 1 the design pose is an equilibrium because
 // somebody holds it; letting go, to held = 0, settles all that stands at a = 0: static loads and preloads, what the
-// drivers hold, constraints that the design pose misses.
+// drivers hold, constraints that the design pose misses. An angle is let go of as an angle, value + held · turn: its row
+// is a sine, which would let go to the nearer of two opposite directions.
 struct Loading {
     double a = 0;
-    double held = 0;  // [-]
+    double held = 0;                   // [-]
+    double a_rate = 0, held_rate = 0;  // along the way that is walked
 };
 
 // `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a driver
@@ -115,9 +118,9 @@ Interaction<T> interaction(const System& system, std::size_t e, const T& a, cons
 
 // Constraint c with the reactions R of its rows [N, N·m].
 template <class T>
-Holding<T> holding(const System& system, std::size_t c, const T& a, const Frame<T>& i, const Frame<T>& j,
-                   const T* R) {
-    const T value = system.values[c].at(a);
+Holding<T> holding(const System& system, std::size_t c, const T& a, const T& held, const Frame<T>& i,
+                   const Frame<T>& j, const T* R) {
+    const T value = system.values[c].at(a) + held * system.turns[c];
     return std::visit([&](const auto& kind) { return holding(kind, value, i, j, R); },
                       system.model->constraints[c].kind);
 }
@@ -134,7 +137,7 @@ struct Part {
 // scaled reactions; `sink.balance(part, body, force, moment)` and `sink.constraint(part, k, Phi)` take the
 // scaled terms, to be summed.
 template <class T, class Source, class Sink>
-void assemble(const System& system, const T& a, const Source& source, Sink& sink) {
+void assemble(const System& system, const T& a, const T& held, const Source& source, Sink& sink) {
     const Model& model = *system.model;
     const double per_force = 1 / system.force, per_moment = per_force / system.length,
                  per_length = 1 / system.length;
@@ -173,7 +176,7 @@ void assemble(const System& system, const T& a, const Source& source, Sink& sink
         T R[3];
         for (int k = 0; k < part.rows; ++k)
             R[k] = source.reaction(part, k) * (directions ? system.force * system.length : system.force);
-        const auto h = holding(system, c, a, frame_i, frame_j, R);
+        const auto h = holding(system, c, a, held, frame_i, frame_j, R);
         apply(part, i, frame_i, h.reaction, T(+1.0));
         apply(part, j, frame_j, h.reaction, T(-1.0));
         for (int k = 0; k < part.rows; ++k)

@@ -29,22 +29,20 @@ constexpr double unanswered_round_off = 1e-9;
 // However close the points, a step between two is halved this often before the branch is given up.
 constexpr int least_halvings = 6;
 
-void set_tangent(const Walk& walk, Station& station) {
-    station.E_rate = walk.stage == Stage::settling ? walk.system.at_design : station.E_a;
-    const Rate rate = answer(station.linearised, station.E_rate);
-    station.tangent = rate.dx;
-    station.mu = rate.mu;
-}
+// How far past the smallest step the branch is looked for before it is called lost, in such steps.
+constexpr double past_the_end[] = {3, 6, 12};
 
 Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) {
     Station station;
     station.t = t;
     station.x = std::move(x);
-    Derivatives by = derivatives(walk.system, loading_at(walk.stage, t).a, station.x, walk.counts);
+    Derivatives by = derivatives(walk.system, loading_at(walk.stage, t), station.x, walk.counts);
     station.linearised = linearise(std::move(by.J), last, walk.counts);
     station.stiffness = stiffness(walk.system, station.linearised.J, station.linearised.modes);
-    station.E_a = std::move(by.E_a);
-    set_tangent(walk, station);
+    station.E_rate = std::move(by.E_rate);
+    const Rate rate = answer(station.linearised, station.E_rate);
+    station.tangent = rate.dx;
+    station.mu = rate.mu;
     return station;
 }
 
@@ -74,7 +72,7 @@ bool is_continuation(const System& system, const Station& from, const Station& t
 Stability stability_between(Walk& walk, const Station& from, const Station& to) {
     const double h = to.t - from.t;
     const VectorXd dx = step_between(walk.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
-    const auto by = derivatives(walk.system, loading_at(walk.stage, from.t + h / 2).a,
+    const auto by = derivatives(walk.system, loading_at(walk.stage, from.t + h / 2),
                                 moved(walk.system, from.x, dx), walk.counts);
     return over_step(from.stiffness, stiffness(walk.system, by.J, from.linearised.modes), to.stiffness);
 }
@@ -117,6 +115,20 @@ Trial try_step(Walk& walk, double t) {
     return trial;
 }
 
+// No step of h is believed. A singular point that a step happens to hit says nothing; past it there is the branch, on
+// the other side, or there is not.
+Failure the_end(Walk& walk, double h, double t, Trial refused) {
+    for (const double steps : past_the_end) {
+        if (walk.stage == Stage::settling || refused.verdict == Verdict::turned_over) break;
+        const double past = walk.here.t + steps * h;
+        if (Trial probe = try_step(walk, past); probe.verdict == Verdict::turned_over) {
+            refused = std::move(probe);
+            t = past;
+        }
+    }
+    return failure(walk, t, refused);
+}
+
 }  // namespace
 
 Walk start(const System& system, const Options& options) {
@@ -129,8 +141,7 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
     walk.stage = Stage::branch;
     walk.length = std::max(std::abs(walk.system.branch->to), reach);
     walk.before.reset();
-    walk.here.t = 0;
-    set_tangent(walk, walk.here);
+    walk.here = station_at(walk, 0, walk.here.x, &walk.here.linearised);
     if (over_step(walk.here.stiffness, walk.here.stiffness, walk.here.stiffness) == Stability::kept)
         return std::nullopt;
     return Failure{Outcome::singular, fmt::format("the equilibrium that settles at {} is unstable",
@@ -166,7 +177,7 @@ std::optional<Failure> advance(Walk& walk, double target) {
                                                 trial.verdict != Verdict::uncertain);
             if (says_more) refused = std::move(trial);
             h /= 2;
-            if (std::abs(h) < smallest * (1 - 1e-9)) return failure(walk, t, *refused);
+            if (std::abs(h) < smallest * (1 - 1e-9)) return the_end(walk, h, t, std::move(*refused));
         }
     }
     return std::nullopt;

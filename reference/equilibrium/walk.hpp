@@ -19,7 +19,7 @@ namespace elastocheck::reference::equilibrium {
 enum class Stage { settling, branch };
 
 inline Loading loading_at(Stage stage, double t) {
-    return stage == Stage::settling ? Loading{0, 1 - t} : Loading{t, 0};
+    return stage == Stage::settling ? Loading{0, 1 - t, 0, -1} : Loading{t, 0, 1, 0};
 }
 
 // An equilibrium on the way.
@@ -28,7 +28,6 @@ struct Station {
     Eigen::VectorXd x;
     Linearisation linearised;
     Stiffness stiffness;
-    Eigen::VectorXd E_a;      // ∂E/∂a [n]
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
     Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]

@@ -126,7 +126,7 @@ TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
             auto& bushing = std::get<Bushing>(s.elastics[0].kind);
             const Quaterniond axes = random_turn(random);
             bushing.i.A_local = bushing.j.A_local = axes;
-            bushing.K.bottomRightCorner<3, 3>() = k_R.asDiagonal();
+            stiffness_of(bushing).K.bottomRightCorner<3, 3>() = k_R.asDiagonal();
             const Vector3d about = sign * (axes * Vector3d::Unit(axis));
             s.branches = {twist(0, about)};
             const Model model = compile(s);

@@ -9,20 +9,6 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-double energy(const AxialSpring& spring, const Pose& i, const Pose& j) {
-    const double length = (j.r + j.p * spring.j.s_local - i.r - i.p * spring.i.s_local).norm();
-    return 0.5 * spring.k * std::pow(length - spring.free_length, 2);
-}
-
-double energy(const Bushing& b, const Pose& i, const Pose& j) {
-    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(), A_j = (j.p * b.j.A_local).toRotationMatrix();
-    Eigen::AngleAxisd turn(Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
-    Vector6 e;
-    e << A_i.transpose() * (j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local), turn.angle() * turn.axis();
-    EXPECT_TRUE((A_i * turn.toRotationMatrix()).isApprox(A_j, 1e-9));
-    return 0.5 * e.dot(b.K * e) + b.preload.dot(e);
-}
-
 Pose moved(Pose pose, int coordinate, double by) {
     if (coordinate < 3)
         pose.r[coordinate] += by;
@@ -37,12 +23,19 @@ double slope(const Move& U, double h) {
     return (45 * (U(h) - U(-h)) - 9 * (U(2 * h) - U(-2 * h)) + (U(3 * h) - U(-3 * h))) / (60 * h);
 }
 
+Interaction<double> on_i_of(const AxialSpring& spring, const Frame<double>& i, const Frame<double>& j) {
+    return interaction(spring, spring.free_length, i, j);
+}
+Interaction<double> on_i_of(const Bushing& b, const Frame<double>& i, const Frame<double>& j) {
+    return interaction(b, b.preload, true, i, j);
+}
+
 // The wrench of the element on both bodies, (force; moment about the origin) each, against the gradient,
 // relative to its size.
 template <class Element>
 double deviation_from_gradient(const Element& element, const Pose& i, const Pose& j) {
     const Frame<double> frame_i{i.r, i.p}, frame_j{j.r, j.p};
-    const auto on_i = interaction(element, frame_i, frame_j);
+    const auto on_i = on_i_of(element, frame_i, frame_j);
     Eigen::Matrix<double, 12, 1> wrench, gradient;
     wrench << on_i.force, on_i.moment + (on_i.at - i.r).cross(on_i.force), -on_i.force,
         -on_i.moment - (on_i.at - j.r).cross(on_i.force);
@@ -57,7 +50,7 @@ TEST(EquilibriumElements, SpringForceIsTheNegativeGradientOfItsEnergy) {
     std::mt19937 random(1);
     Worst worst;
     for (int trial = 0; trial < 300; ++trial) {
-        AxialSpring spring{{0, random_vector(random, 0.3)}, {1, random_vector(random, 0.3)}, 3e4, 0.4};
+        AxialSpring spring{{0, random_vector(random, 0.3)}, {1, random_vector(random, 0.3)}, LinearRate{3e4}, 0.4};
         const Pose i{random_vector(random, 0.3), random_turn(random)};
         const Pose j{random_vector(random, 0.3) + Vector3d(1.2, 0, 0), random_turn(random)};
         worst.see(deviation_from_gradient(spring, i, j), fmt::format("trial {}", trial));
@@ -73,7 +66,7 @@ TEST(EquilibriumElements, BushingForceIsTheNegativeGradientOfItsEnergy) {
         for (int trial = 0; trial < 40; ++trial) {
             Bushing b{{0, random_vector(random, 0.3), random_turn(random)},
                       {1, random_vector(random, 0.3), random_turn(random)},
-                      random_stiffness(random),
+                      LinearStiffness{random_stiffness(random)},
                       Vector6::Zero()};
             b.preload << random_vector(random, 500), random_vector(random, 20);
             const Pose i{random_vector(random, 0.3), random_turn(random)};
@@ -127,14 +120,14 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
                                         });
             const Eigen::VectorXd x = equilibrium::moved(system, design_unknowns(system), off);
             Counts counts;
-            const Eigen::MatrixXd J = jacobian(system, 700, x, counts);
+            const Eigen::MatrixXd J = derivatives(system, {700}, x, counts).J;
             for (int k = 0; k < n; ++k) {
                 Eigen::VectorXd differences(n);
                 for (int row = 0; row < n; ++row)
                     differences[row] = slope(
                         [&](double h) {
                             return residual(
-                                system, {700, 0},
+                                system, {700},
                                 equilibrium::moved(system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
                         },
                         2e-3);

@@ -2,7 +2,8 @@
 // run.
 #include <fmt/format.h>
 
-#include "tests/reference/equilibrium/scenes.hpp"
+#include "models/branch.hpp"
+#include "tests/reference/equilibrium/driven_scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
 namespace {
@@ -19,12 +20,14 @@ struct Back {
 // Both scenes along both first branches: wheel centre, contact, spin axis and all reactions at every point,
 // relative to the size of the scene (1 m) and of the largest reaction.
 void expect_same(const Scene& a, const Scene& b, const Back& back, double limit = 1e-9) {
-    const Model model_a = compile(a), model_b = compile(b);
+    const Model whole_a = compile(a), whole_b = compile(b);
     Worst worst;
-    for (std::size_t n = 0; n < model_a.branches.size(); ++n) {
-        const auto loads = every_load(model_a.branches[n]);
-        const auto path_a = solve(model_a, model_a.branches[n], loads),
-                   path_b = solve(model_b, model_b.branches[n], loads);
+    for (std::size_t n = 0; n < whole_a.branches.size(); ++n) {
+        const Model model_a = on_branch(whole_a, whole_a.branches[n]),
+                    model_b = on_branch(whole_b, whole_b.branches[n]);
+        const auto loads = every_load(model_a.branches[0]);
+        const auto path_a = solve(model_a, model_a.branches[0], loads),
+                   path_b = solve(model_b, model_b.branches[0], every_load(model_b.branches[0]));
         ASSERT_EQ(path_a.outcome, Outcome::converged) << a.name << ": " << path_a.detail;
         ASSERT_EQ(path_b.outcome, Outcome::converged) << b.name << ": " << path_b.detail;
         double force = 1, moment = 1;
@@ -36,10 +39,10 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
         for (std::size_t k = 0; k < loads.size(); ++k) {
             const auto &at_a = path_a.points[k], &at_b = path_b.points[k];
             const auto where = [&](const std::string& what) {
-                return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[n].name,
+                return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[0].name,
                                    loads[k]);
             };
-            const Wheel &w_a = *model_a.wheel, &w_b = *model_b.wheel;
+            const Wheel &w_a = model_a.wheels[0], &w_b = model_b.wheels[0];
             worst.see((position(at_a, {w_a.body, w_a.centre_local}) -
                        back.point(position(at_b, {w_b.body, w_b.centre_local})))
                           .norm(),
@@ -67,7 +70,24 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
     ::testing::Test::RecordProperty("worst_deviation", fmt::format("{:.1e}", worst.value));
 }
 
-std::vector<Scene> scenes() { return {scene("mcpherson"), rich_scene()}; }
+// Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a preload, a free length.
+Scene driven_scene() {
+    Scene s = with_jack(with_rack(scene("mcpherson")));
+    s.name = "driven";
+    const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
+    Vector6 preload;
+    preload << 900, -400, 300, 4, 7, -3;
+    const Driver braking = {Load{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}}, 900, 0};
+    s.branches = {
+        branch_of("load", {{s.branches[0].drivers[0].what, 0, 1}, {Motion{rack}, 0.015, 0}}, 2000, 8),
+        branch_of("travel", {{Motion{jack}, 0, 1}, {Preload{2, preload}, 1, 0}, braking}, -0.08, 8,
+                  ParameterUnit::metre),
+        branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, 0.02, 0.5}}, 0.02, 8, ParameterUnit::metre),
+        branch_of("trim", {{FreeLength{0}, 0.005, 1}}, 0.02, 8, ParameterUnit::metre)};
+    return s;
+}
+
+std::vector<Scene> scenes() { return {scene("mcpherson"), rich_scene(), driven_scene()}; }
 
 TEST(EquilibriumInvariance, UnitOfLength) {
     for (const auto& s : scenes())
@@ -139,8 +159,10 @@ TEST(EquilibriumInvariance, MirroredSide) {
 // An equilibrium does not remember the steps that led to it.
 TEST(EquilibriumInvariance, NumberOfSteps) {
     for (const auto& s : scenes()) {
-        const Model model = compile(s);
-        for (const auto& branch : model.branches) {
+        const Model whole = compile(s);
+        for (const auto& way : whole.branches) {
+            const Model model = on_branch(whole, way);
+            const Branch& branch = model.branches[0];
             Worst worst;
             const auto fine = solve(model, branch, every_load(branch));
             ASSERT_EQ(fine.outcome, Outcome::converged) << fine.detail;
@@ -149,7 +171,7 @@ TEST(EquilibriumInvariance, NumberOfSteps) {
                 for (int n = 1; n <= steps; ++n) loads.push_back(branch.to * n / steps);
                 const auto other = solve(model, branch, loads);
                 ASSERT_EQ(other.outcome, Outcome::converged) << other.detail;
-                const auto body = static_cast<std::size_t>(model.wheel->body);
+                const auto body = static_cast<std::size_t>(model.wheels[0].body);
                 worst.see((other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(),
                           fmt::format("{} steps", steps));
                 worst.see(other.points.back().poses[body].p.angularDistance(fine.points.back().poses[body].p),
@@ -162,7 +184,7 @@ TEST(EquilibriumInvariance, NumberOfSteps) {
 
 TEST(EquilibriumInvariance, TheRun) {
     for (const auto& s : scenes()) {
-        const Model model = compile(s);
+        const Model whole = compile(s), model = on_branch(whole, whole.branches[0]);
         const auto& branch = model.branches[0];
         const auto loads = every_load(branch);
         const auto a = solve(model, branch, loads), b = solve(model, branch, loads);

@@ -121,22 +121,22 @@ TEST(EquilibriumOutcome, ABushingAtHalfATurnEndsTheBranch) {
 TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 0);
     auto& bushing = std::get<Bushing>(s.elastics[0].kind);
-    bushing.j.s_local = {-2, 0, 0};  // a soft pull towards -x ...
+    bushing.j.s_local = {2, 0, 0};  // a soft pull towards +x ...
     bushing.i.s_local = {0.3, 0, 0};
-    bushing.K.setZero();
-    bushing.K.topLeftCorner<3, 3>() = 10 * Matrix3d::Identity();
+    stiffness_of(bushing).K.setZero();
+    stiffness_of(bushing).K.topLeftCorner<3, 3>() = 10 * Matrix3d::Identity();
     std::swap(bushing.i, bushing.j);
-    s.branches = {pull({0, {0.3, 0, 0}}, {0, 0, 1})};  // ... which lifting the tip lets it follow
+    s.branches = {pull({0, {0.3, 0, 0}}, {0, 0, 1})};  // ... against which the tip is lifted
     const Model model = compile(s);
     std::vector<double> loads;
     for (int n = 0; n <= 10; ++n) loads.push_back(n);
     const auto path = solve(model, model.branches[0], loads);
-    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (-2, 0, 0): moment 10·2·0.3 sin φ + 0.3 F cos φ
+    // tip at 0.3 (cos φ, 0, sin φ), pulled by 10 N/m towards (2, 0, 0): moment -10·2·0.3 sin φ + 0.3 F cos φ
     // = 0
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {
         const Vector3d tip = position(state, {0, {0.3, 0, 0}});
-        EXPECT_NEAR(20 * tip[2] + state.load * tip[0], 0, 1e-10);
+        EXPECT_NEAR(-20 * tip[2] + state.load * tip[0], 0, 1e-10);
     }
 }
 
@@ -153,7 +153,7 @@ TEST(EquilibriumOutcome, AnIdleStrutIsNoObstacle) {
 TEST(EquilibriumOutcome, ALoadedIdleStrutIsNamed) {
     Scene s = scene("mcpherson");
     for (const double moment : {1., 1e-3, 1e-6}) {
-        s.branches[0].loads = {{"spin", DeadMoment{2, {0, 0, moment}}}};
+        s.branches[0].drivers = {driven_by({"spin", DeadMoment{2, {0, 0, moment}}})};
         const Model model = compile(s);
         const auto path = solve(model, model.branches[0], every_load(model.branches[0]));
         EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
@@ -251,22 +251,22 @@ TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
     for (const double bad : {nan, infinity, -infinity}) {
         const std::vector<std::pair<const char*, std::function<void(Scene&)>>> places = {
             {"load direction",
-             [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).f[1] = bad; }},
+             [&](Scene& s) { std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).f[1] = bad; }},
             {"load moment",
              [&](Scene& s) {
-                 s.branches[0].loads.push_back({"m", DeadMoment{1, {0, bad, 0}}});
+                 s.branches[0].drivers.push_back(driven_by({"m", DeadMoment{1, {0, bad, 0}}}));
              }},
             {"static load",
              [&](Scene& s) {
                  s.static_loads.push_back({"f", DeadForce{{0, {0, 0, 0}}, {bad, 0, 0}}});
              }},
             {"load point",
-             [&](Scene& s) { std::get<DeadForce>(s.branches[0].loads[0].kind).at.s_local[0] = bad; }},
+             [&](Scene& s) { std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).at.s_local[0] = bad; }},
             {"position", [&](Scene& s) { s.bodies[1].design.r[2] = bad; }},
             {"orientation", [&](Scene& s) { s.bodies[1].design.p.x() = bad; }},
-            {"rate", [&](Scene& s) { std::get<AxialSpring>(s.elastics[0].kind).k = bad; }},
+            {"rate", [&](Scene& s) { rate_of(std::get<AxialSpring>(s.elastics[0].kind)).k = bad; }},
             {"free length", [&](Scene& s) { std::get<AxialSpring>(s.elastics[0].kind).free_length = bad; }},
-            {"stiffness", [&](Scene& s) { std::get<Bushing>(s.elastics[1].kind).K(4, 4) = bad; }},
+            {"stiffness", [&](Scene& s) { stiffness_of(std::get<Bushing>(s.elastics[1].kind)).K(4, 4) = bad; }},
             {"preload", [&](Scene& s) { std::get<Bushing>(s.elastics[1].kind).preload[4] = bad; }},
             {"bar", [&](Scene& s) { std::get<Distance>(s.joints[2].kind).length = bad; }},
         };
@@ -324,9 +324,9 @@ TEST(EquilibriumOutcome, ExtremeRatesGiveAnEquilibriumOrAnHonestOutcome) {
         for (double factor = 1e-9; factor < 1e10; factor *= 10) {
             Scene s = original;
             if (auto* spring = std::get_if<AxialSpring>(&s.elastics[e].kind))
-                spring->k *= factor;
+                rate_of(*spring).k *= factor;
             else
-                std::get<Bushing>(s.elastics[e].kind).K *= factor;
+                stiffness_of(std::get<Bushing>(s.elastics[e].kind)).K *= factor;
             const Model model = compile(s);
             const std::vector<double> loads = {0, 300, 1000};
             const auto path = solve(model, model.branches[0], loads);
@@ -348,7 +348,7 @@ TEST(EquilibriumOutcome, ExtremeRatesGiveAnEquilibriumOrAnHonestOutcome) {
 
 TEST(EquilibriumOutcome, NothingToSolveIsSolved) {
     Model model;
-    const Branch branch{"none", {}, 1, 1};
+    const Branch branch = branch_of("none", {}, 1, 1);
     const std::vector<double> loads = {0, 1};
     const auto path = solve(model, branch, loads);
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;

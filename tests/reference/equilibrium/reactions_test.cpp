@@ -26,7 +26,8 @@ TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
         s.joints = {
             {"weld",
              Fixed{{i, at}, {j, at}, {i, {1, 0, 0}}, {i, {0, 1, 0}}, {j, {1, 0, 0}}, {j, {0, 1, 0}}}}};
-        s.branches = {{"both", {{"f", DeadForce{{0, p}, f}}, {"m", DeadMoment{0, m}}}, 1, 1}};
+        s.branches = {
+            branch_of("both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1, 1)};
         s.probes = {{"p", {0, p}}};
         const Model model = compile(s);
         const double a = 250, sign = ground_first ? -1 : 1;  // what the joint does to ground is the opposite
@@ -47,7 +48,7 @@ TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
          Fixed{{1, at_bracket}, {0, at}, {1, {1, 0, 0}}, {1, {0, 1, 0}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}}}};
     Bushing mount;
     mount.j.body = 0;
-    mount.K.diagonal() << 2e4, 3e4, 4e4, 600, 500, 400;
+    stiffness_of(mount).K.diagonal() << 2e4, 3e4, 4e4, 600, 500, 400;
     s.elastics = {{"mount", mount}};
     s.branches = {pull({1, p_bracket}, {0.36, 0.48, 0.8})};
     s.probes = {{"p", {1, p_bracket}}};
@@ -131,16 +132,17 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
             for (const BodyId body : {0, 1}) {
                 Bushing mount{{ground, random_vector(random, 0.2), random_turn(random)},
                               {},
-                              random_stiffness(random),
+                              LinearStiffness{random_stiffness(random)},
                               Vector6::Zero()};
                 mount.j = mount.i;
                 mount.j.body = body;
                 s.elastics.push_back({"mount", mount});
                 s.branches.resize(1);
                 s.branches[0].name = "any";
-                s.branches[0].loads.push_back(
-                    {"f", DeadForce{{body, random_vector(random, 0.3)}, random_vector(random, 1)}});
-                s.branches[0].loads.push_back({"m", DeadMoment{body, random_vector(random, 0.05)}});
+                s.branches[0].drivers.push_back(driven_by(
+                    {"f", DeadForce{{body, random_vector(random, 0.3)}, random_vector(random, 1)}}));
+                s.branches[0].drivers.push_back(
+                    driven_by({"m", DeadMoment{body, random_vector(random, 0.05)}}));
             }
             s.probes = {{"a", {0, at}}, {"b", {1, at}}};
             const Model model = compile(s);
@@ -185,7 +187,7 @@ TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffForHardlyMoreThanOneIte
         EXPECT_TRUE(within(balance, 1e-8));
         EXPECT_LE(path.counts.iterations, 2 * 301);
         const double travel =
-            position(path.points.back(), {model.wheel->body, model.wheel->centre_local})[2] + 0.026;
+            position(path.points.back(), {model.wheels[0].body, model.wheels[0].centre_local})[2] + 0.026;
         EXPECT_GT(travel * branch.to, 0);
         fmt::print(
             "{}: {:.1f} mm, constraints {:.1e} m, balance {:.1e} N, {:.0f} µs and {:.2f} iterations a "

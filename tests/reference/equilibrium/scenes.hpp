@@ -28,6 +28,15 @@ inline std::vector<double> every_load(const Branch& branch) {
     return loads;
 }
 
+inline Branch branch_of(const std::string& name, const std::vector<Driver>& drivers, double to, int steps,
+                        ParameterUnit unit = ParameterUnit::newton) {
+    return {name, 0, to, steps, unit, drivers};
+}
+inline Driver driven_by(const Load& load) { return {load, 0, 1}; }
+
+inline LinearStiffness& stiffness_of(Bushing& bushing) { return std::get<LinearStiffness>(bushing.law); }
+inline LinearRate& rate_of(AxialSpring& spring) { return std::get<LinearRate>(spring.law); }
+
 inline Vector3d position(const Equilibrium& state, const Point& p) {
     if (p.body == ground) return p.s_local;
     const auto& pose = state.poses[static_cast<std::size_t>(p.body)];
@@ -80,18 +89,20 @@ inline void visit(Scene& s, const Visitor& v) {
                 if constexpr (requires { k.axis_j; }) v(k.axis_j);
                 if constexpr (requires { k.normal_i; }) v(k.normal_i);
                 if constexpr (requires { k.normal_j; }) v(k.normal_j);
-                if constexpr (requires { k.x_i; }) v(k.x_i), v(k.y_i), v(k.x_j), v(k.y_j);
+                if constexpr (requires { k.x_i; }) v(k.x_i), v(k.y_i), v(k.x_j);
+                if constexpr (requires { k.y_j; }) v(k.y_j);
             },
             joint.kind);
     for (auto& elastic : s.elastics) std::visit([&](auto& k) { v(k.i), v(k.j); }, elastic.kind);
     for (auto& load : s.static_loads) visit_load(load, v);
     for (auto& branch : s.branches)
-        for (auto& load : branch.loads) visit_load(load, v);
-    if (s.wheel) {
-        Point centre{s.wheel->body, s.wheel->centre_local}, contact{s.wheel->body, s.wheel->contact_local};
-        Direction axis{s.wheel->body, s.wheel->spin_axis_local};
+        for (auto& driver : branch.drivers)
+            if (auto* load = std::get_if<Load>(&driver.what)) visit_load(*load, v);
+    for (auto& wheel : s.wheels) {
+        Point centre{wheel.body, wheel.centre_local}, contact{wheel.body, wheel.contact_local};
+        Direction axis{wheel.body, wheel.spin_axis_local};
         v(centre), v(contact), v(axis);
-        *s.wheel = {centre.body, centre.s_local, contact.s_local, axis.u_local, s.wheel->side};
+        wheel = {wheel.name, centre.body, centre.s_local, contact.s_local, axis.u_local, wheel.side};
     }
     for (auto& probe : s.probes) v(probe.at);
 }
@@ -105,7 +116,8 @@ inline void turn_loads(Scene& s, const Matrix3d& force, const Matrix3d& moment) 
     };
     for (auto& load : s.static_loads) turn(load);
     for (auto& branch : s.branches)
-        for (auto& load : branch.loads) turn(load);
+        for (auto& driver : branch.drivers)
+            if (auto* load = std::get_if<Load>(&driver.what)) turn(*load);
 }
 
 // ---- The same scene said differently
@@ -157,7 +169,17 @@ inline Scene reversed(Scene s) {
     std::reverse(s.bodies.begin(), s.bodies.end());
     std::reverse(s.joints.begin(), s.joints.end());
     std::reverse(s.elastics.begin(), s.elastics.end());
-    for (auto& branch : s.branches) std::reverse(branch.loads.begin(), branch.loads.end());
+    const auto other_end = [](int& k, std::size_t count) { k = static_cast<int>(count) - 1 - k; };
+    for (auto& branch : s.branches) {
+        std::reverse(branch.drivers.begin(), branch.drivers.end());
+        for (auto& driver : branch.drivers) {
+            if (auto* motion = std::get_if<Motion>(&driver.what)) other_end(motion->joint, s.joints.size());
+            if (auto* length = std::get_if<FreeLength>(&driver.what))
+                other_end(length->elastic, s.elastics.size());
+            if (auto* preload = std::get_if<Preload>(&driver.what))
+                other_end(preload->elastic, s.elastics.size());
+        }
+    }
     return s;
 }
 
@@ -174,9 +196,13 @@ inline Scene mirrored(Scene s) {
     T << 1, -1, 1, -1, 1, -1;
     for (auto& elastic : s.elastics)
         if (auto* b = std::get_if<Bushing>(&elastic.kind)) {
-            b->K = T.asDiagonal() * b->K * T.asDiagonal();
+            stiffness_of(*b).K = T.asDiagonal() * stiffness_of(*b).K * T.asDiagonal();
             b->preload = T.asDiagonal() * b->preload;
         }
+    for (auto& branch : s.branches)
+        for (auto& driver : branch.drivers)
+            if (auto* preload = std::get_if<Preload>(&driver.what))
+                preload->direction = T.asDiagonal() * preload->direction;
     return s;
 }
 
@@ -191,16 +217,37 @@ inline Scene with_length_unit(Scene s, double c) {
     E << 1 / c, 1 / c, 1 / c, 1, 1, 1;
     for (auto& elastic : s.elastics) {
         if (auto* b = std::get_if<Bushing>(&elastic.kind)) {
-            b->K = T.asDiagonal() * b->K * E.asDiagonal();
+            stiffness_of(*b).K = T.asDiagonal() * stiffness_of(*b).K * E.asDiagonal();
             b->preload = T.asDiagonal() * b->preload;
         } else {
             auto& spring = std::get<AxialSpring>(elastic.kind);
-            spring.k /= c;
+            rate_of(spring).k /= c;
             spring.free_length *= c;
         }
     }
     for (auto& joint : s.joints)
-        if (auto* bar = std::get_if<Distance>(&joint.kind)) bar->length *= c;
+        if (auto* bar = std::get_if<Distance>(&joint.kind))
+            bar->length *= c;
+        else if (auto* plane = std::get_if<InPlane>(&joint.kind))
+            plane->offset *= c;
+    for (auto& branch : s.branches) {
+        const bool length = branch.unit == ParameterUnit::metre;
+        if (length) branch.to *= c;
+        for (auto& driver : branch.drivers) {
+            if (length) driver.rate /= c;
+            double of_length = 1;  // what the driven quantity becomes
+            if (const auto* motion = std::get_if<Motion>(&driver.what))
+                of_length = std::holds_alternative<Angle>(
+                                s.joints[static_cast<std::size_t>(motion->joint)].kind)
+                                ? 1
+                                : c;
+            if (std::holds_alternative<FreeLength>(driver.what)) of_length = c;
+            if (auto* preload = std::get_if<Preload>(&driver.what))
+                preload->direction = T.asDiagonal() * preload->direction;
+            driver.start *= of_length;
+            driver.rate *= of_length;
+        }
+    }
     return s;
 }
 
@@ -240,7 +287,7 @@ inline Scene rich_scene() {
         Vector6 pre;
         pre << random_vector(random, 1), random_vector(random, 0.02);
         s.elastics.push_back({name, Bushing{marker(i, at, axes), marker(j, at, axes),
-                                            random_stiffness(random), preload * pre}});
+                                            LinearStiffness{random_stiffness(random)}, preload * pre}});
     };
     const Vector3d lower_ball(.02, .75, -.12), upper_ball(-.01, .68, .3), tie_out(-.12, .72, 0),
         tie_in(-.15, .35, .02);
@@ -266,17 +313,16 @@ inline Scene rich_scene() {
     };
     bushing("spin", link, arm, {-.2, .7, 0}, 0);
     s.elastics.push_back(
-        {"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}), 30e3, .49}});
+        {"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}), LinearRate{30e3}, .49}});
     s.elastics.push_back(
-        {"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}), 20e3, .27}});
+        {"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}), LinearRate{20e3}, .27}});
     s.static_loads = {{"weight", DeadForce{point(knuckle, {0, .85, .1}), {0, 0, 400}}}};
-    s.branches = {{"mixed",
-                   {{"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}},
-                    {"twist", DeadMoment{knuckle, {.02, .05, .03}}}},
-                   1500,
-                   30}};
-    s.wheel = Wheel{plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local,
-                    along(plate, {0, 1, 0}).u_local, 1};
+    s.branches = {branch_of("mixed",
+                            {driven_by({"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}),
+                             driven_by({"twist", DeadMoment{knuckle, {.02, .05, .03}}})},
+                            1500, 30)};
+    s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local,
+                    along(plate, {0, 1, 0}).u_local, 1}};
     return s;
 }
 
@@ -289,17 +335,33 @@ inline Scene hinged_bar(const Vector3d& u, const Vector3d& axis, double k_R) {
     s.joints = {{"hinge", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, axis}, {ground, axis}}}};
     Bushing torsion;
     torsion.i.body = 0;
-    torsion.K.bottomRightCorner<3, 3>() = k_R * Matrix3d::Identity();
+    stiffness_of(torsion).K.bottomRightCorner<3, 3>() = k_R * Matrix3d::Identity();
     s.elastics = {{"torsion", torsion}};
     s.probes = {{"tip", {0, u}}};
     return s;
 }
 
 inline Branch pull(const Point& at, const Vector3d& f) {
-    return {"pull", {{"pull", DeadForce{at, f}}}, 1, 1};
+    return branch_of("pull", {driven_by({"pull", DeadForce{at, f}})}, 1, 1);
 }
 inline Branch twist(BodyId body, const Vector3d& m) {
-    return {"twist", {{"twist", DeadMoment{body, m}}}, 1, 1};
+    return branch_of("twist", {driven_by({"twist", DeadMoment{body, m}})}, 1, 1);
+}
+
+// ---- The energies of mechanism.hpp, written out once more
+
+inline double energy(const AxialSpring& spring, const Pose& i, const Pose& j) {
+    const double length = (j.r + j.p * spring.j.s_local - i.r - i.p * spring.i.s_local).norm();
+    return 0.5 * std::get<LinearRate>(spring.law).k * std::pow(length - spring.free_length, 2);
+}
+
+inline double energy(const Bushing& b, const Pose& i, const Pose& j) {
+    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(), A_j = (j.p * b.j.A_local).toRotationMatrix();
+    Eigen::AngleAxisd turn(Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
+    Vector6 e;
+    e << A_i.transpose() * (j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local), turn.angle() * turn.axis();
+    EXPECT_TRUE((A_i * turn.toRotationMatrix()).isApprox(A_j, 1e-9));
+    return 0.5 * e.dot(std::get<LinearStiffness>(b.law).K * e) + b.preload.dot(e);
 }
 
 // Keeps the worst of many comparisons and where it was, to be judged and printed once.
