@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compare/determination.hpp"
+#include "recursive/diagnosis.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -58,14 +58,14 @@ int count(const Reading& reading, const std::vector<bool>& determined) {
 }
 
 // Whether a channel reads wrenches that are there and determined; a total is there to be.
-bool is_determined(const Channel& channel, const Determination& known, const Model& standing) {
+bool is_determined(const Channel& channel, const std::vector<bool>& determined, const Model& standing) {
     std::vector<bool> stands(standing.joints.size(), false);
     for (const auto& constraint : standing.constraints)
         stands[static_cast<std::size_t>(constraint.joint)] = true;
     const bool total = std::holds_alternative<Total>(channel.reads);
     return std::ranges::all_of(channel.joints(), [&](int k) {
         const auto j = static_cast<std::size_t>(k);
-        return stands[j] && (total || known.joint[j]);
+        return stands[j] && (total || determined[j]);
     });
 }
 
@@ -147,12 +147,13 @@ Comparison compare(const Model& model, const Options& options) {
         throw std::invalid_argument(fmt::format("'{}' is no output of the scene", options.abscissa));
 
     std::vector<std::vector<Way>> ways;
-    std::vector<Determination> known;
+    std::vector<std::vector<bool>> determined;  // per branch and joint
     std::vector<std::vector<int>> groups;
     for (const auto& branch : model.branches) {
         ways.push_back(ways_of(model, branch, options.recursion.steps));
-        known.push_back(determination(ways.back().front().model));
-        for (const auto& group : known.back().groups)
+        const auto diagnosis = recursive::diagnose(ways.back().front().model);
+        determined.push_back(diagnosis.determined);
+        for (const auto& group : diagnosis.redundant_sets)
             if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
     }
     std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
@@ -163,7 +164,7 @@ Comparison compare(const Model& model, const Options& options) {
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
         for (const auto& channel : result.channels)
-            b.determined.push_back(is_determined(channel, known[k], ways[k].front().model));
+            b.determined.push_back(is_determined(channel, determined[k], ways[k].front().model));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));

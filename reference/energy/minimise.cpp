@@ -38,8 +38,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double aim = 0.01;       // of the tolerance: where to stop at once
-constexpr double holding = 1;      // stiffness given to idle motions, in units of F·L
+constexpr double aim = 0.01;   // of the tolerance: where to stop at once
+constexpr double holding = 1;  // stiffness given to idle motions, in units of F·L
+constexpr int same_point =
+    20;  // calls at one point in a row: SLSQP's step has vanished, it would go on for ever
 constexpr int patience = 5;        // evaluations without improvement, within the tolerance
 constexpr int long_patience = 20;  // and before that: a chart of large steps ends at the roundoff of these
 
@@ -81,6 +83,7 @@ struct Problem {
 
     Minimisation best;
     int since_best = 0;
+    int repeats = 0;  // calls at the same y
 };
 
 double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorXd& Phi) {
@@ -96,8 +99,12 @@ double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorX
 
 // All of f, c and their derivatives at y, and whether to go on.
 void evaluate(Problem& p, const VectorXd& y) {
-    if (p.best.evaluations > 0 && p.y == y) return;
+    if (p.best.evaluations > 0 && p.y == y) {
+        if (++p.repeats >= same_point && p.opt) nlopt_force_stop(p.opt);
+        return;
+    }
     p.y = y;
+    p.repeats = 0;
     move_to(p.chart, p.ST * y);
     const Potential V = potential(p.model, p.prescribed, p.chart);
     const ConstraintValues Phi = constraints(p.model, p.prescribed, p.chart);

@@ -134,10 +134,10 @@ TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
         Model model;
         model.name = "held";
         model.bodies = {{"body", {}}};
-        Bushing bushing{Marker{ground}, Marker{0}, Matrix6::Zero(), Vector6::Zero()};
-        bushing.K.diagonal() << 1e5, 1e5, 1e5, K_R;
+        Bushing bushing{Marker{ground}, Marker{0}, LinearStiffness{}, Vector6::Zero()};
+        stiffness_of(bushing).diagonal() << 1e5, 1e5, 1e5, K_R;
         model.elastics = {{"bushing", bushing}};
-        const Branch branch{"turn", {{"moment", DeadMoment{0, m}}}, 1, 4};
+        const Branch branch = load_branch("turn", {{"moment", DeadMoment{0, m}}}, 1, 4);
         const EquilibriumPath path = solve(model, branch, sweep(branch));
         ASSERT_EQ(path.outcome, Outcome::converged)
             << path.detail << " angle " << Eigen::AngleAxisd(p).angle();
@@ -150,7 +150,8 @@ TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
 TEST(ClosedForm, DeadMomentOnEqualRatesTurnsAboutItsOwnAxis) {
     Scene scene = scene_named("pendulum");
     const Vector3d axis(0.6, 0, 0.8);
-    scene.branches = {{"turn", {{"moment", DeadMoment{0, axis}}}, 1800, 60}};  // up to 3 rad at 600 N·m/rad
+    scene.branches = {
+        load_branch("turn", {{"moment", DeadMoment{0, axis}}}, 1800, 60)};  // up to 3 rad at 600 N·m/rad
     const auto path = solve(scene, 0, sweep(scene.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {

@@ -22,6 +22,8 @@ struct Change {
     std::function<void(Vector3d&)> force = [](Vector3d&) {};
     std::function<void(Vector3d&)> moment = [](Vector3d&) {};
     std::function<void(BodyId&)> id = [](BodyId&) {};
+    std::function<void(int&)> joint = [](int&) {};
+    std::function<void(Vector6&)> preload = [](Vector6&) {};
 };
 
 Scene changed(Scene scene, const Change& change) {
@@ -51,6 +53,7 @@ Scene changed(Scene scene, const Change& change) {
                 if constexpr (requires { s.x_i; })
                     direction(s.x_i), direction(s.y_i), direction(s.x_j), direction(s.y_j);
                 if constexpr (requires { s.length; }) change.length(s.length);
+                if constexpr (requires { s.offset; }) change.length(s.offset);
             },
             joint.kind);
     }
@@ -66,17 +69,27 @@ Scene changed(Scene scene, const Change& change) {
     }
     for (auto& l : scene.static_loads) load(l);
     for (auto& branch : scene.branches)
-        for (auto& l : branch.loads) load(l);
+        for (auto& driver : branch.drivers)
+            if (auto* l = std::get_if<Load>(&driver.what)) {
+                load(*l);
+            } else if (auto* motion = std::get_if<Motion>(&driver.what)) {
+                change.length(driver.start), change.length(driver.rate);
+                change.joint(motion->joint);
+            } else if (std::holds_alternative<FreeLength>(driver.what)) {
+                change.length(driver.start), change.length(driver.rate);
+            } else {
+                change.preload(std::get<Preload>(driver.what).direction);
+            }
     for (auto& probe : scene.probes) point(probe.at);
-    if (scene.wheel) {
-        Point centre{scene.wheel->body, scene.wheel->centre_local};
-        Point contact{scene.wheel->body, scene.wheel->contact_local};
-        Direction axis{scene.wheel->body, scene.wheel->spin_axis_local};
+    for (auto& wheel : scene.wheels) {
+        Point centre{wheel.body, wheel.centre_local};
+        Point contact{wheel.body, wheel.contact_local};
+        Direction axis{wheel.body, wheel.spin_axis_local};
         point(centre), point(contact), direction(axis);
-        scene.wheel->body = centre.body;
-        scene.wheel->centre_local = centre.s_local;
-        scene.wheel->contact_local = contact.s_local;
-        scene.wheel->spin_axis_local = axis.u_local;
+        wheel.body = centre.body;
+        wheel.centre_local = centre.s_local;
+        wheel.contact_local = contact.s_local;
+        wheel.spin_axis_local = axis.u_local;
     }
     return scene;
 }
@@ -86,18 +99,46 @@ std::vector<Scene> scenes() {
     Random random;
     Scene hard = scene_named("mcpherson");
     auto& coil = std::get<AxialSpring>(hard.elastics[0].kind);
-    coil.free_length += 3000 / coil.k;
+    coil.free_length += 3000 / rate_of(coil);
     auto& bushing = std::get<Bushing>(hard.elastics[2].kind);
     Matrix6 R;
     for (int i = 0; i < 6; ++i) R.col(i) = random.many(6);
-    bushing.K += 100 * R * R.transpose();
+    stiffness_of(bushing) += 100 * R * R.transpose();
     bushing.preload = random.many(6, 50);
-    hard.static_loads = {{"weight", DeadForce{{hard.wheel->body, Vector3d(0, 0.01, -0.1)}, {50, 30, 2500}}},
-                         {"moment", DeadMoment{hard.wheel->body, {5, -10, 7}}}};
-    hard.branches[0].loads.push_back({"turn", DeadMoment{hard.wheel->body, {0.002, -0.01, 0.005}}});
-    return {scene_named("mcpherson"),  hard,
-            scene_named("pinned_bar"), scene_named("bushing_pair"),
-            scene_named("pendulum"),   scene_named("two_spring_arch")};
+    hard.static_loads = {
+        {"weight", DeadForce{{hard.wheels[0].body, Vector3d(0, 0.01, -0.1)}, {50, 30, 2500}}},
+        {"moment", DeadMoment{hard.wheels[0].body, {5, -10, 7}}}};
+    hard.branches[0].drivers.push_back(
+        {Load{"turn", DeadMoment{hard.wheels[0].body, {0.002, -0.01, 0.005}}}, 0, 1});
+    // A scene on which all kinds of drivers move: jack, tie rod, free length, preload, a load held and moved.
+    Scene driven = hard;
+    driven.name = "driven McPherson";
+    const Wheel& wheel = driven.wheels[0];
+    const Pose& design = driven.bodies[static_cast<std::size_t>(wheel.body)].design;
+    driven.joints.push_back({"jack",
+                             InPlane{{wheel.body, wheel.centre_local},
+                                     {ground, design.r + design.p * wheel.centre_local},
+                                     {ground, Vector3d(0, 0.6, 0.8)},
+                                     0.001},
+                             true});
+    driven.branches = {
+        {.name = "all",
+         .to = 1,
+         .steps = 10,
+         .unit = ParameterUnit::none,
+         .drivers = {
+             {Motion{4}, 0.01, 0.03},
+             {Motion{2}, -0.001, 0.002},
+             {FreeLength{0}, 0.002, 0.01},
+             {Preload{1, random.many(6, 20)}, 1, 2},
+             {Load{"brake", DeadForce{{wheel.body, Vector3d(0, 0.05, 0)}, {-1, 0.2, 0}}}, 300, 200}}}};
+    return {scene_named("mcpherson"),
+            hard,
+            driven,
+            scene_named("pinned_bar"),
+            scene_named("bushing_pair"),
+            scene_named("pendulum"),
+            scene_named("two_spring_arch")};
 }
 
 using Map = std::function<Vector3d(const Vector3d&)>;
@@ -141,9 +182,9 @@ void compare(Compared& c, const Scene& scene, const Scene& other, const Back& ba
             }
             for (std::size_t p = 0; p < scene.probes.size(); ++p)
                 track(scene.probes[p].at, other.probes[p].at);
-            if (scene.wheel)
-                track(Point{scene.wheel->body, scene.wheel->contact_local},
-                      Point{other.wheel->body, other.wheel->contact_local});
+            for (std::size_t w = 0; w < scene.wheels.size(); ++w)
+                track(Point{scene.wheels[w].body, scene.wheels[w].contact_local},
+                      Point{other.wheels[w].body, other.wheels[w].contact_local});
             ASSERT_EQ(one.points[k].reactions.size(), scene.joints.size());
             for (std::size_t j = 0; j < scene.joints.size(); ++j) {
                 const Wrench& w = one.points[k].reactions[j];
@@ -225,6 +266,7 @@ TEST(Invariance, OrderDoesNotMatter) {
         change.id = [&](BodyId& id) {
             if (id != ground) id = nb - 1 - id;
         };
+        change.joint = [&](int& joint) { joint = static_cast<int>(scene.joints.size()) - 1 - joint; };
         Scene other = changed(scene, change);
         std::reverse(other.bodies.begin(), other.bodies.end());
         std::reverse(other.joints.begin(), other.joints.end());
@@ -253,13 +295,17 @@ TEST(Invariance, SideOfTheCarDoesNotMatter) {
         change.bushing = [&](Bushing& b) {
             Vector6 T;
             T << mirror, -mirror;
-            b.K = T.asDiagonal() * b.K * T.asDiagonal();
+            stiffness_of(b) = T.asDiagonal() * stiffness_of(b) * T.asDiagonal();
             b.preload = T.cwiseProduct(b.preload);
+        };
+        change.preload = [&](Vector6& b) {
+            b.head<3>() = reflected(b.head<3>());
+            b.tail<3>() = -reflected(b.tail<3>());
         };
         change.force = [&](Vector3d& f) { f = reflected(f); };
         change.moment = [&](Vector3d& m) { m = -reflected(m); };
         Scene other = changed(scene, change);
-        if (other.wheel) other.wheel->side = -1;
+        for (auto& wheel : other.wheels) wheel.side = -1;
         Compared c;
         const auto axial = [&](const Vector3d& m) -> Vector3d { return -reflected(m); };
         compare(c, scene, other, {reflected, reflected, axial});
@@ -277,15 +323,16 @@ TEST(Invariance, UnitOfLengthDoesNotMatter) {
             change.marker = [&](Marker& m) { m.s_local *= unit; };
             change.length = [&](double& length) { length *= unit; };
             change.spring = [&](AxialSpring& s) {
-                s.k /= unit;
+                rate_of(s) /= unit;
                 s.free_length *= unit;
             };
             change.bushing = [&](Bushing& b) {
                 Vector6 T;
                 T << Vector3d::Constant(1 / unit), Vector3d::Ones();
-                b.K = unit * T.asDiagonal() * b.K * T.asDiagonal();
+                stiffness_of(b) = unit * T.asDiagonal() * stiffness_of(b) * T.asDiagonal();
                 b.preload.tail<3>() *= unit;
             };
+            change.preload = [&](Vector6& b) { b.tail<3>() *= unit; };
             change.moment = [&](Vector3d& m) { m *= unit; };
             Compared c;
             const auto smaller = [&](const Vector3d& v) -> Vector3d { return v / unit; };

@@ -52,8 +52,8 @@ TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
     for (std::size_t b = 0; b < s.paths.size(); ++b) {
         double previous = 0;
         for (const auto& state : s.paths[b].points) {
-            const double z = state.poses[static_cast<std::size_t>(s.model.wheel->body)].r.z() -
-                             s.model.bodies[static_cast<std::size_t>(s.model.wheel->body)].design.r.z();
+            const double z = state.poses[static_cast<std::size_t>(s.model.wheels[0].body)].r.z() -
+                             s.model.bodies[static_cast<std::size_t>(s.model.wheels[0].body)].design.r.z();
             if (state.load != 0) {
                 EXPECT_GT(z / state.load, previous / state.load) << state.load;
             }
@@ -142,8 +142,8 @@ TEST(McPherson, WarmStartedPointsAreCheap) {
 TEST(McPherson, SettlesUnderPreloadAndWeight) {
     Scene scene = scene_named("mcpherson");
     auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
-    coil.free_length += 3500 / coil.k;
-    scene.static_loads = {{"weight", DeadForce{{scene.wheel->body, Vector3d::Zero()}, {0, 0, 2500}}}};
+    coil.free_length += 3500 / rate_of(coil);
+    scene.static_loads = {{"weight", DeadForce{{scene.wheels[0].body, Vector3d::Zero()}, {0, 0, 2500}}}};
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
         const auto path = solve(model, branch, sweep(branch, 60));

@@ -62,7 +62,8 @@ TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
     for (const double pull : {150.0, 300.0}) {
         Scene scene = arch(0.08);
         scene.elastics.push_back(
-            {"pull", AxialSpring{{0, Vector3d::Zero()}, {ground, {0, 0, -5}}, 100, 5.08 - pull / 100}});
+            {"pull",
+             AxialSpring{{0, Vector3d::Zero()}, {ground, {0, 0, -5}}, LinearRate{100}, 5.08 - pull / 100}});
         const double loads[] = {0};
         const auto path = solve(scene, 0, loads);
         if (pull > limit_load(0.08)) {
@@ -89,10 +90,10 @@ TEST(Outcomes, BucklingIsNotPassedOver) {
     Bushing side;
     side.i = {0, {0, 0, 0.5}};
     side.j = {ground, {0, 0, 0.5}};
-    side.K(0, 0) = 2e4;
-    side.K(2, 2) = 1e3;
+    stiffness_of(side)(0, 0) = 2e4;
+    stiffness_of(side)(2, 2) = 1e3;
     model.elastics = {{"side", side}};
-    const Branch branch{"press", {{"down", DeadForce{{0, {0, 0, 0.5}}, {0, 0, -1}}}}, 2e4, 40};
+    const Branch branch = load_branch("press", {{"down", DeadForce{{0, {0, 0, 0.5}}, {0, 0, -1}}}}, 2e4, 40);
     const auto path = solve(model, branch, sweep(branch));
     EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
     EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
@@ -125,13 +126,13 @@ TEST(Outcomes, ModelsThatAreNoNumbersNeverConverge) {
     };
     for (const double bad : {nan, inf}) {
         Model model = good;
-        std::get<AxialSpring>(model.elastics[0].kind).k = bad;
+        std::get<AxialSpring>(model.elastics[0].kind).law = LinearRate{bad};
         expect_not_finite("rate", model);
         model = good;
         std::get<AxialSpring>(model.elastics[0].kind).free_length = bad;
         expect_not_finite("free length", model);
         model = good;
-        std::get<Bushing>(model.elastics[1].kind).K(1, 1) = bad;
+        stiffness_of(std::get<Bushing>(model.elastics[1].kind))(1, 1) = bad;
         expect_not_finite("stiffness", model);
         model = good;
         std::get<Bushing>(model.elastics[1].kind).preload[2] = bad;
@@ -143,7 +144,7 @@ TEST(Outcomes, ModelsThatAreNoNumbersNeverConverge) {
         model.static_loads = {{"bad", DeadForce{{1, Vector3d::Zero()}, Vector3d(0, bad, 0)}}};
         expect_not_finite("static load", model);
         model = good;
-        std::get<DeadForce>(model.branches[0].loads[0].kind).f.z() = bad;
+        std::get<DeadForce>(std::get<Load>(model.branches[0].drivers[0].what).kind).f.z() = bad;
         const auto path = solve(model, model.branches[0], loads);
         EXPECT_NE(path.outcome, Outcome::converged) << "branch load";
     }
@@ -153,7 +154,8 @@ TEST(Outcomes, LoadedIdleModesAreNamedAsSuch) {
     // The strut's spin, pushed.
     Scene scene = scene_named("mcpherson");
     const auto strut = static_cast<BodyId>(2);
-    scene.branches[0].loads = {{"spin", DeadMoment{strut, Vector3d(0.04, 0.07, -0.33)}}};
+    scene.branches[0] =
+        load_branch("spin", {{"spin", DeadMoment{strut, Vector3d(0.04, 0.07, -0.33)}}}, 10, 1);
     const double loads[] = {0, 1, 10};
     auto path = solve(scene, 0, loads);
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
@@ -162,11 +164,12 @@ TEST(Outcomes, LoadedIdleModesAreNamedAsSuch) {
     // A body that nothing holds, pushed by a branch or by a static load.
     Model free;
     free.bodies = {{"stone", {}}};
-    const Branch throws{"throw", {{"push", DeadForce{{0, Vector3d(0.1, 0, 0)}, Vector3d::UnitX()}}}, 10, 1};
+    const std::vector<Load> push{{"push", DeadForce{{0, Vector3d(0.1, 0, 0)}, Vector3d::UnitX()}}};
+    const Branch throws = load_branch("throw", push, 10, 1);
     path = solve(free, throws, loads);
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
     EXPECT_EQ(path.points.size(), 1u);
-    free.static_loads = throws.loads;
+    free.static_loads = push;
     path = solve(free, throws, loads);
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
     EXPECT_TRUE(path.points.empty());
@@ -240,14 +243,15 @@ TEST(Outcomes, FullyConstrainedBodiesStayWhereTheyAre) {
     const Fixed weld{{0, Vector3d::Zero()},  {ground, Vector3d(1, 2, 3)}, {0, Vector3d::UnitX()},
                      {0, Vector3d::UnitY()}, {ground, Vector3d::UnitX()}, {ground, Vector3d::UnitY()}};
     for (const auto& kind : lower(weld, model.bodies)) model.constraints.push_back({0, kind});
-    const Branch branch{"push", {{"push", DeadForce{{0, Vector3d(0.1, 0, 0)}, Vector3d::UnitZ()}}}, 1000, 10};
+    const Branch branch =
+        load_branch("push", {{"push", DeadForce{{0, Vector3d(0.1, 0, 0)}, Vector3d::UnitZ()}}}, 1000, 10);
     const auto path = solve(model, branch, sweep(branch));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) EXPECT_LE((state.poses[0].r - Vector3d(1, 2, 3)).norm(), 1e-12);
 }
 
 TEST(Outcomes, NothingToSolveIsSolved) {
-    const Branch branch{"idle", {}, 1, 1};
+    const Branch branch = load_branch("idle", {}, 1, 1);
     const double loads[] = {0, 1};
     EXPECT_EQ(solve(Model{}, branch, loads).points.size(), 2u);
     Model free;
@@ -261,7 +265,7 @@ TEST(Outcomes, NothingToSolveIsSolved) {
 // A rotational bushing can hold a moment up to K_R π; beyond there is no equilibrium.
 TEST(Outcomes, HalfATurnOfABushingEndsTheBranch) {
     Scene scene = scene_named("pendulum");
-    scene.branches = {{"turn", {{"moment", DeadMoment{0, Vector3d(0.6, 0, 0.8)}}}, 2400, 8}};
+    scene.branches = {load_branch("turn", {{"moment", DeadMoment{0, Vector3d(0.6, 0, 0.8)}}}, 2400, 8)};
     for (const int steps : {1, 8, 100}) {
         const auto path = solve(scene, 0, sweep(scene.branches[0], steps));
         EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
@@ -303,7 +307,7 @@ TEST(Outcomes, ExtremeRatesAreSolvedOrDeclined) {
         Scene scene = scene_named("mcpherson");
         for (auto& elastic : scene.elastics) {
             if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
-                bushing->K.topLeftCorner<3, 3>() *= factor;
+                stiffness_of(*bushing).topLeftCorner<3, 3>() *= factor;
         }
         const Model model = compile(scene);
         const auto loads = sweep(model.branches[0], 10);

@@ -46,24 +46,26 @@ Scene random_scene(int number, Random& random) {
         for (const BodyId to : {ground, b + 1 < nb ? b + 1 : ground}) {
             const Vector3d p = random.vector(0.5);
             const Quaterniond A = random.rotation();
-            Bushing bushing{at.marker(b, p, A), at.marker(to, p, A), Matrix6::Zero(), Vector6::Zero()};
+            Bushing bushing{at.marker(b, p, A), at.marker(to, p, A), LinearStiffness{}, Vector6::Zero()};
             for (int k = 0; k < 6; ++k)
-                bushing.K(k, k) = (k < 3 ? rate : rotational_rate) * std::pow(10, random(-1, 1));
+                stiffness_of(bushing)(k, k) = (k < 3 ? rate : rotational_rate) * std::pow(10, random(-1, 1));
             if (number % 5 == 0) bushing.preload = random.many(6, 50);
             at.scene.elastics.push_back({"bushing", bushing});
         }
     }
     const Vector3d p = random.vector(0.5), q = random.vector(0.5);
     if (number % 2 == 1)
-        at.scene.elastics.push_back({"spring", AxialSpring{at.point(0, p), at.point(ground, q), rate,
-                                                           (p - q).norm() * random(0.9, 1.1)}});
+        at.scene.elastics.push_back(
+            {"spring", AxialSpring{at.point(0, p), at.point(ground, q), LinearRate{rate},
+                                   (p - q).norm() * random(0.9, 1.1)}});
     for (int k = 0; k < number % 4; ++k) {
         const BodyId i = number % nb, j = nb > 1 && number / 7 % 2 == 1 ? (i + 1) % nb : ground;
         at.scene.joints.push_back(
             {fmt::format("joint{}", k), random_joint(at, random, (number / 3 + k) % 6, i, j)});
     }
-    Branch branch{"push", {{"force", DeadForce{{nb - 1, random.vector(0.3)}, random.unit()}}}, 5000, 20};
-    if (number % 3 == 0) branch.loads.push_back({"moment", DeadMoment{0, random.vector(0.1)}});
+    Branch branch =
+        load_branch("push", {{"force", DeadForce{{nb - 1, random.vector(0.3)}, random.unit()}}}, 5000, 20);
+    if (number % 3 == 0) branch.drivers.push_back({Load{"moment", DeadMoment{0, random.vector(0.1)}}, 0, 1});
     at.scene.branches = {branch};
     at.scene.probes = {{"probe", {nb - 1, Vector3d::Zero()}}};
     return at.scene;

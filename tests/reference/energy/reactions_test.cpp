@@ -33,7 +33,8 @@ TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
             model.joints = {{"weld", ground_first ? ground : 0, ground_first ? 0 : ground,
                              ground_first ? on_ground : on_body}};
             for (const auto& kind : lower(weld, model.bodies)) model.constraints.push_back({0, kind});
-            const Branch branch{"pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3};
+            const Branch branch =
+                load_branch("pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3);
             const auto path = solve(model, branch, sweep(branch));
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& state : path.points) {
@@ -71,7 +72,7 @@ TEST(Reactions, PinnedBarsPinCarriesLoadAndBushing) {
 // The guide of the plate carries the moment of a load beside its middle; the springs carry the load.
 TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
     Scene scene = scene_named("parallel_springs");
-    auto& load = std::get<DeadForce>(scene.branches[0].loads[0].kind);
+    auto& load = std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind);
     load.at.s_local = Vector3d(0.1, 0.05, 0);
     const auto path = solve(scene, 0, sweep(scene.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -93,7 +94,7 @@ TEST(Reactions, WheelIsInBalance) {
     const Model model = compile(scene);
     const auto path = solve(model, model.branches[0], sweep(model.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    const BodyId wheel = model.wheel->body;
+    const BodyId wheel = model.wheels[0].body;
     double worst = 0;
     for (const auto& state : path.points) {
         const Vector3d centre = state.poses[static_cast<std::size_t>(wheel)].r;
@@ -107,7 +108,7 @@ TEST(Reactions, WheelIsInBalance) {
         const auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
         ASSERT_EQ(coil.i.body, wheel);
         const Vector3d lower = position(state, coil.i), D = position(state, coil.j) - lower;
-        const Vector3d pull = coil.k * (D.norm() - coil.free_length) * D.normalized();
+        const Vector3d pull = rate_of(coil) * (D.norm() - coil.free_length) * D.normalized();
         force += pull;
         moment += (lower - centre).cross(pull);
         worst = std::max({worst, force.norm(), moment.norm()});

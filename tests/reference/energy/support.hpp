@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "models/branch.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reference/energy/solve.hpp"
@@ -16,6 +17,21 @@ namespace elastocheck::reference::energy {
 
 inline Scene scene_named(const std::string& name) {
     return read_scene(fmt::format("{}/{}.yaml", ELASTOCHECK_SCENES, name));
+}
+
+// The linear laws' numbers.
+inline double& rate_of(AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
+inline double rate_of(const AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
+inline Matrix6& stiffness_of(Bushing& bushing) { return std::get<LinearStiffness>(bushing.law).K; }
+inline const Matrix6& stiffness_of(const Bushing& bushing) {
+    return std::get<LinearStiffness>(bushing.law).K;
+}
+
+// A branch that its loads alone drive, from 0 to `to`.
+inline Branch load_branch(const std::string& name, const std::vector<Load>& loads, double to, int steps) {
+    Branch branch{.name = name, .to = to, .steps = steps, .drivers = {}};
+    for (const auto& load : loads) branch.drivers.push_back({load, 0, 1});
+    return branch;
 }
 
 // Factors 0, 1/steps, ... 1 of the branch.
@@ -28,7 +44,8 @@ inline std::vector<double> sweep(const Branch& branch, int steps = 0) {
 
 inline EquilibriumPath solve(const Scene& scene, std::size_t branch, std::span<const double> loads) {
     const Model model = compile(scene);
-    return solve(model, model.branches.at(branch), loads);
+    const Branch& walked = model.branches.at(branch);
+    return solve(on_branch(model, walked), walked, loads);
 }
 
 inline Eigen::Vector3d position(const Equilibrium& state, const Point& p) {
