@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace elastocheck {
 namespace {
@@ -20,17 +21,19 @@ std::vector<bool> standing(const Model& model, const Branch& branch) {
 
 std::vector<Branch> ways(const Branch& branch) {
     if (branch.from == 0) return {branch};
-    const double whole = std::abs(branch.from) + std::abs(branch.to);
-    std::vector<Branch> result;
-    for (const double end : {branch.from, branch.to}) {
-        if (end == 0) continue;
+    if (branch.to == 0) {
         Branch way = branch;
-        way.from = 0;
-        way.to = end;
-        way.steps = std::max(1, static_cast<int>(std::lround(branch.steps * std::abs(end) / whole)));
-        result.push_back(way);
+        std::swap(way.from, way.to);
+        return {way};
     }
-    return result;
+    const double share = std::abs(branch.from) / (std::abs(branch.from) + std::abs(branch.to));
+    Branch back = branch, forth = branch;
+    back.from = forth.from = 0;
+    back.to = branch.from;
+    back.steps =
+        std::clamp(static_cast<int>(std::lround(branch.steps * share)), 1, std::max(1, branch.steps - 1));
+    forth.steps = std::max(1, branch.steps - back.steps);
+    return {back, forth};
 }
 
 Model on_branch(const Model& model, const Branch& branch) {

@@ -8,7 +8,7 @@
 namespace elastocheck {
 
 // The one-way branches that a branch is walked as, each from a = 0: to `from` where there is one, then to
-// `to`. The steps are shared out by length, at least one each.
+// `to`. The steps are shared out by length, at least one each, and are as many as before where there are two or more.
 std::vector<Branch> ways(const Branch& branch);
 
 // The model as it stands on the branch: joints that stand only where they are driven, and are not driven

@@ -7,17 +7,10 @@
 #include <set>
 
 #include "models/lowering.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck {
 namespace {
-
-// One function a kind: a kind that is forgotten does not compile.
-template <class... F>
-struct overloaded : F... {
-    using F::operator()...;
-};
-template <class... F>
-overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce it
 
 struct Ends {
     BodyId i, j;
@@ -81,7 +74,76 @@ bool is_loaded_at_design(const ElasticKind& elastic, const std::vector<Body>& bo
                       elastic);
 }
 
-// Which bodies hang together: every joint, and every element that is not zero.
+// Whether a driver does anything: it has a value somewhere on the branch, of something that has a size.
+bool is_zero(const Driver& driver, const Scene& scene) {
+    if (std::holds_alternative<Motion>(driver.what)) return false;  // held at 0 is held
+    if (driver.start == 0 && driver.rate == 0) return true;
+    return std::visit(
+        overloaded{[](const Load& l) { return is_zero(l.kind); }, [](const Motion&) { return false; },
+                   [&](const FreeLength& l) {
+                       const auto& kind = scene.elastics[static_cast<std::size_t>(l.elastic)].kind;
+                       return std::visit(overloaded{[](const AxialSpring& e) { return is_zero(e.law); },
+                                                    [](const Bushing&) { return true; }},
+                                         kind);
+                   },
+                   [](const Preload& p) { return p.direction.isZero(0); }},
+        driver.what);
+}
+
+// What the branches need, by position in the scene: joints that a driver moves or holds, elements whose preload
+// it moves.
+struct DrivenParts {
+    std::vector<bool> joints, preloads;
+};
+
+DrivenParts driven_parts(const Scene& scene) {
+    DrivenParts parts{std::vector<bool>(scene.joints.size()), std::vector<bool>(scene.elastics.size())};
+    for (const auto& branch : scene.branches)
+        for (const auto& driver : branch.drivers) {
+            if (is_zero(driver, scene)) continue;
+            if (const auto* m = std::get_if<Motion>(&driver.what))
+                parts.joints[static_cast<std::size_t>(m->joint)] = true;
+            if (const auto* p = std::get_if<Preload>(&driver.what))
+                parts.preloads[static_cast<std::size_t>(p->elastic)] = true;
+        }
+    return parts;
+}
+
+// Whether the joint stands on some branch.
+bool ever_stands(const Joint& joint, bool driven) { return !joint.only_where_driven || driven; }
+
+// Whether a length, offset or angle of the joint is other than drawn, so that something moves before any load
+// does.
+bool is_strained_at_design(const JointKind& joint, const std::vector<Body>& bodies) {
+    const auto turned = [&](const Direction& u) -> Eigen::Vector3d {
+        return u.body == ground ? u.u_local : bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
+    };
+    const auto as_drawn = [](const auto&) { return false; };
+    return std::visit(
+        overloaded{
+            [&](const Distance& s) {
+                const double drawn = (position(bodies, s.j) - position(bodies, s.i)).norm();
+                return !(std::abs(drawn - s.length) <= 1e-12 * s.length);
+            },
+            [&](const InPlane& s) {
+                const Eigen::Vector3d d = position(bodies, s.i) - position(bodies, s.j);
+                return !(std::abs(turned(s.normal_j).dot(d) - s.offset) <= 1e-12);
+            },
+            [&](const Angle& s) {
+                const Eigen::Vector3d u = std::cos(s.angle) * turned(s.y_j) - std::sin(s.angle) * turned(s.j);
+                return !(std::abs(turned(s.i).dot(u)) <= 1e-12);
+            },
+            [&](const Spherical& s) { return as_drawn(s); }, [&](const Revolute& s) { return as_drawn(s); },
+            [&](const Universal& s) { return as_drawn(s); },
+            [&](const Cylindrical& s) { return as_drawn(s); },
+            [&](const Translational& s) { return as_drawn(s); }, [&](const Planar& s) { return as_drawn(s); },
+            [&](const Fixed& s) { return as_drawn(s); }, [&](const InLine& s) { return as_drawn(s); },
+            [&](const Perpendicular& s) { return as_drawn(s); },
+            [&](const Parallel& s) { return as_drawn(s); }},
+        joint);
+}
+
+// Which bodies hang together: every joint that stands on some branch, and every element that is not zero.
 struct Graph {
     struct Edge {
         BodyId other;
@@ -91,17 +153,19 @@ struct Graph {
     std::set<BodyId> outputs, loaded;
 };
 
-Graph graph_of(const Scene& scene) {
+Graph graph_of(const Scene& scene, const DrivenParts& driven) {
     Graph graph;
     graph.edges.resize(scene.bodies.size());
     const auto connect = [&](Ends e, bool loaded) {
         if (e.i != ground) graph.edges[static_cast<std::size_t>(e.i)].push_back({e.j, loaded});
         if (e.j != ground) graph.edges[static_cast<std::size_t>(e.j)].push_back({e.i, loaded});
     };
-    for (const auto& joint : scene.joints) connect(ends(joint.kind), false);
-    for (const auto& elastic : scene.elastics)
-        if (!is_zero(elastic.kind))
-            connect(ends(elastic.kind), is_loaded_at_design(elastic.kind, scene.bodies));
+    for (std::size_t k = 0; k < scene.joints.size(); ++k)
+        if (const JointKind& kind = scene.joints[k].kind; ever_stands(scene.joints[k], driven.joints[k]))
+            connect(ends(kind), is_strained_at_design(kind, scene.bodies));
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k)
+        if (const ElasticKind& kind = scene.elastics[k].kind; !is_zero(kind) || driven.preloads[k])
+            connect(ends(kind), is_loaded_at_design(kind, scene.bodies));
     for (const auto& wheel : scene.wheels) graph.outputs.insert(wheel.body);
     for (const auto& probe : scene.probes) graph.outputs.insert(probe.at.body);
     const auto load = [&](const Load& l) {
@@ -111,7 +175,8 @@ Graph graph_of(const Scene& scene) {
     const auto both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
     const auto element = [&](int k) { both(ends(scene.elastics[static_cast<std::size_t>(k)].kind)); };
     for (const auto& branch : scene.branches)
-        for (const auto& driver : branch.drivers)
+        for (const auto& driver : branch.drivers) {
+            if (is_zero(driver, scene)) continue;
             std::visit(overloaded{[&](const Load& l) { load(l); },
                                   [&](const Motion& m) {
                                       both(ends(scene.joints[static_cast<std::size_t>(m.joint)].kind));
@@ -119,6 +184,7 @@ Graph graph_of(const Scene& scene) {
                                   [&](const FreeLength& f) { element(f.elastic); },
                                   [&](const Preload& p) { element(p.elastic); }},
                        driver.what);
+        }
     return graph;
 }
 
@@ -188,9 +254,11 @@ bool can_be_driven(const ConstraintKind& kind) {
 }  // namespace
 
 Model compile(const Scene& scene) {
-    const Graph graph = graph_of(scene);
+    const DrivenParts driven = driven_parts(scene);
+    const Graph graph = graph_of(scene, driven);
     Model model;
     model.name = scene.name;
+    model.left_out = scene.left_out;
 
     auto kept = connected_to_output(graph);
     for (std::size_t b = 0; b < kept.size(); ++b)
@@ -219,6 +287,10 @@ Model compile(const Scene& scene) {
     for (std::size_t k = 0; k < scene.joints.size(); ++k) {
         const Joint& joint = scene.joints[k];
         const auto [i, j] = ends(joint.kind);
+        if (!ever_stands(joint, driven.joints[k])) {
+            leave_out("joint", joint.name, "no branch drives it");
+            continue;
+        }
         if (!is_kept(i) || !is_kept(j)) {
             leave_out("joint", joint.name, "a body it connects is left out");
             continue;
@@ -246,7 +318,7 @@ Model compile(const Scene& scene) {
     for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
         Elastic elastic = scene.elastics[k];
         const auto [i, j] = ends(elastic.kind);
-        if (is_zero(elastic.kind)) {
+        if (is_zero(elastic.kind) && !driven.preloads[k]) {
             leave_out("element", elastic.name, "its rates and preload are zero");
         } else if (!is_kept(i) || !is_kept(j)) {
             leave_out("element", elastic.name, "a body it connects is left out");
@@ -276,29 +348,48 @@ Model compile(const Scene& scene) {
     for (const auto& branch : scene.branches) {
         Branch& result = model.branches.emplace_back(branch);
         result.drivers.clear();
-        const auto keep = [&](Driver driver, auto what, int id) {
-            if (id < 0) return;  // left out above, with its reason
-            driver.what = what;
-            result.drivers.push_back(driver);
+        const std::string where = " (branch '" + branch.name + "')";
+        // The driver as the model has it, or none: its part is left out above with its reason, or it is here.
+        const auto kept_part = [&](int id, auto what) -> std::optional<Driven> {
+            return id < 0 ? std::nullopt : std::optional<Driven>(what);
         };
-        for (const auto& driver : branch.drivers)
-            std::visit(overloaded{[&](const Load& load) {
-                                      if (auto kept_one = kept_load(load, " (branch '" + branch.name + "')"))
-                                          keep(driver, *kept_one, 0);
-                                  },
-                                  [&](const Motion& motion) {
-                                      const int id = joint_ids[static_cast<std::size_t>(motion.joint)];
-                                      keep(driver, Motion{id}, id);
-                                  },
-                                  [&](const FreeLength& length) {
-                                      const int id = elastic_ids[static_cast<std::size_t>(length.elastic)];
-                                      keep(driver, FreeLength{id}, id);
-                                  },
-                                  [&](const Preload& preload) {
-                                      const int id = elastic_ids[static_cast<std::size_t>(preload.elastic)];
-                                      keep(driver, Preload{id, preload.direction}, id);
-                                  }},
-                       driver.what);
+        const auto drop = [&](const std::string& kind, const std::string& name, const char* why) {
+            leave_out(kind.c_str(), name, (why + where).c_str());
+            return std::optional<Driven>();
+        };
+        const auto name_of = [&](int k) { return scene.elastics[static_cast<std::size_t>(k)].name; };
+        for (const auto& driver : branch.drivers) {
+            const bool zero = is_zero(driver, scene);
+            const auto what = std::visit(
+                overloaded{[&](const Load& load) -> std::optional<Driven> {
+                               if (zero) return drop("load", load.name, "it is zero");
+                               if (auto kept_one = kept_load(load, where)) return *kept_one;
+                               return std::nullopt;
+                           },
+                           [&](const Motion& motion) {
+                               const int id = joint_ids[static_cast<std::size_t>(motion.joint)];
+                               if (id >= 0 && model.joints[static_cast<std::size_t>(id)].driven < 0)
+                                   return drop("motion of joint",
+                                               model.joints[static_cast<std::size_t>(id)].name,
+                                               "it has no length, offset or angle");
+                               return kept_part(id, Motion{id});
+                           },
+                           [&](const FreeLength& length) {
+                               const int id = elastic_ids[static_cast<std::size_t>(length.elastic)];
+                               if (zero)
+                                   return drop("free length of", name_of(length.elastic), "it moves nothing");
+                               return kept_part(id, FreeLength{id});
+                           },
+                           [&](const Preload& preload) {
+                               const int id = elastic_ids[static_cast<std::size_t>(preload.elastic)];
+                               if (zero) return drop("preload of", name_of(preload.elastic), "it is zero");
+                               return kept_part(id, Preload{id, preload.direction});
+                           }},
+                driver.what);
+            if (what) result.drivers.push_back({*what, driver.start, driver.rate});
+        }
+        if (std::ranges::none_of(result.drivers, [](const Driver& driver) { return driver.rate != 0; }))
+            leave_out("branch", branch.name, "nothing that it moves is left");
     }
 
     model.wheels = scene.wheels;

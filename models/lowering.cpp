@@ -2,18 +2,13 @@
 
 #include <utility>
 
+#include "models/overloaded.hpp"
+
 namespace elastocheck {
 namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-template <class... F>
-struct overloaded : F... {
-    using F::operator()...;
-};
-template <class... F>
-overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce it
 
 Quaterniond axes(const std::vector<Body>& bodies, BodyId body) {
     return body == ground ? Quaterniond::Identity() : bodies[static_cast<std::size_t>(body)].design.p;

@@ -57,11 +57,6 @@ struct ModelJoint {
     bool only_where_driven = false;
 };
 
-struct Omission {
-    std::string what;  // "body 'antiroll_bar'"
-    std::string why;
-};
-
 struct Model {
     std::string name;
     std::vector<Body> bodies;

@@ -68,9 +68,23 @@ struct Hardpoint {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
+// A number of the file that a scene was read from, as written there, in the unit declared there.
+struct Number {
+    std::string path;  // "points.tie_rod_inner.z": the name by which a Setting varies it
+    double value = 0;
+    std::string unit;  // "mm", "N·m/deg"; empty for a pure number
+};
+
+// What was asked for and is not modelled.
+struct Omission {
+    std::string what;  // "body 'antiroll_bar'"
+    std::string why;
+};
+
 struct Scene {
     std::string name;
-    std::string source;  // file it was read from, empty when built in code
+    std::string source;           // file it was read from, empty when built in code
+    std::vector<Number> numbers;  // of the file, in the order of reading; empty when built in code
     std::vector<Hardpoint> hardpoints;
     std::vector<Body> bodies;
     std::vector<Joint> joints;
@@ -79,6 +93,7 @@ struct Scene {
     std::vector<Branch> branches;
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
+    std::vector<Omission> left_out;  // what the file defines and nothing uses
 };
 
 }  // namespace elastocheck

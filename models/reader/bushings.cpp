@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
 constexpr double parallel = 1e-6;    // sine of the angle between axes that are taken for one
 
-Vector3d rates(const Cursor& at) {
+Vector3d rates(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "rates");
-    return {rate(items[0]), rate(items[1]), rate(items[2])};
+    return {rate(items[0], unit), rate(items[1], unit), rate(items[2], unit)};
 }
 
 // ---- The frame of a bushing.
@@ -90,23 +90,28 @@ void require_symmetric(const Cursor& at, const Matrix6& K) {
                                     j + 1, K(i, j), j + 1, i + 1, K(j, i)));
 }
 
-// The 6×6 as written; both off-diagonal blocks are force/angle, so that it is symmetric in any units.
+// The unit of each of the four blocks; both off-diagonal ones are force/angle, so that the 6×6 is symmetric as
+// written in any units. That is no congruence (√(force/length · moment/angle) is another unit than
+// force/angle), so what is judged is the matrix in SI units, never the one that was written.
+const Unit& unit_of_entry(int i, int j, const Units& units) {
+    if ((i < 3) != (j < 3)) return units.coupling;
+    return i < 3 ? units.rate : units.rotational_rate;
+}
+
 Matrix6 read_stiffness(const Cursor& at, const Units& units) {
     const auto rows = at.list(6, "rows");
-    Matrix6 K;
+    Matrix6 written, K;
     for (int i = 0; i < 6; ++i) {
         const auto row = rows[static_cast<std::size_t>(i)].list(6, fmt::format("numbers (row {})", i + 1));
-        for (int j = 0; j < 6; ++j) K(i, j) = row[static_cast<std::size_t>(j)].number();
+        for (int j = 0; j < 6; ++j) {
+            const Unit& unit = unit_of_entry(i, j, units);
+            written(i, j) = row[static_cast<std::size_t>(j)].number(unit.name);
+            K(i, j) = unit.si(written(i, j));
+        }
     }
-    require_symmetric(at, K);
+    require_symmetric(at, written);
     K = (0.5 * (K + K.transpose())).eval();
     require_semidefinite(at, K);
-
-    const auto each = [](auto block, auto convert) { block = block.unaryExpr(convert).eval(); };
-    each(K.topLeftCorner<3, 3>(), [&](double x) { return units.rate_si(x); });
-    each(K.topRightCorner<3, 3>(), [&](double x) { return units.coupling_si(x); });
-    each(K.bottomLeftCorner<3, 3>(), [&](double x) { return units.coupling_si(x); });
-    each(K.bottomRightCorner<3, 3>(), [&](double x) { return units.rotational_rate_si(x); });
     return K;
 }
 
@@ -120,19 +125,16 @@ Matrix6 read_K(const Cursor& bushing, const Units& units) {
     if (!translational && !rotational)
         bushing.fail("no stiffness; allowed: rates and/or rotational_rates, or stiffness");
     Matrix6 K = Matrix6::Zero();
-    if (translational)
-        K.diagonal().head<3>() = rates(*translational).unaryExpr([&](double x) { return units.rate_si(x); });
-    if (rotational)
-        K.diagonal().tail<3>() =
-            rates(*rotational).unaryExpr([&](double x) { return units.rotational_rate_si(x); });
+    if (translational) K.diagonal().head<3>() = rates(*translational, units.rate);
+    if (rotational) K.diagonal().tail<3>() = rates(*rotational, units.rotational_rate);
     return K;
 }
 
 Vector6 read_preload(const Cursor& bushing, const Units& units) {
     Vector6 preload = Vector6::Zero();
-    if (const auto force = bushing.optional("preload")) preload.head<3>() = vector(*force);
+    if (const auto force = bushing.optional("preload")) preload.head<3>() = vector(*force, units.force);
     if (const auto moment = bushing.optional("preload_moment"))
-        preload.tail<3>() = vector(*moment).unaryExpr([&](double x) { return units.moment_si(x); });
+        preload.tail<3>() = vector(*moment, units.moment);
     return preload;
 }
 

@@ -34,7 +34,13 @@ bool is_name(std::string_view name) {
 
 }  // namespace
 
-void Cursor::fail(const std::string& what) const { reader::fail(*file, value->line, path, what); }
+void Cursor::fail(const std::string& what) const {
+    reader::fail(*file, value->line, path, value->is_set ? what + " (as set)" : what);
+}
+
+Cursor Cursor::at(const Value& other, const std::string& its_path) const {
+    return {&other, its_path, file, numbers};
+}
 
 std::string Cursor::found() const {
     switch (value->kind) {
@@ -52,16 +58,15 @@ void Cursor::only_keys(const std::vector<std::string>& allowed) const {
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
         const std::string& key = value->keys[k];
         if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
-        const Cursor entry{&value->items[k], path, file};
-        entry.fail(fmt::format("unknown field {}{}", quote(key), did_you_mean(key, allowed, "allowed")));
+        at(value->items[k], path)
+            .fail(fmt::format("unknown field {}{}", quote(key), did_you_mean(key, allowed, "allowed")));
     }
 }
 
 std::optional<Cursor> Cursor::optional(const std::string& key) const {
     const auto found = std::find(value->keys.begin(), value->keys.end(), key);
     if (found == value->keys.end()) return std::nullopt;
-    return Cursor{&value->items[static_cast<std::size_t>(found - value->keys.begin())], child_path(path, key),
-                  file};
+    return at(value->items[static_cast<std::size_t>(found - value->keys.begin())], child_path(path, key));
 }
 
 Cursor Cursor::require(const std::string& key) const {
@@ -75,20 +80,24 @@ std::vector<Cursor::Named> Cursor::entries() const {
     std::vector<Named> entries;
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
         const std::string& name = value->keys[k];
-        const Cursor entry{&value->items[k], path, file};
         if (!is_name(name))
-            entry.fail(
-                fmt::format("{} cannot be a name; allowed: up to {} letters, digits, _ and, not first, - + . "
-                            "and spaces",
-                            quote(name), longest_name));
-        entries.push_back({name, {entry.value, child_path(path, name), file}});
+            at(value->items[k], path)
+                .fail(fmt::format(
+                    "{} cannot be a name; allowed: up to {} letters, digits, _ and, not first, - + . "
+                    "and spaces",
+                    quote(name), longest_name));
+        entries.push_back({name, at(value->items[k], child_path(path, name))});
     }
     return entries;
 }
 
 std::vector<Cursor> Cursor::items() const {
     std::vector<Cursor> items;
-    for (const Value& item : value->items) items.push_back({&item, path, file});
+    for (std::size_t k = 0; k < value->items.size(); ++k) {
+        const bool is_vector = value->items.size() == 3;
+        items.push_back(at(value->items[k], path));
+        items.back().item = item + '.' + (is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1));
+    }
     return items;
 }
 
@@ -106,7 +115,7 @@ const std::string& Cursor::text(const std::string& what) const {
     return value->text;
 }
 
-double Cursor::number() const {
+double Cursor::number(const std::string& unit) const {
     std::string_view digits = value->text;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     double x = 0;
@@ -119,8 +128,11 @@ double Cursor::number() const {
     if (error != std::errc() || (size != 0 && !(size >= least_size && size <= largest_size)))
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(), least_size,
                          largest_size));
+    numbers->push_back({path + item, x, unit});
     return x;
 }
+
+bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
 
 int Cursor::whole_number(int least, int most) const {
     const std::string& digits = value->text;
@@ -129,6 +141,7 @@ int Cursor::whole_number(int least, int most) const {
     const auto [stop, error] = std::from_chars(digits.data(), end, n);
     if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < least || n > most)
         fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));
+    numbers->push_back({path + item, static_cast<double>(n), ""});
     return n;
 }
 

@@ -6,15 +6,18 @@
 #include <vector>
 
 #include "models/reader/yaml.hpp"
+#include "models/scene.hpp"
 
 namespace elastocheck::reader {
 
-// Every function throws SceneError when the value is not what it asks for. The tree and the file's name
-// outlive the cursor.
+// Every function throws SceneError when the value is not what it asks for. The tree, the file's name and the
+// list of numbers outlive the cursor.
 struct Cursor {
     const Value* value;
     std::string path;  // "joints.ball_joint.type", empty for the whole file
     const std::string* file;
+    std::vector<Number>* numbers;  // every number that is read is noted here
+    std::string item{};            // place in a list, ".y" or ".4.2": part of a number's path only
 
     [[noreturn]] void fail(const std::string& what) const;
 
@@ -34,10 +37,12 @@ struct Cursor {
 
     // ---- of a scalar; `what` completes "expected ..." and "'text' is not ..."
     const std::string& text(const std::string& what) const;  // one line, not empty
-    double number() const;                                   // 0, or 1e-30 to 1e30 in size; any locale
+    double number(const std::string& unit = "") const;       // 0, or 1e-30 to 1e30 in size; any locale
+    bool yes_or_no() const;                                  // true, false
     int whole_number(int least, int most) const;
     std::size_t one_of(const std::string& what, const std::vector<std::string>& allowed) const;  // position
 
+    Cursor at(const Value& value, const std::string& path) const;  // the same file at another place
     std::string found() const;  // "'text'", "a list of 3", "a map", "nothing"
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numbers>
+#include <numeric>
 
 #include "models/reader/look_up.hpp"
 
@@ -11,23 +12,48 @@ namespace {
 
 using Eigen::Vector3d;
 
+struct Moment {
+    const char *name, *dot, *star;  // "N·m", and as keyboards have it
+    double divide, multiply;
+};
+constexpr Moment moments[] = {{"N·m", "N*m", "Nm", 1, 1},
+                              {"N·mm", "N*mm", "Nmm", 1000, 1},
+                              {"kN·m", "kN*m", "kNm", 1, 1000},
+                              {"kN·mm", "kN*mm", "kNmm", 1000, 1000}};
+
+Unit read_moment(const Cursor& at) {
+    std::vector<std::string> names;
+    for (const Moment& moment : moments) names.insert(names.end(), {moment.name, moment.dot, moment.star});
+    const Moment& chosen = moments[at.one_of("a unit of moment", names) / 3];
+    return {chosen.name, chosen.divide, chosen.multiply};
+}
+
 Units read_units(const Cursor& at) {
-    at.only_keys({"length", "angle", "force"});
+    at.only_keys({"length", "angle", "force", "moment"});
     Units units;
-    const auto is_mm = at.require("length").one_of("a unit of length", {"m", "mm"});
-    const auto is_rad = at.require("angle").one_of("a unit of angle", {"deg", "rad"});
-    at.require("force").one_of("a unit of force", {"N"});
-    if (is_mm) units.per_m = 1000, units.length = "mm";
-    if (!is_rad) units.per_rad = 180 / std::numbers::pi, units.angle = "deg";
+    if (at.require("length").one_of("a unit of length", {"m", "mm"})) units.length = {"mm", 1000};
+    const double per_rad = 180 / std::numbers::pi;
+    if (at.require("angle").one_of("a unit of angle", {"deg", "rad"}) == 0) units.angle = {"deg", per_rad};
+    if (at.require("force").one_of("a unit of force", {"N", "kN"})) units.force = {"kN", 1, 1000};
+
+    const auto &L = units.length, &A = units.angle, &F = units.force;
+    const auto moment = at.optional("moment");
+    units.moment = moment ? read_moment(*moment) : Unit{F.name + "·" + L.name, L.divide, F.multiply};
+    const Unit& M = units.moment;
+    units.rate = {F.name + "/" + L.name, 1, F.multiply * L.divide};
+    units.coupling = {F.name + "/" + A.name, 1, F.multiply * A.divide};
+    units.rotational_rate = {M.name + "/" + A.name, M.divide, M.multiply * A.divide};
+    units.arm = {moment ? M.name + "/" + F.name : L.name, M.divide, M.multiply / F.multiply};
     return units;
 }
 
 void read_points(const Cursor& section, Definitions& defs) {
-    for (const auto& [name, at] : section.entries()) {
-        const Vector3d p = vector(at);
-        defs.points[name] = p.unaryExpr([&](double x) { return defs.units.length_si(x); });
-    }
+    for (const auto& [name, at] : section.entries()) defs.points[name] = vector(at, defs.units.length);
     if (defs.points.empty()) section.fail("empty; at least one hardpoint is needed");
+    if (!defs.mirror) return;
+    for (const auto& [name, at] : section.entries())
+        if (const auto twin = twin_name(*defs.mirror, name, section))
+            defs.points[*twin] = reflected(defs.points.at(name));
 }
 
 void read_bodies(const Cursor& section, Definitions& defs) {
@@ -40,6 +66,20 @@ void read_bodies(const Cursor& section, Definitions& defs) {
         defs.bodies.push_back({name, {.r = origin, .p = Eigen::Quaterniond::Identity()}});
     }
     if (defs.bodies.empty()) section.fail("empty; at least one body is needed");
+    const std::size_t written = defs.bodies.size();
+    defs.twin_of.resize(written);
+    std::iota(defs.twin_of.begin(), defs.twin_of.end(), 0);
+    for (std::size_t b = 0; defs.mirror && b < written; ++b) {
+        const Body body = defs.bodies[b];
+        const auto twin = twin_name(*defs.mirror, body.name, section);
+        if (!twin) continue;
+        defs.twin_of[b] = static_cast<BodyId>(defs.bodies.size());
+        defs.twin_of.push_back(static_cast<BodyId>(b));
+        defs.body_ids[*twin] = defs.twin_of[b];
+        defs.bodies.push_back({*twin, {.r = reflected(body.design.r), .p = body.design.p}});
+    }
+    if (defs.bodies.size() > most_bodies)
+        section.fail(fmt::format("{} bodies; a scene has {} at most", defs.bodies.size(), most_bodies));
 }
 
 // x, y, z or -x, -y, -z
@@ -60,20 +100,22 @@ Vector3d named_axis(const Cursor& at) {
 Definitions read_definitions(const Cursor& scene) {
     Definitions defs;
     defs.units = read_units(scene.require("units"));
+    if (const auto mirror = scene.optional("mirror")) defs.mirror = read_mirror(*mirror, scene);
     read_points(scene.require("points"), defs);
     read_bodies(scene.require("bodies"), defs);
     return defs;
 }
 
-double rate(const Cursor& at) {
-    const double k = at.number();
+double rate(const Cursor& at, const Unit& unit) {
+    const double k = at.number(unit.name);
     if (k < 0) at.fail(fmt::format("negative rate {}; allowed: zero or more", at.found()));
-    return k;
+    return unit.si(k);
 }
 
-Vector3d vector(const Cursor& at) {
+Vector3d vector(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "numbers");
-    return {items[0].number(), items[1].number(), items[2].number()};
+    const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
+    return {si(0), si(1), si(2)};  // braces: in this order
 }
 
 Vector3d hardpoint(const Cursor& at, const Definitions& defs) {

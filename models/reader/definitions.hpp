@@ -3,41 +3,50 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "models/mechanism.hpp"
 #include "models/reader/cursor.hpp"
+#include "models/reader/mirror.hpp"
 
 namespace elastocheck::reader {
 
-// Declared units per SI unit. Dividing by 1000 rounds once; multiplying by 0.001 would round twice.
-struct Units {
-    double per_m = 1;    // 1 or 1000
-    double per_rad = 1;  // 1 or 180/π
-    std::string length = "m", angle = "rad";
+// A declared unit. Dividing by 1000 rounds once; multiplying by 0.001 would round twice.
+struct Unit {
+    std::string name;
+    double divide = 1, multiply = 1;
+    double si(double x) const { return x / divide * multiply; }
+};
 
-    double length_si(double x) const { return x / per_m; }                     // -> m
-    double rate_si(double x) const { return x * per_m; }                       // force/length -> N/m
-    double coupling_si(double x) const { return x * per_rad; }                 // force/angle -> N/rad
-    double moment_si(double x) const { return x / per_m; }                     // force·length -> N·m
-    double rotational_rate_si(double x) const { return x / per_m * per_rad; }  // -> N·m/rad
+struct Units {
+    Unit length{"m"}, angle{"rad"}, force{"N"};
+    Unit moment;           // force·length unless declared
+    Unit rate;             // force/length
+    Unit coupling;         // force/angle
+    Unit rotational_rate;  // moment/angle
+    Unit arm;              // moment/force: a length, of a moment that grows with a force
 };
 
 struct Definitions {
     Units units;
+    std::optional<Mirror> mirror;
     std::map<std::string, Eigen::Vector3d> points;  // [m], ground axes
     std::map<std::string, BodyId> body_ids;         // with ground
-    std::vector<Body> bodies;
+    std::vector<Body> bodies;                       // twins behind the others
+    std::vector<BodyId> twin_of;                    // of each body; itself where it is shared
 };
+
+inline constexpr std::size_t most_bodies = 10'000;
 
 Definitions read_definitions(const Cursor& scene);
 
 // Two hardpoints nearer than this are one [m]: a direction or a length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-double rate(const Cursor& at);                                                    // zero or more, as written
-Eigen::Vector3d vector(const Cursor& at);                                         // three numbers, as written
+double rate(const Cursor& at, const Unit& unit);                                  // zero or more, SI
+Eigen::Vector3d vector(const Cursor& at, const Unit& unit = {});                  // three numbers, SI
 Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);             // [m]
 Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);             // unit
 BodyId body(const Cursor& at, const Definitions& defs);                           // or ground

@@ -66,9 +66,13 @@ JointKind fixed(const JointFields& f) {
 }
 
 JointKind distance(const JointFields& f) {
-    const double length = (f.position("to") - f.position("from")).norm();
-    if (!(length > coincident))
+    const double drawn = (f.position("to") - f.position("from")).norm();
+    if (!(drawn > coincident))
         f.at.require("to").fail("the same position as `from`; a distance joint needs a length");
+    const auto given = f.at.optional("length");
+    const Unit& unit = f.defs.units.length;
+    const double length = given ? unit.si(given->number(unit.name)) : drawn;
+    if (!(length > 0)) given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
     return Distance{f.i("from"), f.j("to"), length};
 }
 
@@ -92,13 +96,13 @@ struct JointType {
 const std::vector<JointType>& joint_types() {
     static const std::vector<JointType> types{
         {"spherical", {"at"}, spherical},
-        {"revolute", {"at", "axis"}, along_axis<Revolute>},
+        {"revolute", {"at", "axis", "held"}, along_axis<Revolute>},
         {"universal", {"at", "axis_i", "axis_j"}, universal},
-        {"cylindrical", {"at", "axis"}, along_axis<Cylindrical>},
-        {"translational", {"at", "axis"}, along_axis<Translational>},
+        {"cylindrical", {"at", "axis", "held"}, along_axis<Cylindrical>},
+        {"translational", {"at", "axis", "held"}, along_axis<Translational>},
         {"planar", {"at", "normal"}, planar},
         {"fixed", {"at"}, fixed},
-        {"distance", {"from", "to"}, distance},
+        {"distance", {"from", "to", "length"}, distance},
         {"in_plane", {"at", "normal"}, in_plane},
         {"in_line", {"at", "axis"}, in_line},
         {"perpendicular", {"axis_i", "axis_j"}, perpendicular},
@@ -128,6 +132,11 @@ Joint read_joint(const std::string& name, const Cursor& at, const Definitions& d
     at.only_keys(fields);
     const BodyPair bodies = body_pair(at.require("bodies"), defs);
     return {name, type.read({at, defs, bodies})};
+}
+
+bool is_held(const Cursor& joint) {
+    const auto field = joint.optional("held");
+    return field && field->yes_or_no();
 }
 
 }  // namespace elastocheck::reader

@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
+#include <set>
 #include <system_error>
 
+#include "models/reader/driven.hpp"
+#include "models/reader/mirror.hpp"
 #include "models/reader/sections.hpp"
+#include "models/reader/settings.hpp"
 #include "models/reader/yaml.hpp"
 
 namespace elastocheck {
@@ -37,10 +43,87 @@ void check_all_held(const Cursor& scene, const Scene& result) {
                 .fail("nothing holds it; a joint, spring or bushing is needed");
 }
 
+// The entries of a section, and behind them their twins. Sections of what may be on one side only have no check.
+enum class Sides { both, any };
+
+template <class T, class Read>
+void read_section(const Cursor& scene, const char* key, const Definitions& defs, Sides sides,
+                  std::vector<T>& list, Read read) {
+    const auto section = scene.optional(key);
+    if (!section) return;
+    if (sides == Sides::both) require_both_sides(*section, defs);
+    const std::size_t begin = list.size();
+    for (const auto& [name, at] : section->entries()) list.push_back(read(name, at, defs));
+    const std::size_t end = list.size();
+    for (std::size_t k = begin; defs.mirror && k < end; ++k)
+        if (const auto name = twin_name(*defs.mirror, list[k].name, *section)) {
+            T twin_entry = list[k];
+            if constexpr (requires { twin_entry.kind; }) {
+                twin_entry.kind = twin(twin_entry.kind, defs);
+            } else if constexpr (requires { twin_entry.at; }) {
+                twin_entry.at = twin(twin_entry.at, defs);
+            } else {
+                twin_entry = twin(twin_entry, defs);
+            }
+            twin_entry.name = *name;
+            list.push_back(twin_entry);
+        }
+}
+
+// `wheel` is the short form for one that needs no name.
+void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel>& wheels) {
+    const auto one = scene.optional("wheel");
+    if (one && scene.optional("wheels")) one->fail("given together with wheels; allowed: one of the two");
+    if (one && defs.mirror)
+        one->fail(fmt::format("a scene that mirrors itself has wheels with names; give wheels: {{{}: ...}}",
+                              defs.mirror->from));
+    if (one) wheels.push_back(read_wheel(*one, defs));
+    read_section(scene, "wheels", defs, Sides::both, wheels,
+                 [](const std::string& name, const Cursor& at, const Definitions& definitions) {
+                     Wheel wheel = read_wheel(at, definitions);
+                     wheel.name = name;
+                     return wheel;
+                 });
+}
+
+// The drives of held joints: they stand on every branch. Returns them by the joint that they hold.
+std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene& result) {
+    std::map<int, int> drives;
+    const auto section = scene.optional("joints");
+    if (!section) return drives;
+    const auto hold = [&](const Cursor& at, const std::string& name) {
+        const auto joint = std::ranges::find(result.joints, name, &Joint::name);
+        const int position = static_cast<int>(joint - result.joints.begin());
+        const Joint drive = *drive_of(*joint);
+        drives[position] = add_joint(at, drive, result);
+    };
+    for (const auto& [name, at] : section->entries()) {
+        if (!is_held(at)) continue;
+        hold(at, name);
+        if (defs.mirror)
+            if (const auto twin = turned(*defs.mirror, name)) hold(at, *twin);
+    }
+    return drives;
+}
+
+std::set<std::string> twins_of(const Cursor& scene, const char* key, const Definitions& defs) {
+    std::set<std::string> twins;
+    if (const auto section = scene.optional(key); section && defs.mirror)
+        for (const std::string& name : section->value->keys)
+            if (const auto twin = turned(*defs.mirror, name)) twins.insert(*twin);
+    return twins;
+}
+
+// A number that is read in two places is one number of the file.
+void keep_each_once(std::vector<Number>& numbers) {
+    std::set<std::string> seen;
+    std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
+}
+
 Scene read_tree(const Cursor& scene) {
     if (scene.value->kind == Value::Kind::nothing) scene.fail("empty; a scene begins with `elastocheck: 1`");
-    scene.only_keys({"elastocheck", "name", "units", "points", "bodies", "joints", "springs", "bushings",
-                     "static_loads", "loads", "branches", "wheel", "probes"});
+    scene.only_keys({"elastocheck", "name", "units", "mirror", "points", "bodies", "joints", "springs",
+                     "bushings", "static_loads", "loads", "branches", "wheel", "wheels", "probes"});
     check_version(scene);
     Scene result;
     result.source = *scene.file;
@@ -49,19 +132,31 @@ Scene read_tree(const Cursor& scene) {
     result.bodies = defs.bodies;
     for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
-    const auto section = [&](const char* key, auto& list, auto read) {
-        if (const auto field = scene.optional(key))
-            for (const auto& [name, at] : field->entries()) list.push_back(read(name, at, defs));
-    };
-    section("joints", result.joints, read_joint);
-    section("springs", result.elastics, read_spring);
-    section("bushings", result.elastics, read_bushing);
+    read_section(scene, "joints", defs, Sides::both, result.joints, read_joint);
+    read_section(scene, "springs", defs, Sides::both, result.elastics, read_spring);
+    read_section(scene, "bushings", defs, Sides::both, result.elastics, read_bushing);
     check_all_held(scene, result);
-    read_loads(scene, defs, result.static_loads, result.branches);
-    if (const auto wheel = scene.optional("wheel")) result.wheels.push_back(read_wheel(*wheel, defs));
-    section("probes", result.probes, read_probe);
+    read_section(scene, "static_loads", defs, Sides::both, result.static_loads, read_static_load);
+    std::vector<Load> loads;
+    read_section(scene, "loads", defs, Sides::any, loads, read_load);
+    read_wheels(scene, defs, result.wheels);
+    read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
     if (result.wheels.empty() && result.probes.empty()) scene.fail("no output; a wheel or a probe is needed");
+
+    std::map<std::string, Load> by_name;
+    for (const Load& load : loads) by_name.emplace(load.name, load);
+    const auto drives = add_held(scene, defs, result);
+    Drivables drivable = drivables(result, defs.units, drives, twins_of(scene, "bushings", defs));
+    read_branches(scene, defs.units, by_name, drivable, result);
     return result;
+}
+
+Scene read_whole(const Value& tree, const std::string& name) {
+    std::vector<Number> numbers;
+    Scene scene = read_tree({&tree, "", &name, &numbers});
+    keep_each_once(numbers);
+    scene.numbers = std::move(numbers);
+    return scene;
 }
 
 }  // namespace
@@ -94,12 +189,13 @@ Probe read_probe(const std::string& name, const Cursor& at, const Definitions& d
 
 }  // namespace reader
 
-Scene parse_scene(std::string_view text, const std::string& name) {
-    const reader::Value tree = reader::parse_yaml(text, name);
-    return reader::read_tree({&tree, "", &name});
+Scene parse_scene(std::string_view text, const std::string& name, std::span<const Setting> settings) {
+    reader::Value tree = reader::parse_yaml(text, name);
+    reader::apply(settings, tree, name);
+    return reader::read_whole(tree, name);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
+Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings) {
     const std::string name = file.string();
     std::error_code ignored;
     const auto status = std::filesystem::status(file, ignored);
@@ -110,7 +206,7 @@ Scene read_scene(const std::filesystem::path& file) {
     if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     if (!stream && !stream.eof()) reader::fail(name, 0, "", "cannot be read");
     text.resize(static_cast<std::size_t>(stream.gcount()));
-    return parse_scene(text, name);
+    return parse_scene(text, name, settings);
 }
 
 }  // namespace elastocheck

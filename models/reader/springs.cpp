@@ -12,17 +12,17 @@ double free_length(const Cursor& spring, double length, double k, const Units& u
     const auto preload = spring.optional("preload");
     if (given && preload) preload->fail("given together with free_length; allowed: one of the two");
     if (given) {
-        const double l0 = units.length_si(given->number());
+        const double l0 = units.length.si(given->number(units.length.name));
         if (!(l0 > 0)) given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
         return l0;
     }
     if (!preload) return length;
-    const double p = preload->number();
+    const double p = units.force.si(preload->number(units.force.name));
     if (k == 0) preload->fail("a spring of zero rate has no preload; leave it out or give a rate");
     const double l0 = length + p / k;
     if (!(l0 > 0))
         preload->fail(fmt::format("needs a free length of {:g} {}; a free length must be above zero",
-                                  l0 * units.per_m, units.length));
+                                  l0 * units.length.divide, units.length.name));
     return l0;
 }
 
@@ -34,7 +34,7 @@ Elastic read_spring(const std::string& name, const Cursor& at, const Definitions
     const Eigen::Vector3d from = hardpoint(at.require("from"), defs), to = hardpoint(at.require("to"), defs);
     const double length = (to - from).norm();
     if (!(length > coincident)) at.require("to").fail("the same position as `from`; a spring needs a length");
-    const double k = defs.units.rate_si(rate(at.require("rate")));
+    const double k = rate(at.require("rate"), defs.units.rate);
     return {name, AxialSpring{.i = point_of(i, from, defs),
                               .j = point_of(j, to, defs),
                               .law = LinearRate{k},

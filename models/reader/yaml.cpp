@@ -167,6 +167,15 @@ void refuse_binary(std::string_view text, const std::string& file) {
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
 Value parse_yaml(std::string_view text, const std::string& file) {
     if (text.size() > largest_text) fail(file, 0, "", "larger than 1 MiB, which no scene is");
     refuse_binary(text, file);

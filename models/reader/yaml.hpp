@@ -14,12 +14,15 @@ struct Value {
     std::vector<Value> items{};       // of a list or a map, in file order
     std::vector<std::string> keys{};  // of a map: one per item, all different
     int line = 1;                     // where it begins; where its key stands, if it has one
+    bool is_set = false;              // not as the file has it: a setting put it there
 };
 
 // Refuses, with the line: what is no YAML, duplicate keys, keys that are not plain text, aliases, tags, a
 // second document, nesting deeper than any scene, control characters and bytes that are not UTF-8, more than
 // 1 MiB. Throws SceneError.
 Value parse_yaml(std::string_view text, const std::string& file);
+
+bool is_utf8(std::string_view text);
 
 inline constexpr std::size_t largest_text = 1 << 20;  // [bytes]
 

@@ -47,13 +47,17 @@ void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k,
     const double length = 0.5;
     const Point p_i{i, Vector3d::Zero()},
         p_j{j, origin(scene, i) - origin(scene, j) + Vector3d(0, 0, length)};
-    scene.elastics.push_back({name, AxialSpring{p_i, p_j, k, k > 0 ? length + preload / k : length}});
+    scene.elastics.push_back(
+        {name, AxialSpring{p_i, p_j, LinearRate{k}, k > 0 ? length + preload / k : length}});
 }
+
+Matrix6& K_of(Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
 
 Bushing& bushing(Scene& scene, const std::string& name, BodyId i, BodyId j, double k) {
     const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
-    Bushing b{.i = {i, p_i.s_local}, .j = {j, p_j.s_local}};
-    b.K.diagonal().setConstant(k);
+    Bushing b;
+    b.i = {i, p_i.s_local}, b.j = {j, p_j.s_local};
+    K_of(b).diagonal().setConstant(k);
     scene.elastics.push_back({name, b});
     return std::get<Bushing>(scene.elastics.back().kind);
 }
@@ -63,6 +67,20 @@ Load push(const std::string& name, BodyId on, double f = 1) {
 }
 Load twist(const std::string& name, BodyId on, double m = 1) {
     return {name, DeadMoment{on, Vector3d(m, 0, 0)}};
+}
+
+Branch branch(const std::string& name, const std::vector<Load>& loads, double to = 1, int steps = 1) {
+    Branch result;
+    result.name = name, result.to = to, result.steps = steps;
+    for (const Load& load : loads) result.drivers.push_back({.what = load, .start = 0, .rate = 1});
+    return result;
+}
+
+std::vector<Load> loads_of(const Branch& branch) {
+    std::vector<Load> loads;
+    for (const Driver& driver : branch.drivers)
+        if (const auto* load = std::get_if<Load>(&driver.what)) loads.push_back(*load);
+    return loads;
 }
 
 // a, b, c, ... one hung on the next, the first on ground.
@@ -119,7 +137,7 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
     ball(scene, "cd", 3, 2);
     spring(scene, "d_ground", 3, ground, 1e3, 50);  // preloaded, but far from any output
     scene.static_loads = {push("weight", 3)};
-    scene.branches = {{"up", {push("load", 1), push("elsewhere", 2)}, 1, 1}};
+    scene.branches = {branch("up", {push("load", 1), push("elsewhere", 2)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "ab");
     EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{
@@ -129,7 +147,7 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
                                    {"element 'd_ground'", with_its_body},
                                    {"load 'weight'", "its body is left out"},
                                    {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
-    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
 TEST(Compile, DoesNotConnectThroughGround) {
@@ -180,17 +198,11 @@ struct Reason {
 
 TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
     const Reason reasons[] = {
-        {"a load",
-         [](Scene& s) {
-             s.branches = {{"up", {push("p", 2)}, 1, 1}};
-         }},
-        {"a moment",
-         [](Scene& s) {
-             s.branches = {{"up", {twist("t", 2)}, 1, 1}};
-         }},
+        {"a load", [](Scene& s) { s.branches = {branch("up", {push("p", 2)})}; }},
+        {"a moment", [](Scene& s) { s.branches = {branch("up", {twist("t", 2)})}; }},
         {"a load in the second branch",
          [](Scene& s) {
-             s.branches = {{"one", {push("q", 0)}, 1, 1}, {"two", {push("p", 2)}, 1, 1}};
+             s.branches = {branch("one", {push("q", 0)}), branch("two", {push("p", 2)})};
          }},
         {"a static load", [](Scene& s) { s.static_loads = {push("p", 2)}; }},
         {"a static moment", [](Scene& s) { s.static_loads = {twist("t", 2)}; }},
@@ -198,7 +210,7 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
          [](Scene& s) {
              s.probes.push_back({"p", {.body = 2}});
          }},
-        {"the wheel", [](Scene& s) { s.wheel = Wheel{.body = 2}; }},
+        {"the wheel", [](Scene& s) { s.wheels.emplace_back().body = 2; }},
         {"a joint to ground", [](Scene& s) { ball(s, "held", 2, ground); }},
         {"a spring to ground", [](Scene& s) { spring(s, "held", 2, ground, 1e3); }},
         {"a joint to another body", [](Scene& s) { ball(s, "loop", 2, 0); }},
@@ -228,14 +240,14 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
 TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
     Scene scene = chain(2);
     scene.static_loads = {push("nothing", 1, 0)};
-    scene.branches = {{"up", {push("load", 0), twist("none", 1, 0)}, 1, 1}};
+    scene.branches = {branch("up", {push("load", 0), twist("none", 1, 0)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "a");
     const auto reasons = left_out(model);
     EXPECT_EQ(reasons.at("load 'nothing'"), "it is zero");
     EXPECT_EQ(reasons.at("load 'none'"), "it is zero (branch 'up')");
     EXPECT_EQ(model.static_loads.size(), 0U);
-    EXPECT_EQ(model.branches.at(0).loads.size(), 1U);
+    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
 TEST(Compile, KeepsAPreloadWithoutRate) {
@@ -264,6 +276,130 @@ TEST(Compile, IsQuickForThousandsOfBodies) {
         EXPECT_EQ(kept(compile(*scene)), "a");
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
         EXPECT_LT(time.count(), 2.0);
+    }
+}
+
+// ---- What branches drive.
+
+// A jack under a body: its origin stays in a plane of ground.
+int jack(Scene& scene, const std::string& name, BodyId body, bool only_where_driven = true) {
+    scene.joints.push_back({name,
+                            InPlane{.i = {body, Vector3d::Zero()},
+                                    .j = {ground, origin(scene, body)},
+                                    .normal_j = {ground, Vector3d::UnitZ()}},
+                            only_where_driven});
+    return static_cast<int>(scene.joints.size()) - 1;
+}
+
+Branch driven(const std::string& name, const Driven& what, double start = 0, double rate = 1) {
+    Branch result = branch(name, {});
+    result.drivers.push_back({what, start, rate});
+    return result;
+}
+
+TEST(Compile, KeepsAFollowerOnAJackThatIsDrivenOrHeld) {
+    for (const auto& [start, rate] : {std::pair(0.0, 1.0), {0.1, 0.0}, {0.0, 0.0}}) {
+        Scene scene = chain(4);
+        scene.branches = {branch("up", {push("p", 0)}),
+                          driven("jacked", Motion{jack(scene, "jack", 2)}, start, rate)};
+        const Model model = compile(scene);
+        EXPECT_EQ(kept(model), "abc") << start << " " << rate;
+        ASSERT_EQ(model.joints.size(), 4U);
+        EXPECT_EQ(model.joints[3].name, "jack");
+        EXPECT_TRUE(model.joints[3].only_where_driven);
+        const int constraint = model.joints[3].driven;
+        ASSERT_GE(constraint, 0);
+        EXPECT_EQ(model.constraints[static_cast<std::size_t>(constraint)].joint, 3);
+        EXPECT_EQ(std::get<Motion>(model.branches[1].drivers.at(0).what).joint, 3);
+    }
+}
+
+TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
+    Scene scene = chain(4);
+    jack(scene, "jack", 2);
+    scene.branches = {branch("up", {push("p", 0)})};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "a");
+    EXPECT_EQ(left_out(model).at("joint 'jack'"), "no branch drives it");
+
+    Scene held = chain(4);
+    jack(held, "support", 2, false);
+    EXPECT_EQ(kept(compile(held)), "abc") << "what stands always, holds always";
+}
+
+TEST(Compile, KeepsAFollowerBetweenWhichAndItsNeighbourADriverMoves) {
+    Scene scene = chain(3);
+    spring(scene, "coil", 2, 1, 1e3);
+    scene.branches = {driven("trim", FreeLength{0})};
+    EXPECT_EQ(kept(compile(scene)), "abc");
+
+    Scene rubber = chain(3);
+    bushing(rubber, "rubber", 2, 1, 0);
+    rubber.branches = {driven("trim", Preload{0, Vector6::Unit(2)})};
+    const Model model = compile(rubber);
+    EXPECT_EQ(kept(model), "abc");
+    EXPECT_EQ(model.elastics.size(), 1U) << "zero until its preload is driven";
+
+    Scene rod = chain(2);
+    rod.joints.push_back({"rod", Distance{{1, Vector3d(0, 0.3, 0)}, {0, Vector3d(1, 0, 0)}, 0.3}});
+    EXPECT_EQ(kept(compile(rod)), "a");
+    rod.branches = {driven("length", Motion{2})};
+    EXPECT_EQ(kept(compile(rod)), "ab");
+    rod.branches.clear();
+    std::get<Distance>(rod.joints[2].kind).length = 0.31;
+    EXPECT_EQ(kept(compile(rod)), "ab") << "another length than drawn moves something";
+}
+
+TEST(Compile, RenumbersWhatDriversSpeakOf) {
+    Scene scene = bodies(3);
+    ball(scene, "gone", 2, ground);  // c is unconnected
+    spring(scene, "gone_too", 2, ground, 1e3);
+    const int first = jack(scene, "jack", 1);
+    ball(scene, "ab", 1, 0);
+    spring(scene, "coil", 0, ground, 1e3);
+    bushing(scene, "rubber", 0, ground, 1e3);
+    scene.branches = {driven("jacked", Motion{first}), driven("coil", FreeLength{1}, 0.1, 0.2),
+                      driven("rubber", Preload{2, Vector6::Unit(4)})};
+    const Model model = compile(scene);
+    EXPECT_EQ(kept(model), "ab");
+    const auto motion = std::get<Motion>(model.branches[0].drivers.at(0).what);
+    EXPECT_EQ(model.joints.at(static_cast<std::size_t>(motion.joint)).name, "jack");
+    const auto length = std::get<FreeLength>(model.branches[1].drivers.at(0).what);
+    EXPECT_EQ(model.elastics.at(static_cast<std::size_t>(length.elastic)).name, "coil");
+    EXPECT_EQ(model.branches[1].drivers[0].start, 0.1);
+    EXPECT_EQ(model.branches[1].drivers[0].rate, 0.2);
+    const auto preload = std::get<Preload>(model.branches[2].drivers.at(0).what);
+    EXPECT_EQ(model.elastics.at(static_cast<std::size_t>(preload.elastic)).name, "rubber");
+    EXPECT_EQ(preload.direction, Vector6(Vector6::Unit(4)));
+}
+
+TEST(Compile, NamesABranchOfWhichNothingIsLeft) {
+    Scene scene = bodies(2);
+    ball(scene, "a_ground", 0, ground);
+    ball(scene, "b_ground", 1, ground);
+    spring(scene, "coil", 0, ground, 0);
+    spring(scene, "far", 1, ground, 1e3);
+    bushing(scene, "rubber", 0, ground, 1e3);
+    const int moved = jack(scene, "jack", 1);
+    scene.branches = {branch("load", {push("far", 1)}),
+                      driven("jacked", Motion{moved}),
+                      driven("ball", Motion{0}),
+                      driven("coil", FreeLength{0}),
+                      driven("far", FreeLength{1}),
+                      driven("rubber", Preload{2, Vector6::Zero()}),
+                      driven("held", FreeLength{0}, 0.1, 0),
+                      driven("still", Preload{2, Vector6::Unit(0)}, 0, 0),
+                      branch("none", {}),
+                      branch("sound", {push("near", 0)})};
+    const Model model = compile(scene);
+    ASSERT_EQ(model.branches.size(), scene.branches.size());
+    std::map<std::string, int> named;
+    for (const Omission& omission : model.left_out)
+        if (omission.what.starts_with("branch")) ++named[omission.what];
+    for (const Branch& b : model.branches) {
+        const bool is_sound = b.name == "sound";
+        EXPECT_EQ(b.drivers.size(), is_sound ? 1U : 0U) << b.name;
+        EXPECT_EQ(named["branch '" + b.name + "'"], is_sound ? 0 : 1) << b.name;
     }
 }
 
@@ -314,11 +450,12 @@ struct RandomScene {
             } else if (one_in(2)) {
                 const double k = one_in(4) ? 0 : 1e3;
                 scene.elastics.push_back(
-                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), k, 0.3}});
+                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), LinearRate{k}, 0.3}});
             } else {
                 // Both markers at the origin of ground: unloaded unless preloaded.
-                Bushing b{.i = {i, -origin(scene, i)}, .j = {j, -origin(scene, j)}};
-                if (!one_in(4)) b.K.diagonal().setConstant(1e3);
+                Bushing b;
+                b.i = {i, -origin(scene, i)}, b.j = {j, -origin(scene, j)};
+                if (!one_in(4)) K_of(b).diagonal().setConstant(1e3);
                 if (one_in(4)) b.preload[0] = 1;
                 scene.elastics.push_back({fmt::format("bushing_{}", n), b});
             }
@@ -329,9 +466,9 @@ struct RandomScene {
         if (one_in(2)) scene.static_loads.push_back(load("static"));
         for (int n = 0; n <= below(3); ++n)
             scene.branches.push_back(
-                {fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1});
-        if (one_in(2)) scene.wheel = Wheel{.body = below(count), .centre_local = vector()};
-        if (!scene.wheel || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
+                branch(fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1));
+        if (one_in(2)) scene.wheels.emplace_back().body = below(count);
+        if (scene.wheels.empty() || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
         return scene;
     }
 };
@@ -402,13 +539,12 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
             EXPECT_EQ(model.branches[b].to, scene.branches[b].to);
             EXPECT_EQ(model.branches[b].steps, scene.branches[b].steps);
-            for (const Load& load : model.branches[b].loads)
-                EXPECT_EQ(target(scene, *find(scene.branches[b].loads, load.name)), target(model, load));
+            for (const Load& load : loads_of(model.branches[b]))
+                EXPECT_EQ(target(scene, *find(loads_of(scene.branches[b]), load.name)), target(model, load));
         }
-        ASSERT_EQ(model.wheel.has_value(), scene.wheel.has_value());
-        if (model.wheel) {
-            EXPECT_EQ(body_name(model, model.wheel->body), body_name(scene, scene.wheel->body));
-        }
+        ASSERT_EQ(model.wheels.size(), scene.wheels.size());
+        for (std::size_t k = 0; k < model.wheels.size(); ++k)
+            EXPECT_EQ(body_name(model, model.wheels[k].body), body_name(scene, scene.wheels[k].body));
         ASSERT_EQ(model.probes.size(), scene.probes.size());
         for (std::size_t k = 0; k < model.probes.size(); ++k)
             EXPECT_EQ(body_name(model, model.probes[k].at.body), body_name(scene, scene.probes[k].at.body));
@@ -421,12 +557,18 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
         const Scene scene = random.scene();
         const Model model = compile(scene);
         std::size_t loads = scene.static_loads.size(), kept_loads = model.static_loads.size(), joint_rows = 0;
-        for (const auto& branch : scene.branches) loads += branch.loads.size();
-        for (const auto& branch : model.branches) kept_loads += branch.loads.size();
+        for (const auto& branch : scene.branches) loads += branch.drivers.size();
+        for (const auto& branch : model.branches) kept_loads += branch.drivers.size();
         const auto parts = scene.bodies.size() + scene.joints.size() + scene.elastics.size() + loads;
         const auto kept_parts =
             model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
-        EXPECT_EQ(parts, kept_parts + model.left_out.size());
+        const auto is_branch = [](const Omission& omission) { return omission.what.starts_with("branch"); };
+        const auto branches =
+            std::ranges::count_if(model.left_out, is_branch);  // kept, though with no driver
+        EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.left_out.size());
+        for (const Branch& left : model.branches)
+            EXPECT_EQ(std::ranges::count(model.left_out, "branch '" + left.name + "'", &Omission::what),
+                      left.drivers.empty() ? 1 : 0);
         for (const ModelJoint& joint : model.joints)
             for (const auto& constraint : lower(find(scene.joints, joint.name)->kind, scene.bodies))
                 joint_rows += static_cast<std::size_t>(rows(constraint));
@@ -447,17 +589,27 @@ std::string kept_by_the_rule(const Scene& scene) {
     const auto connect = [&](const auto& kind, bool loaded) {
         std::visit([&](const auto& s) { edges.push_back({s.i.body, s.j.body, loaded}); }, kind);
     };
-    for (const auto& joint : scene.joints) connect(joint.kind, false);
+    const auto at = [&](const Point& p) -> Vector3d { return origin(scene, p.body) + p.s_local; };
+    for (const auto& joint : scene.joints) {
+        bool strained = false;  // the bodies of random scenes are parallel to ground
+        if (const auto* d = std::get_if<Distance>(&joint.kind))
+            strained = std::abs((at(d->i) - at(d->j)).norm() - d->length) > 1e-9;
+        if (const auto* p = std::get_if<InPlane>(&joint.kind))
+            strained = std::abs(p->normal_j.u_local.dot(at(p->i) - at(p->j)) - p->offset) > 1e-9;
+        connect(joint.kind, strained);
+    }
     for (const auto& elastic : scene.elastics) {
         if (const auto* s = std::get_if<AxialSpring>(&elastic.kind)) {
-            if (s->k > 0) connect(elastic.kind, true);  // no random spring has its free length
+            if (std::get<LinearRate>(s->law).k > 0)
+                connect(elastic.kind, true);  // no random spring has its free length
         } else {
             const auto& b = std::get<Bushing>(elastic.kind);
-            if (!b.preload.isZero() || !b.K.isZero()) connect(elastic.kind, !b.preload.isZero());
+            if (!b.preload.isZero() || !std::get<LinearStiffness>(b.law).K.isZero())
+                connect(elastic.kind, !b.preload.isZero());
         }
     }
     std::vector<bool> is_output(scene.bodies.size()), is_loaded(scene.bodies.size());
-    if (scene.wheel) is_output[static_cast<std::size_t>(scene.wheel->body)] = true;
+    for (const auto& wheel : scene.wheels) is_output[static_cast<std::size_t>(wheel.body)] = true;
     for (const auto& probe : scene.probes) is_output[static_cast<std::size_t>(probe.at.body)] = true;
     const auto mark = [&](const Load& load) {
         if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
@@ -468,7 +620,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     };
     for (const auto& load : scene.static_loads) mark(load);
     for (const auto& branch : scene.branches)
-        for (const auto& load : branch.loads) mark(load);
+        for (const auto& load : loads_of(branch)) mark(load);
 
     std::vector<bool> in = is_output;
     for (std::size_t pass = 0; pass < in.size(); ++pass)

@@ -45,13 +45,16 @@ void append(const CoincidentPoints& c, const Poses& q, std::vector<double>& Phi)
     Phi.insert(Phi.end(), {gap.x(), gap.y(), gap.z()});
 }
 void append(const PointInPlane& c, const Poses& q, std::vector<double>& Phi) {
-    Phi.push_back(along(c.normal_j, q).dot(at(c.i, q) - at(c.j, q)));
+    Phi.push_back(along(c.normal_j, q).dot(at(c.i, q) - at(c.j, q)) - c.offset);
 }
 void append(const PerpendicularDirections& c, const Poses& q, std::vector<double>& Phi) {
     Phi.push_back(along(c.i, q).dot(along(c.j, q)));
 }
 void append(const DistanceBetween& c, const Poses& q, std::vector<double>& Phi) {
     Phi.push_back((at(c.i, q) - at(c.j, q)).norm() - c.length);
+}
+void append(const DirectionAtAngle& c, const Poses& q, std::vector<double>& Phi) {
+    Phi.push_back(along(c.i, q).dot(std::cos(c.angle) * along(c.y_j, q) - std::sin(c.angle) * along(c.j, q)));
 }
 
 Eigen::VectorXd Phi(const std::vector<ConstraintKind>& constraints, const Poses& poses) {
@@ -136,6 +139,9 @@ std::vector<Lowered> all_joints(const Place& at) {
     const Turn about_a{at.p, rod.unitOrthogonal()}, about_b{at.p, rod.cross(rod.unitOrthogonal())},
         about_rod{at.p, rod};
     const Turn around_a{at.other, about_a.axis}, around_b{at.other, about_b.axis};
+    const double angle = 2.3;
+    const Vector3d leaning = std::cos(angle) * at.v + std::sin(angle) * at.w;
+    const Turn about_leaning{at.p, leaning}, about_across{at.p, leaning.cross(at.u)};
     return {
         {"spherical", Spherical{p_i, p_j}, 3, {about_u, about_v, about_w}},
         {"revolute", Revolute{p_i, p_j, u_i, u_j}, 5, {about_u}},
@@ -145,10 +151,17 @@ std::vector<Lowered> all_joints(const Place& at) {
         {"planar", Planar{p_i, p_j, u_i, u_j}, 3, {about_u, along_v, along_w}},
         {"fixed", Fixed{p_i, p_j, u_i, v_i, u_j, v_j}, 6, {}},
         {"distance", Distance{p_i, far_j, rod.norm()}, 1, {about_a, about_b, about_rod, around_a, around_b}},
-        {"in_plane", InPlane{p_i, p_j, u_j}, 1, {about_u, about_v, about_w, along_v, along_w}},
+        {"in_plane",
+         InPlane{p_i, far_j, u_j, -at.u.dot(rod)},
+         1,
+         {about_u, about_v, about_w, along_v, along_w}},
         {"in_line", InLine{p_i, p_j, u_j}, 2, {about_u, about_v, about_w, along_u}},
         {"perpendicular", Perpendicular{u_i, v_j}, 1, {about_u, about_v, along_u, along_v, along_w}},
         {"parallel", Parallel{u_i, u_j}, 2, {about_u, along_u, along_v, along_w}},
+        {"angle",
+         Angle{at.direction(at.i, leaning), v_j, at.direction(at.j, at.w), angle},
+         1,
+         {about_leaning, about_across, along_u, along_v, along_w}},
     };
 }
 
@@ -258,6 +271,9 @@ TEST(Lowering, ConnectsTheJointsBodiesInTheirOrder) {
                     EXPECT_EQ(c.j.body, place.j);
                     if constexpr (requires { c.normal_j; }) {
                         EXPECT_EQ(c.normal_j.body, place.j);
+                    }
+                    if constexpr (requires { c.y_j; }) {
+                        EXPECT_EQ(c.y_j.body, place.j);
                     }
                 },
                 constraint);

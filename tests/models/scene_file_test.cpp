@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <clocale>
 #include <cmath>
 #include <filesystem>
@@ -35,6 +36,10 @@ T element(const Scene& scene, const std::string& name) {
         if (elastic.name == name) return std::get<T>(elastic.kind);
     throw std::out_of_range(name);
 }
+
+double k_of(const AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
+Matrix6 K_of(const Bushing& bushing) { return std::get<LinearStiffness>(bushing.law).K; }
+Load load_of(const Driver& driver) { return std::get<Load>(driver.what); }
 
 template <class T>
 T joint(const Scene& scene, const std::string& name) {
@@ -84,33 +89,33 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     expect_near(tube.axis_j.u_local, axis, 1e-15);
 
     const auto coil = element<AxialSpring>(scene, "K1_coil");
-    EXPECT_EQ(coil.k, 30e3);
+    EXPECT_EQ(k_of(coil), 30e3);
     EXPECT_EQ(coil.i.body, 1);
     EXPECT_EQ(coil.j.body, 2);
 
     const auto front = element<Bushing>(scene, "K3_arm_front");
     Vector6 rates;
     rates << 1.5e6, 12e6, 12e6, 3 * per_degree, 10 * per_degree, 10 * per_degree;
-    expect_near(front.K, Matrix6(rates.asDiagonal()), 1e-12);
+    expect_near(K_of(front), Matrix6(rates.asDiagonal()), 1e-12);
     expect_near(front.i.A_local * Vector3d::UnitX(), Vector3d(0.520, 0.013, -0.019).normalized(), 1e-15);
     EXPECT_EQ(front.preload, Vector6::Zero());
-    EXPECT_EQ(element<Bushing>(scene, "K2_strut_mount").K(2, 2), 2e6);
+    EXPECT_EQ(K_of(element<Bushing>(scene, "K2_strut_mount"))(2, 2), 2e6);
 
     ASSERT_EQ(scene.branches.size(), 2U);
     EXPECT_EQ(scene.branches[0].to, 3000);
     EXPECT_EQ(scene.branches[1].to, -3000);
     EXPECT_EQ(scene.branches[0].steps, 300);
-    ASSERT_TRUE(scene.wheel);
-    EXPECT_EQ(scene.wheel->side, +1);
-    EXPECT_EQ(scene.wheel->body, 1);
-    EXPECT_EQ(scene.wheel->spin_axis_local, Vector3d::UnitY());
-    expect_near(scene.wheel->contact_local, Vector3d(0, 0, -0.32), 1e-16);
+    ASSERT_EQ(scene.wheels.size(), 1U);
+    EXPECT_EQ(scene.wheels.at(0).side, +1);
+    EXPECT_EQ(scene.wheels.at(0).body, 1);
+    EXPECT_EQ(scene.wheels.at(0).spin_axis_local, Vector3d::UnitY());
+    expect_near(scene.wheels.at(0).contact_local, Vector3d(0, 0, -0.32), 1e-16);
 }
 
 TEST(ShippedScene, ParallelSpringsIsConvertedFromMillimetres) {
     const Scene scene = shipped("parallel_springs");
     const auto first = element<AxialSpring>(scene, "first");
-    EXPECT_EQ(first.k, 30e3);
+    EXPECT_EQ(k_of(first), 30e3);
     EXPECT_DOUBLE_EQ(first.free_length, 0.4 + 600 / 30e3);
     EXPECT_EQ(first.i.s_local, Vector3d(-0.2, 0, 0));
     EXPECT_EQ(first.j.s_local, Vector3d(-0.2, 0, 0));
@@ -123,7 +128,7 @@ TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
     const Scene scene = shipped("two_spring_arch");
     EXPECT_EQ(scene.bodies.at(0).design.r, Vector3d(0, 0, 0.08));
     const auto left = element<AxialSpring>(scene, "left");
-    EXPECT_EQ(left.k, 1e5);
+    EXPECT_EQ(k_of(left), 1e5);
     EXPECT_EQ(left.i.s_local, Vector3d::Zero());
     EXPECT_EQ(left.j.s_local, Vector3d(-0.3, 0, 0));
     EXPECT_DOUBLE_EQ(left.free_length, std::hypot(0.3, 0.08));
@@ -132,7 +137,7 @@ TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
 TEST(ShippedScene, PinnedBarIsConvertedFromMillimetres) {
     const Scene scene = shipped("pinned_bar");
     const auto tip = element<Bushing>(scene, "tip");
-    EXPECT_EQ(tip.K.diagonal(), (Vector6() << 2e4, 2e4, 2e4, 0, 0, 0).finished());
+    EXPECT_EQ(K_of(tip).diagonal(), (Vector6() << 2e4, 2e4, 2e4, 0, 0, 0).finished());
     EXPECT_EQ(tip.i.s_local, Vector3d(0.5, 0, 0));
     EXPECT_EQ(joint<Revolute>(scene, "pin").axis_i.u_local, Vector3d::UnitY());
 }
@@ -143,11 +148,11 @@ TEST(ShippedScene, BushingScenesKeepTheirRatesAndOrder) {
     EXPECT_EQ(mount.j.body, 0);
     EXPECT_EQ(mount.i.s_local, Vector3d(0.1, 0.2, 0.3));
     EXPECT_EQ(mount.j.s_local, Vector3d::Zero());
-    EXPECT_EQ(mount.K.diagonal(), (Vector6() << 2e5, 3e5, 5e5, 400, 500, 700).finished());
+    EXPECT_EQ(K_of(mount).diagonal(), (Vector6() << 2e5, 3e5, 5e5, 400, 500, 700).finished());
     const auto pair = element<Bushing>(shipped("bushing_pair"), "front");
     EXPECT_EQ(pair.j.s_local, Vector3d(0.15, 0, 0));
     const auto pivot = element<Bushing>(shipped("pendulum"), "pivot");
-    EXPECT_EQ(pivot.K.diagonal(), (Vector6() << 0, 0, 0, 600, 600, 600).finished());
+    EXPECT_EQ(K_of(pivot).diagonal(), (Vector6() << 0, 0, 0, 600, 600, 600).finished());
     EXPECT_EQ(pivot.i.s_local, Vector3d(-0.32, -0.24, 0));
 }
 
@@ -185,22 +190,27 @@ TEST(Readme, ItsExampleIsAScene) {
     while (std::getline(file, line) && line != "```") text += line + "\n";
     const Scene scene = parse_scene(text, "README.md");
     EXPECT_EQ(scene.bodies.size(), 2U);
-    EXPECT_EQ(scene.branches.at(1).loads.size(), 2U);
+    EXPECT_EQ(scene.branches.at(1).drivers.size(), 2U);
 }
 
 // ---- Units.
 
 // A scene with something of everything; `L`, `A` stand for what a number in metres or radians is multiplied
 // by.
-std::string scene_in(const std::string& length, const std::string& angle) {
+std::string scene_in(const std::string& length, const std::string& angle, const std::string& force = "N",
+                     const std::string& moment = "") {
     const double L = length == "mm" ? 1000 : 1;        // per m
     const double A = angle == "deg" ? per_degree : 1;  // per rad
+    const double F = force == "kN" ? 1e-3 : 1;         // per N
+    const double M = moment.empty()
+                         ? F * L  // per N·m
+                         : (moment.starts_with("k") ? 1e-3 : 1) * (moment.ends_with("mm") ? 1e3 : 1);
     const auto number = [](double x) { return fmt::format("{:.17g}", x); };
     const auto vector = [&](double x, double y, double z) {
         return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z);
     };
-    std::string text =
-        "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle + ", force: N}\n";
+    std::string text = "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle +
+                       ", force: " + force + (moment.empty() ? "" : ", moment: " + moment) + "}\n";
     text += "points:\n";
     text += "  a: " + vector(0.011 * L, -0.247 * L, 0.333 * L) + "\n";
     text += "  b: " + vector(0.5 * L, 0.125 * L, -0.071 * L) + "\n";
@@ -210,16 +220,17 @@ std::string scene_in(const std::string& length, const std::string& angle) {
     text += "  rod: {type: distance, bodies: [one, two], from: a, to: c}\n";
     text += "  tube: {type: cylindrical, bodies: [one, two], at: c, axis: [a, b]}\n";
     text += "springs:\n";
-    text += "  free: {bodies: [one, two], from: a, to: b, rate: " + number(28e3 / L) +
+    text += "  free: {bodies: [one, two], from: a, to: b, rate: " + number(28e3 * F / L) +
             ", free_length: " + number(0.75 * L) + "}\n";
-    text +=
-        "  loaded: {bodies: [one, ground], from: a, to: c, rate: " + number(30e3 / L) + ", preload: 3500}\n";
+    text += "  loaded: {bodies: [one, ground], from: a, to: c, rate: " + number(30e3 * F / L) +
+            ", preload: " + number(3500 * F) + "}\n";
     text += "bushings:\n";
     text += "  rates: {bodies: [one, ground], at: b, frame: {x: [a, b], y: z}, rates: " +
-            vector(1e5 / L, 2e5 / L, 3e5 / L) +
-            ", rotational_rates: " + vector(10 * L / A, 20 * L / A, 30 * L / A) +
-            ", preload: [1, 2, 3], preload_moment: " + vector(4 * L, 5 * L, 6 * L) + "}\n";
-    const double k = 1e6 / L, c = 250 / A, r = 700 * L / A;
+            vector(1e5 * F / L, 2e5 * F / L, 3e5 * F / L) +
+            ", rotational_rates: " + vector(10 * M / A, 20 * M / A, 30 * M / A) +
+            ", preload: " + vector(F, 2 * F, 3 * F) + ", preload_moment: " + vector(4 * M, 5 * M, 6 * M) +
+            "}\n";
+    const double k = 1e6 * F / L, c = 250 * F / A, r = 700 * M / A;
     text += "  full:\n    bodies: [two, ground]\n    at: c\n    stiffness:\n";
     const double K[6][6] = {{k, 0, 0, 0, c, 0},  {0, 2 * k, 0, -c, 0, 0}, {0, 0, 3 * k, 0, 0, 0},
                             {0, -c, 0, r, 0, 0}, {c, 0, 0, 0, 2 * r, 0},  {0, 0, 0, 0, 0, 3 * r}};
@@ -227,16 +238,23 @@ std::string scene_in(const std::string& length, const std::string& angle) {
         text += "      - [" + number(row[0]) + ", " + number(row[1]) + ", " + number(row[2]) + ", " +
                 number(row[3]) + ", " + number(row[4]) + ", " + number(row[5]) + "]\n";
     text += "static_loads:\n";
-    text += "  weight: {on: one, at: b, force: [0, 0, -400]}\n";
-    text += "  torque: {on: two, moment: " + vector(0, 7 * L, 0) + "}\n";
+    text += "  weight: {on: one, at: b, force: " + vector(0, 0, -400 * F) + "}\n";
+    text += "  torque: {on: two, moment: " + vector(0, 7 * M, 0) + "}\n";
     text += "loads:\n";
     text += "  push: {on: one, at: b, force: [0.6, 0, 0.8]}\n";
-    text += "  lever: {on: two, moment: " + vector(0.1 * L, 0, 0.2 * L) + "}\n";
+    text += "  lever: {on: two, moment: " + vector(0.1 * M / F, 0, 0.2 * M / F) + "}\n";
     text += "  twist: {on: two, moment: [0, 0.6, 0.8]}\n";
     text += "branches:\n";
-    text += "  force: {load: push, to: 3000, steps: 30}\n";
-    text += "  mixed: {load: [push, lever], to: -2000, steps: 20}\n";
-    text += "  moment: {load: twist, to: " + number(90 * L) + ", steps: 10}\n";
+    text += "  force: {load: push, to: " + number(3000 * F) + ", steps: 30}\n";
+    text += "  mixed: {load: [push, lever], to: " + number(-2000 * F) + ", steps: 20}\n";
+    text += "  moment: {load: twist, to: " + number(90 * M) + ", steps: 10}\n";
+    text += "  travel: {drive: travel, from: " + number(-0.08 * L) + ", to: " + number(0.07 * L) +
+            ", steps: 9, hold: {joints.tube: " + number(0.2 * A) + "}}\n";
+    text += "  tube: {drive: {joints.tube: 1, joints.rod: " + number(0.25 * L / A) +
+            ", springs.loaded.preload: " + number(40 * F / A) + "}, to: " + number(0.3 * A) +
+            ", steps: 9, static_loads: {push: " + number(700 * F) + ", twist: " + number(8 * M) + "}}\n";
+    text += "  rubber: {drive: {bushings.rates.preload_moment.x: 1, bushings.full.preload.z: " +
+            number(3 * F / M) + "}, to: " + number(5 * M) + ", steps: 9}\n";
     text += "wheel: {body: one, centre: b, contact_patch: c, spin_axis: [0.1, -1, 0], side: right}\n";
     text += "probes: {tip: {on: two, at: c}}\n";
     return text;
@@ -247,28 +265,33 @@ TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
     for (const char* length : {"m", "mm"})
         for (const char* angle : {"rad", "deg"}) {
             SCOPED_TRACE(fmt::format("{} {}", length, angle));
-            expect_same(si, parsed(scene_in(length, angle)), 1e-15);
+            for (const char* force : {"N", "kN"})
+                for (const char* moment : {"", "N·m", "N*mm", "kNm", "kN·mm"}) {
+                    SCOPED_TRACE(fmt::format("{} {}", force, moment));
+                    expect_same(si, parsed(scene_in(length, angle, force, moment)), 2e-15);
+                }
         }
 }
 
 TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
     const Scene scene = parsed(scene_in("mm", "deg"));
-    EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").k, 28e3);
+    EXPECT_DOUBLE_EQ(k_of(element<AxialSpring>(scene, "free")), 28e3);
     EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").free_length, 0.75);
     const auto full = element<Bushing>(scene, "full");
-    EXPECT_DOUBLE_EQ(full.K(0, 0), 1e6);
-    EXPECT_DOUBLE_EQ(full.K(0, 4), 250);
-    EXPECT_DOUBLE_EQ(full.K(4, 0), 250);
-    EXPECT_DOUBLE_EQ(full.K(3, 1), -250);
-    EXPECT_DOUBLE_EQ(full.K(5, 5), 2100);
+    EXPECT_DOUBLE_EQ(K_of(full)(0, 0), 1e6);
+    EXPECT_DOUBLE_EQ(K_of(full)(0, 4), 250);
+    EXPECT_DOUBLE_EQ(K_of(full)(4, 0), 250);
+    EXPECT_DOUBLE_EQ(K_of(full)(3, 1), -250);
+    EXPECT_DOUBLE_EQ(K_of(full)(5, 5), 2100);
     expect_near(element<Bushing>(scene, "rates").preload, (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
     expect_near(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 7, 0), 1e-15);
     // The factor of `mixed` is a force: the moment per newton is a length. That of `moment` is a moment.
     EXPECT_EQ(scene.branches[1].to, -2000);
-    EXPECT_EQ(std::get<DeadForce>(scene.branches[1].loads[0].kind).f, Vector3d(0.6, 0, 0.8));
-    expect_near(std::get<DeadMoment>(scene.branches[1].loads[1].kind).m, Vector3d(0.1, 0, 0.2), 1e-16);
+    EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f, Vector3d(0.6, 0, 0.8));
+    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m, Vector3d(0.1, 0, 0.2),
+                1e-16);
     EXPECT_DOUBLE_EQ(scene.branches[2].to, 90);
-    EXPECT_EQ(std::get<DeadMoment>(scene.branches[2].loads[0].kind).m, Vector3d(0, 0.6, 0.8));
+    EXPECT_EQ(std::get<DeadMoment>(load_of(scene.branches[2].drivers[0]).kind).m, Vector3d(0, 0.6, 0.8));
 }
 
 TEST(Units, OneMomentServesBothKindsOfBranch) {
@@ -286,7 +309,7 @@ TEST(Units, OneMomentServesBothKindsOfBranch) {
     const Scene m = with("m", 0.5, 8), mm = with("mm", 500, 8);
     const auto moment = [](const Scene& scene, std::size_t branch) {
         const auto& b = scene.branches[branch];
-        return Vector3d(std::get<DeadMoment>(b.loads.back().kind).m * b.to);
+        return Vector3d(std::get<DeadMoment>(load_of(b.drivers.back()).kind).m * b.to);
     };
     EXPECT_EQ(moment(m, 0), Vector3d(0.5, 0, 0));
     EXPECT_EQ(moment(mm, 0), Vector3d(0.5, 0, 0));
@@ -409,6 +432,7 @@ TEST(Joint, EveryTypeGetsItsPointsAndDirections) {
         expect_same(scene, expected, 4e-16);
         seen[kind.index()] = true;
     }
+    seen[JointKind(Angle{}).index()] = true;  // the drive of a joint, never one by itself
     EXPECT_EQ(seen, std::vector<bool>(seen.size(), true));
 }
 
@@ -460,7 +484,7 @@ TEST(Spring, PreloadIsTheCompressiveForceAtTheDesignPosition) {
         const Scene scene =
             parsed(replaced(bench_scene, "preload: 300", fmt::format("preload: {}", preload)));
         const auto coil = element<AxialSpring>(scene, "coil");
-        EXPECT_NEAR(coil.k * (length - coil.free_length), -preload, 1e-11) << preload;
+        EXPECT_NEAR(k_of(coil) * (length - coil.free_length), -preload, 1e-11) << preload;
     }
     const Scene unloaded = parsed(replaced(bench_scene, ", preload: 300", ""));
     EXPECT_DOUBLE_EQ(element<AxialSpring>(unloaded, "coil").free_length, length);
@@ -478,40 +502,86 @@ std::string bench_with(const Matrix6& K) {
     return bench_scene.substr(0, begin) + rows + bench_scene.substr(end);
 }
 
+// The 6×6 of SI units K as it is written in the units named.
+struct UnitsOfText {
+    const char *text, *length, *angle;
+    double per_newton_metre;  // of the declared moment
+};
+const UnitsOfText all_units[] = {
+    {"length: m, angle: rad, force: N", "m", "rad", 1},
+    {"length: m, angle: deg, force: N", "m", "deg", 1},
+    {"length: mm, angle: rad, force: N", "mm", "rad", 1000},
+    {"length: mm, angle: deg, force: N", "mm", "deg", 1000},
+    {"length: mm, angle: deg, force: N, moment: N·m", "mm", "deg", 1},
+};
+
+Matrix6 written(const Matrix6& K, const UnitsOfText& units) {
+    const double per_m = units.length == std::string("mm") ? 1000 : 1;
+    const double per_rad = units.angle == std::string("deg") ? per_degree : 1;
+    Matrix6 W = K;
+    W.topLeftCorner<3, 3>() /= per_m;
+    W.topRightCorner<3, 3>() /= per_rad;
+    W.bottomLeftCorner<3, 3>() /= per_rad;
+    W.bottomRightCorner<3, 3>() *= units.per_newton_metre / per_rad;
+    return W;
+}
+
+std::string bench_with(const Matrix6& K, const UnitsOfText& units) {
+    return replaced(bench_with(written(K, units)), "length: mm, angle: deg, force: N", units.text);
+}
+
 // V Vᵀ with V [6 × rank]: what a bushing computed elsewhere may be like. Its zero eigenvalues come out as
-// ±1e-16.
-TEST(Stiffness, SemidefiniteUpToRoundOffIsAccepted) {
+// ±1e-16. Whatever the units, the same 6×6 is accepted, or refused.
+TEST(Stiffness, IsJudgedAlikeInAllUnits) {
     std::mt19937 random(6);
     std::normal_distribution<double> normal;
     for (int n = 0; n < 100; ++n) {
         Eigen::MatrixXd V(6, 1 + n % 5);
         for (double& v : V.reshaped()) v = normal(random) * std::exp(3 * normal(random));
         const Matrix6 K = V * V.transpose();
-        EXPECT_NO_THROW(parsed(bench_with(K))) << K;
         const Matrix6 indefinite = K - 1e-9 * Matrix6(K.diagonal().asDiagonal());
-        EXPECT_THROW(parsed(bench_with(indefinite)), SceneError) << indefinite;
+        for (const UnitsOfText& units : all_units) {
+            EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text << "\n" << K;
+            EXPECT_THROW(parsed(bench_with(indefinite, units)), SceneError) << units.text << "\n"
+                                                                            << indefinite;
+        }
     }
+}
+
+// The congruence with D = diag(√N/mm ..., √N·mm/deg ...) has √(N/mm · N·mm/deg) = N/√deg in its off-diagonal blocks,
+// where N/deg is written: turning deg into rad raises the coupling against the diagonal by √57.3.
+TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
+    Matrix6 K = Matrix6::Identity();
+    K.topLeftCorner<3, 3>() *= 1e6;
+    K.bottomRightCorner<3, 3>() *= 1e2;
+    K(0, 4) = K(4, 0) = 3e4;  // √(1e6 · 1e2) = 1e4 is the most that it may be
+    for (const UnitsOfText& units : all_units)
+        EXPECT_THROW(parsed(bench_with(K, units)), SceneError) << units.text;
+    const Matrix6 in_degrees = written(K, all_units[3]);
+    EXPECT_GT(in_degrees.eigenvalues().real().minCoeff(), 0) << "as written it looks definite";
+    K(0, 4) = K(4, 0) = 0.99e4;
+    for (const UnitsOfText& units : all_units) EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text;
 }
 
 TEST(Stiffness, IsSymmetricToTheLastBit) {
     Matrix6 K = 100 * Matrix6::Identity();
     K(0, 4) = 5;
     K(4, 0) = 5 * (1 + 9e-13);
-    const Matrix6 read = element<Bushing>(parsed(bench_with(K)), "block").K;
+    const Matrix6 read = K_of(element<Bushing>(parsed(bench_with(K)), "block"));
     EXPECT_EQ(read, read.transpose());
     EXPECT_NE(read(0, 4), 0);
 }
 
 TEST(Wheel, ContactPatchIsTheCentreUnlessGiven) {
     const Scene scene = parsed(replaced(bench_scene, "contact_patch: side, ", ""));
-    EXPECT_EQ(scene.wheel->contact_local, scene.wheel->centre_local);
+    EXPECT_EQ(scene.wheels.at(0).contact_local, scene.wheels.at(0).centre_local);
 }
 
 TEST(Wheel, RightSideHasItsSpinAxisToTheRight) {
     const Scene scene =
         parsed(replaced(bench_scene, "spin_axis: y, side: left", "spin_axis: -y, side: right"));
-    EXPECT_EQ(scene.wheel->side, -1);
-    EXPECT_EQ(scene.wheel->spin_axis_local, Vector3d(0, -1, 0));
+    EXPECT_EQ(scene.wheels.at(0).side, -1);
+    EXPECT_EQ(scene.wheels.at(0).spin_axis_local, Vector3d(0, -1, 0));
 }
 
 TEST(Sections, TheirOrderDoesNotMatter) {

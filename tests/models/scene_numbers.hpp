@@ -52,11 +52,11 @@ inline void add_load(SceneNumbers& n, const Load& load) {
 inline void add_elastic(SceneNumbers& n, const ElasticKind& kind) {
     if (const auto* spring = std::get_if<AxialSpring>(&kind)) {
         n.add("i", spring->i), n.add("j", spring->j);
-        n.add("k", spring->k), n.add("free_length", spring->free_length);
+        n.add("k", std::get<LinearRate>(spring->law).k), n.add("free_length", spring->free_length);
     } else {
         const auto& bushing = std::get<Bushing>(kind);
         n.add("i", bushing.i), n.add("j", bushing.j);
-        n.add("K", bushing.K), n.add("preload", bushing.preload);
+        n.add("K", std::get<LinearStiffness>(bushing.law).K), n.add("preload", bushing.preload);
     }
 }
 
@@ -70,10 +70,24 @@ inline void add_joint(SceneNumbers& n, const JointKind& kind) {
             if constexpr (requires { s.normal_i; }) n.add("normal_i", s.normal_i);
             if constexpr (requires { s.normal_j; }) n.add("normal_j", s.normal_j);
             if constexpr (requires { s.length; }) n.add("length", s.length);
+            if constexpr (requires { s.offset; }) n.add("offset", s.offset);
+            if constexpr (requires { s.angle; }) n.add("y_j", s.y_j), n.add("angle", s.angle);
             if constexpr (requires { s.x_i; })
                 n.add("x_i", s.x_i), n.add("y_i", s.y_i), n.add("x_j", s.x_j), n.add("y_j", s.y_j);
         },
         kind);
+}
+
+inline void add_driver(SceneNumbers& n, const Driver& driver) {
+    if (const auto* load = std::get_if<Load>(&driver.what)) add_load(n, *load);
+    if (const auto* motion = std::get_if<Motion>(&driver.what)) n.add("motion", motion->joint);
+    if (const auto* length = std::get_if<FreeLength>(&driver.what)) n.add("free_length", length->elastic);
+    if (const auto* preload = std::get_if<Preload>(&driver.what)) {
+        n.add("preload", preload->elastic);
+        n.add("direction", preload->direction);
+    }
+    n.add("start", driver.start);
+    n.add("rate", driver.rate);
 }
 
 inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
@@ -83,24 +97,29 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("r", body.design.r);
         n.add("p", body.design.p.coeffs());
     }
-    for (const auto& joint : scene.joints) n.where = "joint " + joint.name, add_joint(n, joint.kind);
+    for (const auto& joint : scene.joints) {
+        n.where = "joint " + joint.name, add_joint(n, joint.kind);
+        n.add("only_where_driven", joint.only_where_driven);
+    }
     for (const auto& elastic : scene.elastics)
         n.where = "element " + elastic.name, add_elastic(n, elastic.kind);
     n.where = "static loads";
     for (const auto& load : scene.static_loads) add_load(n, load);
     for (const auto& branch : scene.branches) {
         n.where = "branch " + branch.name;
-        for (const auto& load : branch.loads) add_load(n, load);
+        for (const auto& driver : branch.drivers) add_driver(n, driver);
+        n.add("unit", static_cast<double>(branch.unit));
+        n.add("from", branch.from);
         n.add("to", branch.to);
         n.add("steps", branch.steps);
     }
-    if (scene.wheel) {
-        n.where = "wheel";
-        n.add("body", scene.wheel->body);
-        n.add("centre", scene.wheel->centre_local);
-        n.add("contact", scene.wheel->contact_local);
-        n.add("spin_axis", scene.wheel->spin_axis_local);
-        n.add("side", scene.wheel->side);
+    for (const auto& wheel : scene.wheels) {
+        n.where = "wheel " + wheel.name;
+        n.add("body", wheel.body);
+        n.add("centre", wheel.centre_local);
+        n.add("contact", wheel.contact_local);
+        n.add("spin_axis", wheel.spin_axis_local);
+        n.add("side", wheel.side);
     }
     for (const auto& probe : scene.probes) n.where = "probe " + probe.name, n.add("at", probe.at);
     return n.all;

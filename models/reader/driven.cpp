@@ -1,0 +1,170 @@
+#include "models/reader/driven.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/overloaded.hpp"
+#include "models/reader/mirror.hpp"
+#include "models/reader/words.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int no_joint = -1;
+
+// Bodies begin parallel to ground: a direction has the same components on both.
+Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
+    const Vector3d x = axis_j.u_local.unitOrthogonal();
+    const Vector3d y = axis_j.u_local.cross(x).normalized();
+    return {.i = {axis_i.body, x}, .j = {axis_j.body, x}, .y_j = {axis_j.body, y}, .angle = 0};
+}
+
+const char* type_of(const JointKind& joint) {
+    return std::visit(
+        overloaded{
+            [](const Spherical&) { return "spherical"; }, [](const Revolute&) { return "revolute"; },
+            [](const Universal&) { return "universal"; }, [](const Cylindrical&) { return "cylindrical"; },
+            [](const Translational&) { return "translational"; }, [](const Planar&) { return "planar"; },
+            [](const Fixed&) { return "fixed"; }, [](const Distance&) { return "distance"; },
+            [](const InPlane&) { return "in_plane"; }, [](const InLine&) { return "in_line"; },
+            [](const Perpendicular&) { return "perpendicular"; }, [](const Parallel&) { return "parallel"; },
+            [](const Angle&) { return "angle"; }},
+        joint);
+}
+
+void add_joints(const Scene& scene, const Units& units, const std::map<int, int>& drives, Drivables& result) {
+    for (int k = 0; k < static_cast<int>(scene.joints.size()); ++k) {
+        const Joint& joint = scene.joints[static_cast<std::size_t>(k)];
+        const bool is_drive = std::ranges::any_of(drives, [&](const auto& d) { return d.second == k; });
+        if (is_drive) continue;
+        const std::string name = "joints." + joint.name;
+        if (std::holds_alternative<Distance>(joint.kind) || std::holds_alternative<InPlane>(joint.kind)) {
+            result.table[name] = {ParameterUnit::metre, units.length, Motion{k}, 1, std::nullopt};
+        } else if (auto drive = drive_of(joint)) {
+            const bool is_length = std::holds_alternative<InPlane>(drive->kind);
+            const auto stands = drives.find(k);
+            Drivable entry{is_length ? ParameterUnit::metre : ParameterUnit::radian,
+                           is_length ? units.length : units.angle, Motion{no_joint}, 1, std::nullopt};
+            if (stands != drives.end()) {
+                entry.what = Motion{stands->second};
+            } else {
+                entry.joint = *drive;
+                entry.joint->only_where_driven = true;
+            }
+            result.table[name] = entry;
+        } else {
+            result.not_driven[name] = fmt::format(
+                "a {} joint, which has nothing to drive; allowed: the length of a distance, the offset "
+                "of an in_plane, the displacement of a translational, the angle of a revolute or "
+                "cylindrical joint",
+                type_of(joint.kind));
+        }
+    }
+}
+
+void add_elements(const Scene& scene, const Units& units, const std::set<std::string>& twins,
+                  Drivables& result) {
+    for (int k = 0; k < static_cast<int>(scene.elastics.size()); ++k) {
+        const Elastic& elastic = scene.elastics[static_cast<std::size_t>(k)];
+        const auto spring = [&](const AxialSpring& e) {
+            const std::string name = "springs." + elastic.name;
+            const double rate = std::visit(overloaded{[](const LinearRate& u) { return u.k; }}, e.law);
+            if (rate == 0) {
+                for (const char* field : {".free_length", ".preload"})
+                    result.not_driven[name + field] = "of a spring of zero rate, which it does not move";
+                return;
+            }
+            result.table[name + ".free_length"] = {ParameterUnit::metre, units.length, FreeLength{k}, 1,
+                                                   std::nullopt};
+            // P = k (ℓ₀ - ℓ) at the design length: a preload is a free length.
+            result.table[name + ".preload"] = {ParameterUnit::newton, units.force, FreeLength{k}, 1 / rate,
+                                               std::nullopt};
+        };
+        const auto bushing = [&](const Bushing&) {
+            for (int axis = 0; axis < 6; ++axis) {
+                Vector6 direction = Vector6::Unit(axis);
+                if (twins.contains(elastic.name)) direction = reflected(direction);
+                const bool is_force = axis < 3;
+                result.table[fmt::format("bushings.{}.{}.{}", elastic.name,
+                                         is_force ? "preload" : "preload_moment", "xyz"[axis % 3])] = {
+                    is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
+                    is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};
+            }
+        };
+        std::visit(overloaded{spring, bushing}, elastic.kind);
+    }
+}
+
+// A jack holds the wheel centre, or the contact patch, at a height: the ground point that it has at the design
+// position, and the plane z there.
+void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
+    for (const Wheel& wheel : scene.wheels) {
+        const Vector3d& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;
+        const std::string of_wheel = wheel.name.empty() ? "" : wheel.name + ".";
+        const auto add = [&](const char* quantity, const char* joint, const Vector3d& s_local) {
+            const InPlane jack{.i = {wheel.body, s_local},
+                               .j = {ground, r + s_local},
+                               .normal_j = {ground, Vector3d::UnitZ()},
+                               .offset = 0};
+            result.table[of_wheel + quantity] = {ParameterUnit::metre, units.length, Motion{no_joint}, 1,
+                                                 Joint{of_wheel + joint, jack, true}};
+        };
+        add("travel", "jack", wheel.centre_local);
+        add("patch_travel", "patch_jack", wheel.contact_local);
+    }
+}
+
+}  // namespace
+
+std::optional<Joint> drive_of(const Joint& joint) {
+    const std::string name = joint.name + ".drive";
+    if (const auto* s = std::get_if<Translational>(&joint.kind))
+        return Joint{name, InPlane{s->i, s->j, s->axis_j, 0}};
+    if (const auto* s = std::get_if<Revolute>(&joint.kind))
+        return Joint{name, angle_about(s->axis_i, s->axis_j)};
+    if (const auto* s = std::get_if<Cylindrical>(&joint.kind))
+        return Joint{name, angle_about(s->axis_i, s->axis_j)};
+    return std::nullopt;
+}
+
+Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
+                    const std::set<std::string>& twins) {
+    Drivables result;
+    add_jacks(scene, units, result);
+    add_joints(scene, units, drives, result);
+    add_elements(scene, units, twins, result);
+    return result;
+}
+
+int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {
+    if (std::ranges::any_of(scene.joints, [&](const Joint& other) { return other.name == joint.name; }))
+        at.fail(
+            fmt::format("needs a joint of its own called {}, but there is one already; call that one "
+                        "something else",
+                        quote(joint.name)));
+    scene.joints.push_back(joint);
+    return static_cast<int>(scene.joints.size()) - 1;
+}
+
+const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables, Scene& scene) {
+    const auto found = drivables.table.find(name);
+    if (found == drivables.table.end()) {
+        if (const auto why = drivables.not_driven.find(name); why != drivables.not_driven.end())
+            at.fail(fmt::format("{} is {}", quote(name), why->second));
+        std::vector<std::string> names;
+        for (const auto& entry : drivables.table) names.push_back(entry.first);
+        at.fail(fmt::format("{} is nothing that can be driven{}", quote(name),
+                            did_you_mean(name, names, "allowed")));
+    }
+    Drivable& result = found->second;
+    if (result.joint) {
+        result.what = Motion{add_joint(at, *result.joint, scene)};
+        result.joint.reset();
+    }
+    return result;
+}
+
+}  // namespace elastocheck::reader

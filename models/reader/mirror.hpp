@@ -1,0 +1,49 @@
+// A scene that mirrors itself: what is written for one side is there for the other.
+//
+// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar vectors, v' = S v;
+// moments and rotations are axial ones, m' = -S m. A right-handed frame A has the right-handed image A' = S A S, in
+// whose axes a deformation (d, θ) becomes P (d, θ) with P = diag(S, -S), so that K' = P K P.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "models/reader/cursor.hpp"
+#include "models/scene.hpp"
+
+namespace elastocheck::reader {
+
+// What has the word `from` in its name has a twin, whose name has `to` in its place. All else is shared.
+struct Mirror {
+    std::string from, to;  // "left", "right"
+};
+
+// `left -> right`, and some name of the scene must have a left in it.
+Mirror read_mirror(const Cursor& at, const Cursor& scene);
+
+// The name with every word `from` turned, or none where it has none. "arm_left" -> "arm_right", not "leftover".
+std::optional<std::string> turned(const Mirror& mirror, std::string_view name);
+
+// The same for an entry of the section, which may not have one of that name.
+std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name, const Cursor& section);
+
+// Refuses an entry of the section that both sides share, though it is attached to one of them only.
+struct Definitions;
+void require_both_sides(const Cursor& section, const Definitions& defs);
+
+// ---- The twins, on the twins of the bodies.
+//
+// What can be driven is driven as in a mirror: equal values on both sides are a symmetric motion. So the axis of a
+// revolute or cylindrical joint, about which its angle counts, is turned as an axial vector.
+Eigen::Vector3d reflected(const Eigen::Vector3d& v);  // S v
+Vector6 reflected(const Vector6& v);                  // P v
+JointKind twin(const JointKind& joint, const Definitions& defs);
+ElasticKind twin(const ElasticKind& elastic, const Definitions& defs);
+LoadKind twin(const LoadKind& load, const Definitions& defs);
+Wheel twin(const Wheel& wheel, const Definitions& defs);
+Point twin(const Point& point, const Definitions& defs);
+
+}  // namespace elastocheck::reader

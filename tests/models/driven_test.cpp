@@ -1,0 +1,453 @@
+// What a branch drives and holds: the joints made for it, signs, units, and what a branch lost.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+
+namespace elastocheck {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+// Two bodies, a joint of every kind that can be driven, elements, a wheel. `branches` is the text of one or more.
+std::string rig(const std::string& branches, const std::string& units = "length: mm, angle: deg, force: N") {
+    return "elastocheck: 1\nname: rig\nunits: {" + units + R"(}
+points: {o: [0, 0, 0], a: [100, 20, 0], b: [0, 200, 50], c: [30, 40, 500], patch: [100, 20, -300]}
+bodies: {arm: {origin: o}, hub: {origin: a}}
+joints:
+  hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [1, 2, -2]}
+  slide: {type: translational, bodies: [hub, arm], at: a, axis: [0, 3, 4]}
+  tube: {type: cylindrical, bodies: [arm, hub], at: b, axis: -z}
+  rod: {type: distance, bodies: [hub, ground], from: a, to: b, length: 230}
+  plane: {type: in_plane, bodies: [hub, ground], at: a, normal: x}
+  square: {type: perpendicular, bodies: [arm, hub], axis_i: x, axis_j: y}
+springs:
+  coil: {bodies: [hub, ground], from: a, to: c, rate: 40, preload: 300}
+bushings:
+  mount: {bodies: [arm, ground], at: o, rates: [1, 2, 3]}
+loads:
+  push: {on: hub, at: a, force: [0, 0, 1]}
+  brake: {on: hub, at: patch, force: [-1, 0, 0]}
+  twist: {on: hub, moment: [0, 1, 0]}
+branches:
+)" + branches +
+           "\nwheel: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n";
+}
+
+Scene parsed(const std::string& text) { return parse_scene(text, "rig.yaml"); }
+
+std::string complaint(const std::string& text) {
+    try {
+        parsed(text);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+const Joint& joint_of(const Scene& scene, const Driver& driver) {
+    return scene.joints.at(static_cast<std::size_t>(std::get<Motion>(driver.what).joint));
+}
+
+TEST(Driven, TravelIsAJackUnderTheWheelCentre) {
+    const Scene scene = parsed(rig("  up: {drive: travel, from: -80, to: 100, steps: 18}"));
+    const Branch& branch = scene.branches.at(0);
+    EXPECT_EQ(branch.unit, ParameterUnit::metre);
+    EXPECT_EQ(branch.from, -0.08);
+    EXPECT_EQ(branch.to, 0.1);
+    ASSERT_EQ(branch.drivers.size(), 1U);
+    EXPECT_EQ(branch.drivers[0].rate, 1);
+    EXPECT_EQ(branch.drivers[0].start, 0);
+    const Joint& joint = joint_of(scene, branch.drivers[0]);
+    EXPECT_EQ(joint.name, "jack");
+    EXPECT_TRUE(joint.only_where_driven);
+    const auto& jack = std::get<InPlane>(joint.kind);
+    EXPECT_EQ(jack.i.body, 1);
+    EXPECT_EQ(jack.i.s_local, Vector3d::Zero());
+    EXPECT_EQ(jack.j.body, ground);
+    EXPECT_EQ(jack.j.s_local, Vector3d(0.1, 0.02, 0));
+    EXPECT_EQ(jack.normal_j.u_local, Vector3d::UnitZ());
+    EXPECT_EQ(jack.offset, 0);
+}
+
+TEST(Driven, PatchTravelIsAJackUnderTheContactPatch) {
+    const Scene scene = parsed(rig("  up: {drive: patch_travel, to: 100, steps: 1}"));
+    const Joint& joint = joint_of(scene, scene.branches.at(0).drivers.at(0));
+    EXPECT_EQ(joint.name, "patch_jack");
+    const auto& jack = std::get<InPlane>(joint.kind);
+    EXPECT_EQ(jack.i.s_local, Vector3d(0, 0, -0.3));
+    EXPECT_EQ(jack.j.s_local, Vector3d(0.1, 0.02, -0.3));
+}
+
+TEST(Driven, BranchesShareAJack) {
+    const Scene scene =
+        parsed(rig("  a: {drive: travel, to: 100, steps: 1}\n  b: {drive: travel, to: -100, steps: 1}\n"
+                   "  c: {drive: patch_travel, to: 100, steps: 1, hold: {joints.slide: 2}}"));
+    EXPECT_EQ(scene.joints.size(), 6U + 3U);
+    EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[0]).name,
+              joint_of(scene, scene.branches[1].drivers[0]).name);
+}
+
+TEST(Driven, WheelsHaveJacksOfTheirOwnNames) {
+    std::string text = rig("  up: {drive: [left.travel, right.patch_travel], to: 100, steps: 1}");
+    text.replace(text.find("wheel: {body"), std::string::npos,
+                 "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n"
+                 "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
+    const Scene scene = parsed(text);
+    ASSERT_EQ(scene.wheels.size(), 2U);
+    EXPECT_EQ(scene.wheels[0].name, "left");
+    EXPECT_EQ(scene.wheels[1].name, "right");
+    EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[0]).name, "left.jack");
+    EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[1]).name, "right.patch_jack");
+}
+
+// The plane's equation n_j · (p_i - p_j) = offset: i ahead of j along the axis is a positive displacement.
+TEST(Driven, DisplacementOfASlideIsThatOfItsFirstBodyAlongTheAxis) {
+    const Scene scene = parsed(rig("  out: {drive: joints.slide, to: 30, steps: 3}"));
+    const Joint& joint = joint_of(scene, scene.branches.at(0).drivers.at(0));
+    EXPECT_EQ(joint.name, "slide.drive");
+    EXPECT_TRUE(joint.only_where_driven);
+    const auto& drive = std::get<InPlane>(joint.kind);
+    EXPECT_EQ(drive.i.body, 1);
+    EXPECT_EQ(drive.j.body, 0);
+    EXPECT_NEAR((drive.normal_j.u_local - Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-16);
+}
+
+// u_i · (cos α y_j - sin α x_j) = 0 holds when body i is turned by α about the axis as written, right-handed.
+TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
+    const std::pair<const char*, Vector3d> joints[] = {{"hinge", Vector3d(1, 2, -2) / 3},
+                                                       {"tube", {0, 0, -1}}};
+    for (const auto& [name, axis] : joints) {
+        const Scene scene = parsed(rig(fmt::format("  turn: {{drive: joints.{}, to: 90, steps: 3}}", name)));
+        const Branch& branch = scene.branches.at(0);
+        EXPECT_EQ(branch.unit, ParameterUnit::radian);
+        EXPECT_DOUBLE_EQ(branch.to, std::numbers::pi / 2);
+        const Joint& joint = joint_of(scene, branch.drivers.at(0));
+        EXPECT_EQ(joint.name, std::string(name) + ".drive");
+        const auto& drive = std::get<Angle>(joint.kind);
+        EXPECT_NEAR(drive.j.u_local.dot(drive.y_j.u_local), 0, 1e-16);
+        EXPECT_NEAR((drive.j.u_local.cross(drive.y_j.u_local) - axis).norm(), 0, 1e-15);
+        for (const double alpha : {-2.0, -0.3, 0.0, 0.7, 3.0}) {
+            const Vector3d u_i = AngleAxisd(alpha, axis) * drive.i.u_local;
+            const auto Phi = [&](double a) {
+                return u_i.dot(std::cos(a) * drive.y_j.u_local - std::sin(a) * drive.j.u_local);
+            };
+            EXPECT_NEAR(Phi(alpha), 0, 1e-15) << name;
+            EXPECT_GT(u_i.dot(std::cos(alpha) * drive.j.u_local + std::sin(alpha) * drive.y_j.u_local), 0.99);
+        }
+    }
+}
+
+TEST(Driven, RodsAndPlanesAreDrivenThemselves) {
+    const Scene scene = parsed(rig("  out: {drive: {joints.rod: 1, joints.plane: -0.5}, to: 30, steps: 3}"));
+    EXPECT_EQ(scene.joints.size(), 6U);
+    const auto& drivers = scene.branches.at(0).drivers;
+    EXPECT_EQ(joint_of(scene, drivers.at(0)).name, "rod");
+    EXPECT_EQ(std::get<Distance>(joint_of(scene, drivers.at(0)).kind).length, 0.23);
+    EXPECT_EQ(joint_of(scene, drivers.at(1)).name, "plane");
+    EXPECT_EQ(drivers[1].rate, -0.5);
+}
+
+TEST(Driven, HeldJointsStandOnEveryBranchAndMayBeDriven) {
+    std::string text =
+        rig("  up: {load: push, to: 100, steps: 1}\n  out: {drive: joints.slide, to: 9, steps: 3}");
+    text.replace(text.find("axis: [0, 3, 4]"), 15, "axis: [0, 3, 4], held: true");
+    const Scene scene = parsed(text);
+    ASSERT_EQ(scene.joints.size(), 7U);
+    EXPECT_EQ(scene.joints[6].name, "slide.drive");
+    EXPECT_FALSE(scene.joints[6].only_where_driven);
+    EXPECT_EQ(std::get<Motion>(scene.branches.at(1).drivers.at(0).what).joint, 6);
+}
+
+TEST(Driven, ElementsMoveByTheirFreeLengthOrPreload) {
+    const Scene scene =
+        parsed(rig("  length: {drive: springs.coil.free_length, to: 20, steps: 1}\n"
+                   "  force: {drive: springs.coil.preload, to: 200, steps: 1}\n"
+                   "  rubber: {drive: {bushings.mount.preload.y: 2, bushings.mount.preload_moment.z: 3}, to: "
+                   "10, steps: 1}"));
+    const auto& b = scene.branches;
+    EXPECT_EQ(std::get<FreeLength>(b[0].drivers[0].what).elastic, 0);
+    EXPECT_EQ(b[0].to, 0.02);
+    // P = k (ℓ₀ - ℓ): 200 N more are 200 / 40 = 5 mm more of free length.
+    EXPECT_EQ(b[1].unit, ParameterUnit::newton);
+    EXPECT_DOUBLE_EQ(b[1].drivers[0].rate * b[1].to, 0.005);
+    EXPECT_EQ(std::get<Preload>(b[2].drivers[0].what).direction, Vector6(Vector6::Unit(1)));
+    EXPECT_EQ(b[2].drivers[0].rate, 2);
+    EXPECT_EQ(std::get<Preload>(b[2].drivers[1].what).direction, Vector6(Vector6::Unit(5)));
+    EXPECT_DOUBLE_EQ(b[2].drivers[1].rate, 0.003);  // 3 N·mm per N
+}
+
+TEST(Driven, TheFirstQuantityGivesTheParameterItsUnit) {
+    const Scene scene =
+        parsed(rig("  both: {drive: {joints.hinge: 1, joints.slide: 0.5}, to: 90, steps: 1}"));
+    const Branch& branch = scene.branches.at(0);
+    EXPECT_EQ(branch.unit, ParameterUnit::radian);
+    // 0.5 mm per degree, over 90 degrees
+    EXPECT_DOUBLE_EQ(branch.drivers[1].rate * branch.to, 0.045);
+}
+
+TEST(Driven, WhatIsHeldIsThereAtTheBeginning) {
+    const Scene scene =
+        parsed(rig("  up: {drive: travel, to: 50, steps: 1, hold: {joints.slide: -12, joints.hinge: 90, "
+                   "springs.coil.preload: 400}, static_loads: {brake: 500, twist: 3000}}"));
+    const auto& drivers = scene.branches.at(0).drivers;
+    ASSERT_EQ(drivers.size(), 6U);
+    for (std::size_t k = 1; k < 6; ++k) EXPECT_EQ(drivers[k].rate, 0);
+    EXPECT_EQ(std::get<Load>(drivers[1].what).name, "brake");
+    EXPECT_EQ(drivers[1].start, 500);
+    EXPECT_EQ(drivers[2].start, 3);  // N·m
+    EXPECT_EQ(drivers[3].start, -0.012);
+    EXPECT_DOUBLE_EQ(drivers[4].start, std::numbers::pi / 2);
+    EXPECT_DOUBLE_EQ(drivers[5].start, 0.01);
+}
+
+TEST(Driven, LoadsHaveWeights) {
+    const Scene scene =
+        parsed(rig("  up: {load: {push: 1, brake: 0.4, twist: -30}, to: 50, steps: 1, "
+                   "static_loads: [push]}"));
+    const auto& drivers = scene.branches.at(0).drivers;
+    ASSERT_EQ(drivers.size(), 4U);
+    EXPECT_EQ(drivers[1].rate, 0.4);
+    EXPECT_EQ(drivers[2].rate, -30);
+    EXPECT_EQ(std::get<DeadMoment>(std::get<Load>(drivers[2].what).kind).m, Vector3d(0, 0.001, 0));  // mm
+    EXPECT_EQ(drivers[3].start, 1);
+    EXPECT_EQ(scene.branches[0].unit, ParameterUnit::newton);
+}
+
+// ---- What is refused.
+
+const std::string allowed_here =
+    "allowed: bushings.mount.preload.x, bushings.mount.preload.y, bushings.mount.preload.z, "
+    "bushings.mount.preload_moment.x, bushings.mount.preload_moment.y, bushings.mount.preload_moment.z, "
+    "joints.hinge, joints.plane, joints.rod, joints.slide, joints.tube, patch_travel, "
+    "springs.coil.free_length, "
+    "springs.coil.preload, travel";
+
+TEST(Driven, WhatCannotBeIsRefused) {
+    const std::pair<std::string, std::string> cases[] = {
+        {"{drive: travell, to: 1, steps: 1}",
+         "drive: 'travell' is nothing that can be driven, did you mean 'travel'? " + allowed_here},
+        {"{drive: {joints.rack: 1}, to: 1, steps: 1}",
+         "drive.joints.rack: 'joints.rack' is nothing that can be driven, did you mean 'joints.rod'? " +
+             allowed_here},
+        {"{drive: joints.square, to: 1, steps: 1}",
+         "drive: 'joints.square' is a perpendicular joint, which has nothing to drive; allowed: the length "
+         "of a "
+         "distance, the offset of an in_plane, the displacement of a translational, the angle of a revolute "
+         "or "
+         "cylindrical joint"},
+        {"{drive: travel, load: push, to: 1, steps: 1}",
+         "drive: given together with load; allowed: one of the two (a load that is kept goes into "
+         "static_loads)"},
+        {"{drive: travel, hold: {travel: 1}, to: 1, steps: 1}",
+         " drives and holds the same thing twice; allowed: once"},
+        {"{drive: [springs.coil.preload, springs.coil.free_length], to: 1, steps: 1}",
+         " drives the same thing twice; allowed: once"},
+        {"{load: push, hold: {springs.coil.preload: 1, springs.coil.free_length: 1}, to: 1, steps: 1}",
+         " holds the same thing twice; allowed: once"},
+        {"{drive: [travel, travel], to: 1, steps: 1}", "drive: 'travel' is listed twice"},
+        {"{drive: {travel: 0}, to: 1, steps: 1}",
+         "drive.travel: zero, which drives nothing: a value that is kept goes into hold; leave it out"},
+        {"{drive: {}, to: 1, steps: 1}", "drive: empty; what is driven is needed"},
+        {"{drive: travel, hold: joints.slide, to: 1, steps: 1}",
+         "hold: expected a map of what is held to its value, found 'joints.slide'"},
+        {"{drive: travel, hold: {joints.slide: far}, to: 1, steps: 1}",
+         "hold.joints.slide: expected a number, found 'far'"},
+        {"{drive: travel, static_loads: [psuh], to: 1, steps: 1}",
+         "static_loads: no load is called 'psuh', did you mean 'push'? defined: brake, push, twist"},
+        {"{drive: travel, from: -1, to: 0, steps: 1}", "to: zero leads nowhere; allowed: any other value"},
+        {"{drive: travel, from: -2, to: -3, steps: 4}",
+         "from: '-2' and `to` are on the same side of 0, where the branch begins; allowed: the other side, "
+         "or 0"},
+        {"{drive: travel, from: -2, to: 3, steps: 1}",
+         "steps: expected a whole number from 2 to 1000000, found '1'"},
+    };
+    for (const auto& [branch, message] : cases) {
+        const bool of_the_branch = message.starts_with(' ');
+        EXPECT_EQ(complaint(rig("  up: " + branch)),
+                  "rig.yaml:22: branches.up" + (of_the_branch ? ":" : std::string(".")) + message)
+            << branch;
+    }
+}
+
+TEST(Driven, ATakenNameIsRefused) {
+    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
+    text.replace(text.find("  square:"), 8, "  jack:");
+    EXPECT_EQ(
+        complaint(text),
+        "rig.yaml:22: branches.up.drive: needs a joint of its own called 'jack', but there is one already; "
+        "call that one something else");
+}
+
+TEST(Driven, OnlyJointsWithAFreeCoordinateAreHeld) {
+    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
+    text.replace(text.find("length: 230"), 11, "held: true");
+    EXPECT_EQ(complaint(text),
+              "rig.yaml:10: joints.rod: unknown field 'held'; allowed: type, bodies, from, to, length");
+    text = rig("  up: {drive: travel, to: 1, steps: 1}");
+    text.replace(text.find("axis: -z"), 8, "axis: -z, held: maybe");
+    EXPECT_EQ(complaint(text),
+              "rig.yaml:9: joints.tube.held: 'maybe' is not yes or no; allowed: true, false");
+}
+
+TEST(Driven, ALengthOtherThanDrawnIsAboveZero) {
+    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
+    text.replace(text.find("length: 230"), 11, "length: -1");
+    EXPECT_EQ(complaint(text), "rig.yaml:10: joints.rod.length: '-1' is not a length; allowed: above zero");
+}
+
+TEST(Limits, TooManyPositionsAreRefused) {
+    std::string text =
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
+        "0]}\nbodies:\n";
+    const auto chain = [&](int count, int steps) {
+        std::string result = text;
+        for (int n = 0; n < count; ++n) result += fmt::format("  b{}: {{origin: o}}\n", n);
+        result += "joints:\n";
+        for (int n = 0; n < count; ++n)
+            result += fmt::format("  j{}: {{type: spherical, bodies: [b{}, ground], at: o}}\n", n, n);
+        return result +
+               "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: " +
+               std::to_string(steps) + "}}\nprobes: {p: {on: b0, at: o}}\n";
+    };
+    EXPECT_EQ(complaint(chain(20, 500'000)), "none");
+    EXPECT_EQ(
+        complaint(chain(20, 500'001)),
+        "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to keep; allowed: "
+        "500000");
+    EXPECT_EQ(complaint(chain(10'000, 1)), "none");
+    EXPECT_EQ(complaint(chain(10'001, 1)), "rig.yaml:5: bodies: 10001 bodies; a scene has 10000 at most");
+}
+
+// ---- A branch that lost what it moves.
+
+std::string two_parts(const std::string& branches) {
+    return R"(elastocheck: 1
+name: two parts
+units: {length: m, angle: rad, force: N}
+points: {o: [0, 0, 0], a: [1, 0, 0]}
+bodies: {seen: {origin: o}, unseen: {origin: a}, loose: {origin: a}}
+joints:
+  pin: {type: revolute, bodies: [seen, ground], at: o, axis: y}
+  other: {type: revolute, bodies: [unseen, ground], at: a, axis: y}
+springs:
+  zero: {bodies: [seen, loose], from: o, to: a, rate: 0}
+  far: {bodies: [unseen, ground], from: a, to: o, rate: 5}
+  near: {bodies: [seen, ground], from: o, to: a, rate: 5}
+loads:
+  push: {on: seen, at: o, force: [0, 0, 1]}
+  lost: {on: unseen, at: a, force: [0, 0, 1]}
+  spare: {on: seen, at: o, force: [1, 0, 0]}
+branches:
+  up: )" + branches +
+           "\nprobes: {tip: {on: seen, at: a}}\n";
+}
+
+TEST(Branch, ThatMovesNothingOfInterestIsRefused) {
+    const std::string begin = "rig.yaml:18: branches.up: moves nothing that an output depends on: ";
+    const std::string unseen = "no output is connected to it";
+    EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1}")),
+              begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
+    EXPECT_EQ(complaint(two_parts("{drive: joints.other, to: 1, steps: 1}")),
+              begin + "joint 'other.drive' is left out: a body it connects is left out");
+    EXPECT_EQ(complaint(two_parts("{drive: springs.far.free_length, to: 1, steps: 1}")),
+              begin + "element 'far' is left out: a body it connects is left out");
+    EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1, static_loads: {push: 1}}")),
+              begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
+    EXPECT_EQ(complaint(two_parts("{load: [lost, push], to: 1, steps: 1}")), "none");
+    EXPECT_EQ(complaint(two_parts("{drive: springs.zero.preload, to: 1, steps: 1}")),
+              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of zero rate, which it "
+              "does not "
+              "move");
+}
+
+TEST(Branch, LoadsThatNoneUsesAreNamed) {
+    const Scene scene = parsed(two_parts("{load: push, to: 1, steps: 1, static_loads: [lost]}"));
+    ASSERT_EQ(scene.left_out.size(), 1U);
+    EXPECT_EQ(scene.left_out[0].what, "load 'spare'");
+    EXPECT_EQ(scene.left_out[0].why, "no branch uses it");
+    EXPECT_EQ(compile(scene).left_out.at(0).what, "load 'spare'");
+}
+
+// ---- The model on a branch.
+
+TEST(Ways, ShareOutTheStepsAndKeepTheirNumber) {
+    for (int steps = 2; steps < 40; ++steps)
+        for (const double to : {0.001, 0.5, 1.0, 2.5, 70.0}) {
+            Branch branch;
+            branch.from = -1, branch.to = to, branch.steps = steps;
+            const auto both = ways(branch);
+            ASSERT_EQ(both.size(), 2U);
+            EXPECT_EQ(both[0].from, 0);
+            EXPECT_EQ(both[0].to, -1);
+            EXPECT_EQ(both[1].from, 0);
+            EXPECT_EQ(both[1].to, to);
+            EXPECT_GE(both[0].steps, 1);
+            EXPECT_GE(both[1].steps, 1);
+            EXPECT_EQ(both[0].steps + both[1].steps, steps);
+            EXPECT_LE(std::abs(both[0].steps - steps / (1 + to)), 1);
+        }
+}
+
+TEST(Ways, OfAOneWayBranchAreOne) {
+    Branch branch;
+    branch.to = -3, branch.steps = 7;
+    ASSERT_EQ(ways(branch).size(), 1U);
+    EXPECT_EQ(ways(branch)[0].to, -3);
+    std::swap(branch.from, branch.to);
+    ASSERT_EQ(ways(branch).size(), 1U);
+    EXPECT_EQ(ways(branch)[0].from, 0);
+    EXPECT_EQ(ways(branch)[0].to, -3);
+    EXPECT_EQ(ways(branch)[0].steps, 7);
+}
+
+TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
+    const Scene scene =
+        parsed(rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
+                   "  both: {drive: joints.slide, to: 9, steps: 1, hold: {travel: 0}}"));
+    const Model model = compile(scene);
+    ASSERT_EQ(model.joints.size(), 8U);
+    for (const Branch& branch : model.branches) {
+        EXPECT_FALSE(stands_on(model, branch)) << branch.name;  // not all of it does
+        const Model here = on_branch(model, branch);
+        EXPECT_TRUE(stands_on(here, branch)) << branch.name;
+        ASSERT_EQ(here.branches.size(), 1U);
+        EXPECT_EQ(here.branches[0].name, branch.name);
+        ASSERT_EQ(here.joints.size(), model.joints.size());  // reactions keep their places
+        const int standing = branch.name == "load" ? 0 : branch.name == "jack" ? 1 : 2;
+        EXPECT_EQ(constraint_rows(here), constraint_rows(model) - 2 + standing) << branch.name;
+        for (std::size_t k = 0; k < here.joints.size(); ++k) {
+            const int driven = here.joints[k].driven;
+            const bool stands = !model.joints[k].only_where_driven || driven >= 0;
+            EXPECT_EQ(here.joints[k].name, model.joints[k].name);
+            if (model.joints[k].driven < 0 || !stands) {
+                EXPECT_EQ(driven, -1);
+            } else {
+                ASSERT_GE(driven, 0);
+                EXPECT_EQ(here.constraints[static_cast<std::size_t>(driven)].joint, static_cast<int>(k));
+            }
+        }
+        for (const Driver& driver : here.branches[0].drivers) {
+            if (const auto* motion = std::get_if<Motion>(&driver.what)) {
+                EXPECT_GE(here.joints[static_cast<std::size_t>(motion->joint)].driven, 0);
+            }
+        }
+    }
+}
+
+TEST(OnBranch, ATwoWayBranchIsNoneThatALegWalks) {
+    const Scene scene = parsed(rig("  up: {drive: travel, from: -9, to: 9, steps: 2}"));
+    const Model model = compile(scene);
+    EXPECT_FALSE(stands_on(model, model.branches[0]));
+    for (const Branch& way : ways(model.branches[0])) EXPECT_TRUE(stands_on(on_branch(model, way), way));
+}
+
+}  // namespace
+}  // namespace elastocheck

@@ -1,0 +1,168 @@
+// Numbers of a scene by name: which there are, and that they can be varied.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+
+#include "models/reader/scene_file.hpp"
+#include "tests/models/bench_scene.hpp"
+#include "tests/models/scene_numbers.hpp"
+
+namespace elastocheck {
+namespace {
+
+Scene with(const std::vector<Setting>& settings, const std::string& text = bench_scene) {
+    return parse_scene(text, "bench.yaml", settings);
+}
+
+std::string complaint(const std::vector<Setting>& settings) {
+    try {
+        with(settings);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+void expect_equal(const Scene& a, const Scene& b) { EXPECT_EQ(numbers(a), numbers(b)); }
+
+TEST(Settings, AreAsIfTheyStoodInTheFile) {
+    const std::tuple<const char*, const char*, const char*, const char*> cases[] = {
+        {"points.front.x", "90.5", "front: [100,", "front: [90.5,"},
+        {"points.front.2", "-1", "front: [100, 0,", "front: [100, -1,"},
+        {"springs.coil.rate", "28", "rate: 30,", "rate: 28,"},
+        {"bushings.block.stiffness.2.2", "70", "[0, 100, 0, 0, 0, 0]", "[0, 70, 0, 0, 0, 0]"},
+        {"bushings.mount.rates.x", "7", "rates: [1, 2, 2], rot", "rates: [7, 2, 2], rot"},
+        {"branches.up.to", "-50", "to: 1000", "to: -50"},
+        {"branches.up.steps", "7", "steps: 10", "steps: 7"},
+        {"springs.coil.to", "side", "to: top, rate", "to: side, rate"},
+        {"units.length", "m", "length: mm", "length: m"},
+    };
+    for (const auto& [path, value, from, to] : cases) {
+        SCOPED_TRACE(path);
+        expect_equal(with({{path, value}}), with({}, replaced(bench_scene, from, to)));
+    }
+}
+
+TEST(Settings, AHardpointMovesAllThatRefersToItOnce) {
+    const Scene moved = with({{"points.front.z", "12"}});
+    EXPECT_EQ(moved.bodies[1].design.r, Eigen::Vector3d(0.1, 0, 0.012));
+    EXPECT_EQ(std::get<Spherical>(moved.joints[0].kind).i.s_local, Eigen::Vector3d(0.1, 0, 0.012));
+    EXPECT_EQ(std::get<Spherical>(moved.joints[0].kind).j.s_local, Eigen::Vector3d::Zero());
+    EXPECT_EQ(std::get<AxialSpring>(moved.elastics[0].kind).i.s_local, Eigen::Vector3d::Zero());
+    EXPECT_DOUBLE_EQ(std::get<Distance>(moved.joints[2].kind).length,
+                     Eigen::Vector3d(0.1, -0.1, 0.012).norm());
+}
+
+TEST(Settings, NamesMayHaveDots) {
+    const std::string text =
+        replaced(replaced(replaced(bench_scene, "  coil:", "  coil.left:"), "springs:\n",
+                          "springs:\n  coil: {bodies: [hub, ground], from: front, to: side, rate: 1}\n"),
+                 "  tip:", "  t.i.p:");
+    EXPECT_EQ(std::get<LinearRate>(
+                  std::get<AxialSpring>(with({{"springs.coil.left.rate", "5"}}, text).elastics[1].kind).law)
+                  .k,
+              5000);
+    EXPECT_EQ(std::get<LinearRate>(
+                  std::get<AxialSpring>(with({{"springs.coil.rate", "6"}}, text).elastics[0].kind).law)
+                  .k,
+              6000);
+    EXPECT_NO_THROW(with({{"probes.t.i.p.at", "side"}}, text));
+}
+
+// Each number of a scene can be set to what it is, and to something else that then is what the scene has.
+TEST(Settings, ReachEveryNumberThatASceneLists) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES))
+        if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+    for (const auto& file : files) {
+        const Scene scene = read_scene(file);
+        EXPECT_GT(scene.numbers.size(), 5U);
+        for (const Number& number : scene.numbers) {
+            SCOPED_TRACE(file.string() + " " + number.path);
+            const Setting same = setting(number.path, number.value);
+            expect_equal(read_scene(file, {&same, 1}), scene);
+        }
+        const Setting half = setting(scene.numbers.front().path, 0.5 * scene.numbers.front().value + 1e-3);
+        EXPECT_EQ(read_scene(file, {&half, 1}).numbers.front().value,
+                  0.5 * scene.numbers.front().value + 1e-3);
+    }
+}
+
+TEST(Numbers, CarryTheirNamesAndUnits) {
+    const Scene scene = with({{"points.top.z", "101"}});
+    const auto number = [&](const std::string& path) {
+        const auto found = std::ranges::find(scene.numbers, path, &Number::path);
+        return found == scene.numbers.end() ? "none" : fmt::format("{} {}", found->value, found->unit);
+    };
+    EXPECT_EQ(number("points.top.z"), "101 mm");
+    EXPECT_EQ(number("springs.coil.rate"), "30 N/mm");
+    EXPECT_EQ(number("springs.coil.preload"), "300 N");
+    EXPECT_EQ(number("bushings.mount.rotational_rates.y"), "4 N·mm/deg");
+    EXPECT_EQ(number("bushings.block.stiffness.1.5"), "5 N/deg");
+    EXPECT_EQ(number("bushings.block.stiffness.4.4"), "50 N·mm/deg");
+    EXPECT_EQ(number("static_loads.weight.force.z"), "-300 N");
+    EXPECT_EQ(number("loads.push.force.z"), "1 ");
+    EXPECT_EQ(number("branches.up.to"), "1000 N");
+    EXPECT_EQ(number("branches.up.steps"), "10 ");
+    std::vector<std::string> paths;
+    for (const Number& n : scene.numbers) paths.push_back(n.path);
+    std::ranges::sort(paths);
+    EXPECT_EQ(std::ranges::adjacent_find(paths), paths.end()) << "one number, one name";
+}
+
+TEST(Settings, ThatLeadNowhereAreRefused) {
+    const std::string hardpoints = "there: middle, front, side, top, again";
+    EXPECT_EQ(complaint({{"points.frnt.z", "1"}}),
+              "bench.yaml: points.frnt.z: points has no 'frnt', did you mean 'front'? " + hardpoints);
+    EXPECT_EQ(
+        complaint({{"pionts.front.z", "1"}}),
+        "bench.yaml: pionts.front.z: the file has no 'pionts', did you mean 'points'? there: elastocheck, "
+        "name, units, points, bodies, joints, springs, bushings, static_loads, loads, branches, wheel, "
+        "probes");
+    EXPECT_EQ(complaint({{"points.front.w", "1"}}),
+              "bench.yaml: points.front.w: points.front has no 'w'; there: x, y, z");
+    EXPECT_EQ(complaint({{"points.front", "1"}}),
+              "bench.yaml:7: points.front: not one value; there: x, y, z");
+    EXPECT_EQ(complaint({{"springs.coil", "1"}}),
+              "bench.yaml:22: springs.coil: not one value; there: bodies, from, to, rate, preload");
+    EXPECT_EQ(complaint({{"springs.coil.rate.x", "1"}}),
+              "bench.yaml:22: springs.coil.rate.x: springs.coil.rate is one value");
+    EXPECT_EQ(
+        complaint({{"springs.coil.rate.", "1"}}),
+        "bench.yaml: springs.coil.rate.: springs.coil has no 'rate'; there: bodies, from, to, rate, preload");
+    EXPECT_EQ(
+        complaint({{"springs.coil.free_length", "1"}}),
+        "bench.yaml: springs.coil.free_length: springs.coil has no 'free_length'; there: bodies, from, to, "
+        "rate, preload");
+    EXPECT_EQ(complaint({{"springs.coil.rate", "1"}, {"springs.coil.rate", "2"}}),
+              "bench.yaml:22: springs.coil.rate: set twice");
+}
+
+TEST(Settings, ThatAreNoValuesAreRefusedAsSuch) {
+    EXPECT_EQ(complaint({{"points.front.z", "high"}}),
+              "bench.yaml:7: points.front: expected a number, found 'high' (as set)");
+    EXPECT_EQ(complaint({{"springs.coil.rate", "-1"}}),
+              "bench.yaml:22: springs.coil.rate: negative rate '-1'; allowed: zero or more (as set)");
+    for (const std::string& text :
+         {std::string(), std::string("1\n2"), std::string("\xFF"), std::string(300, '1')})
+        EXPECT_NE(
+            complaint({{"springs.coil.rate", text}}).find("cannot be set; allowed: one line of plain text"),
+            std::string::npos);
+}
+
+TEST(Settings, AreParsedFromOneWord) {
+    const Setting parsed = parse_setting("points.tie_rod_inner.z=-0.055");
+    EXPECT_EQ(parsed.path, "points.tie_rod_inner.z");
+    EXPECT_EQ(parsed.value, "-0.055");
+    for (const char* wrong : {"", "=", "a", "a=", "=1"})
+        EXPECT_THROW(parse_setting(wrong), SceneError) << wrong;
+    EXPECT_EQ(setting("a", 0.1).value, "0.1");
+    EXPECT_EQ(setting("a", -28e3).value, "-28000");
+}
+
+}  // namespace
+}  // namespace elastocheck
