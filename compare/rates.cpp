@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 #include "models/compile.hpp"
 #include "recursive/solve.hpp"
 #include "tests/support/scenes.hpp"
