@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {

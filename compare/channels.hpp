@@ -59,7 +59,7 @@ struct Channel {
     Unit unit = Unit::mm;
     bool main = true;  // false: joint forces, and travel, which is wheel_centre_z once more
     Reads reads = {};
-    std::string definition;  // one line with its sign: the only place where it is written
+    std::string definition = {};  // one line with its sign: the only place where it is written
 
     bool kinematic() const;           // of the configuration alone: a position or an angle
     std::vector<int> joints() const;  // whose wrenches it reads

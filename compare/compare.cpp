@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compare/determination.hpp"
+#include "recursive/diagnosis.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -50,7 +50,43 @@ double bound_of(Unit unit, const Bounds& bounds) {
     return 0;
 }
 
-// Why the references do not count as one truth on this branch.
+int count(const Reading& reading, const std::vector<bool>& determined) {
+    int sum = 0;
+    for (std::size_t c = 0; c < reading.channels.size(); ++c)
+        if (determined[c]) sum += reading.channels[c].compared;
+    return sum;
+}
+
+// Whether a channel reads wrenches that are there and determined; a total is there to be.
+bool is_determined(const Channel& channel, const std::vector<bool>& determined, const Model& standing) {
+    std::vector<bool> stands(standing.joints.size(), false);
+    for (const auto& constraint : standing.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    const bool total = std::holds_alternative<Total>(channel.reads);
+    return std::ranges::all_of(channel.joints(), [&](int k) {
+        const auto j = static_cast<std::size_t>(k);
+        return stands[j] && (total || determined[j]);
+    });
+}
+
+}  // namespace
+
+void Objections::add(std::string what, double share) {
+    constexpr std::size_t told = 3;
+    ++count;
+    const auto place = std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
+    worst.insert(place, {std::move(what), share});
+    if (worst.size() > told) worst.pop_back();
+}
+
+std::vector<std::string> Objections::texts() const {
+    std::vector<std::string> list;
+    for (const auto& objection : worst) list.push_back(objection.what);
+    if (const int more = count - static_cast<int>(worst.size()); more > 0)
+        list.push_back(fmt::format("and {} more, none of them worse", more));
+    return list;
+}
+
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
                          const BranchComparison& branch) {
     Objections objections;
@@ -93,43 +129,6 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     return objections;
 }
 
-int count(const Reading& reading, const std::vector<bool>& determined) {
-    int sum = 0;
-    for (std::size_t c = 0; c < reading.channels.size(); ++c)
-        if (determined[c]) sum += reading.channels[c].compared;
-    return sum;
-}
-
-// Whether a channel reads wrenches that are there and determined; a total is there to be.
-bool is_determined(const Channel& channel, const Determination& known, const Model& standing) {
-    std::vector<bool> stands(standing.joints.size(), false);
-    for (const auto& constraint : standing.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
-    const bool total = std::holds_alternative<Total>(channel.reads);
-    return std::ranges::all_of(channel.joints(), [&](int k) {
-        const auto j = static_cast<std::size_t>(k);
-        return stands[j] && (total || known.joint[j]);
-    });
-}
-
-}  // namespace
-
-void Objections::add(std::string what, double share) {
-    constexpr std::size_t told = 3;
-    ++count;
-    const auto place = std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
-    worst.insert(place, {std::move(what), share});
-    if (worst.size() > told) worst.pop_back();
-}
-
-std::vector<std::string> Objections::texts() const {
-    std::vector<std::string> list;
-    for (const auto& objection : worst) list.push_back(objection.what);
-    if (const int more = count - static_cast<int>(worst.size()); more > 0)
-        list.push_back(fmt::format("and {} more, none of them worse", more));
-    return list;
-}
-
 bool Comparison::conclusive() const {
     for (const auto& branch : branches)
         if (!branch.inconclusive.empty()) return false;
@@ -148,12 +147,13 @@ Comparison compare(const Model& model, const Options& options) {
         throw std::invalid_argument(fmt::format("'{}' is no output of the scene", options.abscissa));
 
     std::vector<std::vector<Way>> ways;
-    std::vector<Determination> known;
+    std::vector<std::vector<bool>> determined;  // per branch and joint
     std::vector<std::vector<int>> groups;
     for (const auto& branch : model.branches) {
         ways.push_back(ways_of(model, branch, options.recursion.steps));
-        known.push_back(determination(ways.back().front().model));
-        for (const auto& group : known.back().groups)
+        const auto diagnosis = recursive::diagnose(ways.back().front().model);
+        determined.push_back(diagnosis.determined);
+        for (const auto& group : diagnosis.redundant_sets)
             if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
     }
     std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
@@ -164,7 +164,7 @@ Comparison compare(const Model& model, const Options& options) {
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
         for (const auto& channel : result.channels)
-            b.determined.push_back(is_determined(channel, known[k], ways[k].front().model));
+            b.determined.push_back(is_determined(channel, determined[k], ways[k].front().model));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));

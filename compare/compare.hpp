@@ -62,12 +62,17 @@ struct BranchComparison {
     std::vector<LegRun> runs;      // in the order of `legs`
     std::vector<bool> determined;  // per channel; what is not is never compared: reactions that redundant
                                    // joints share as they like, joints that do not stand on this branch
-    Pair deviation;           // the recursion against the equilibrium leg
-    Pair cross_check;         // the recursion against the energy leg
-    Pair uncertainty;         // the energy leg against the equilibrium leg
-    Bounds bounds;            // within which the references have to agree
-    Objections inconclusive;  // why this branch cannot be judged; empty when it can
+    Pair deviation;                // the recursion against the equilibrium leg
+    Pair cross_check;              // the recursion against the energy leg
+    Pair uncertainty;              // the energy leg against the equilibrium leg
+    Bounds bounds;                 // within which the references have to agree
+    Objections inconclusive;       // why this branch cannot be judged; empty when it can
 };
+
+// Why the references do not count as one truth on a branch whose runs and readings are there; `asked` is the
+// branch of the model.
+Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
+                         const BranchComparison& branch);
 
 struct Comparison {
     std::vector<Channel> channels;  // of the model, then the totals of what redundant joints share

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {

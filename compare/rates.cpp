@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -59,7 +59,7 @@ double rate(const Model& model, const Channel& channel, const Equilibrium& state
 
 std::vector<double> channel_rates(const Model& model, std::span<const Channel> channels, const Branch& branch,
                                   const Path& path, Place place) {
-    const Equilibrium state = recursive::series::evaluate(model, path, place);
+    const Equilibrium state = recursive::series::evaluate(model, branch, path, place);
     const Rates rates = recursive::series::rates(path, place);
     std::vector<double> result;
     for (const auto& channel : channels)
@@ -72,11 +72,11 @@ std::optional<Place> place_at(const Model& model, const Channel& channel, const 
     using namespace recursive::series;
     if (path.expansions.empty() || !channel.kinematic()) return std::nullopt;
     const auto value_at = [&](Place place) {
-        return compare::evaluate(model, {&channel, 1}, evaluate(model, path, place)).front();
+        return compare::evaluate(model, {&channel, 1}, evaluate(model, branch, path, place)).front();
     };
     const Expansion& last = path.expansions.back();
     const Place end{path.expansions.size() - 1, last.reach};
-    double from = evaluate(model, path, {0, 0}).load, to = evaluate(model, path, end).load;
+    double from = evaluate(model, branch, path, {0, 0}).load, to = evaluate(model, branch, path, end).load;
     const double first = value_at({0, 0}), final = value_at(end);
     if (!(std::min(first, final) <= value && value <= std::max(first, final))) return std::nullopt;
     double a = from + (to - from) * (final == first ? 0 : (value - first) / (final - first));
@@ -84,7 +84,7 @@ std::optional<Place> place_at(const Model& model, const Channel& channel, const 
         const Place here = *find(path, a);
         const double miss = value_at(here) - value;
         ((miss < 0) == (final > first) ? from : to) = a;
-        const double slope = rate(model, channel, evaluate(model, path, here), rates(path, here));
+        const double slope = rate(model, channel, evaluate(model, branch, path, here), rates(path, here));
         double next = a - miss / slope;
         if (!((next - from) * (next - to) <= 0)) next = from + (to - from) / 2;  // bisect where Newton leaves
         if (next == a || std::abs(next - a) <= 1e-15 * std::abs(branch.to)) break;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "compare/legs.hpp"
-#include "compare/overloaded.hpp"
+#include "models/overloaded.hpp"
 #include "compare/timing.hpp"
 #include "recursive/solve.hpp"
 

@@ -129,11 +129,11 @@ struct Driven {
 };
 
 TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
-    // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j, which is -y
-    // of the ground; and an angle about x.
-    const Driven rod(DistanceBetween{{0, {}}, {1, {}}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
+    // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j, which is
+    // -y of the ground; and an angle about x.
+    const Driven rod(DistanceBetween{Point{0}, Point{1}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
     EXPECT_NEAR(value(rod.model, rod.state, "drive.drive_force"), 5, 1e-12);
-    const Driven plane(PointInPlane{{0, {}}, {1, {}}, {1, {0, 0, 1}}, 0},
+    const Driven plane(PointInPlane{Point{0}, Point{1}, {1, {0, 0, 1}}, 0},
                        {Vector3d(1, 7, 2), Vector3d::Zero()});
     EXPECT_NEAR(value(plane.model, plane.state, "drive.drive_force"), -7, 1e-12);
     const Driven angle(DirectionAtAngle{{0, {0, 1, 0}}, {1, {0, 1, 0}}, {1, {0, 0, 1}}, 0},
@@ -146,15 +146,17 @@ TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
     Model gone = rod.model;
     gone.joints[0].driven = -1;
     const auto list = channels(rod.model);
-    EXPECT_EQ(evaluate(gone, std::vector{list[static_cast<std::size_t>(find_channel(list, "drive.drive_force"))]},
-                       rod.state),
-              std::vector<double>{0});
+    EXPECT_EQ(
+        evaluate(gone, std::vector{list[static_cast<std::size_t>(find_channel(list, "drive.drive_force"))]},
+                 rod.state),
+        std::vector<double>{0});
 }
 
 TEST(Totals, AddUpTheWrenchesOnOneBodyAboutOnePoint) {
     Model model;
     model.bodies = {{"arm", {}}, {"knuckle", {}}};
-    model.joints = {{"front", 0, ground, {0, {1, 0, 0}}}, {"rear", ground, 0, {ground, {-1, 0, 0}}},
+    model.joints = {{"front", 0, ground, {0, {1, 0, 0}}},
+                    {"rear", ground, 0, {ground, {-1, 0, 0}}},
                     {"other", 0, 1, {0, {0, 0, 0}}}};
     Equilibrium state = design_state(model);
     state.reactions[0].force = {0, 0, 10};

@@ -17,17 +17,23 @@ Curve made(double rate, F&& shape, int points = 41) {
     Curve curve;
     for (int k = 0; k < points; ++k) {
         const double load = 10.0 * k / (points - 1), travel = rate * load;
-        curve.load.push_back(load);
-        curve.travel.push_back(travel);
+        curve.a.push_back(load);
         curve.values.push_back({travel, shape(travel)});
     }
     return curve;
 }
 
+const std::vector<Channel> outputs{{.name = "travel", .main = false, .reads = Coordinate{}},
+                                   {.name = "y", .reads = Coordinate{}}};
+
+Reading at_equal_travel(const Curve& a, const Curve& b) {
+    return at_equal_abscissa(a, b, abscissa(outputs, 0, a, b));
+}
+
 TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
     const auto shape = [](double x) { return std::sin(0.2 * x) + 0.01 * x * x; };
     const Curve a = made(1, shape), b = made(1.04, shape);
-    const auto load = at_equal_parameter(a, b), travel = at_equal_abscissa(a, b);
+    const auto load = at_equal_parameter(a, b), travel = at_equal_travel(a, b);
     EXPECT_NEAR(load.channels[0].max, 0.4, 1e-12);
     EXPECT_NEAR(load.channels[0].signed_max, 0.4, 1e-12);
     EXPECT_EQ(load.channels[0].at, 10);
@@ -78,8 +84,8 @@ TEST(Deviation, ANaNAnywhereIsNeverSmall) {
         a.values[where][1] = nan;
         EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].max)) << where;
         EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].range)) << where;
-        b.travel[where] = nan;
-        EXPECT_FALSE(at_equal_abscissa(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
+        b.values[where][0] = nan;
+        EXPECT_FALSE(at_equal_travel(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
     }
 }
 
@@ -87,18 +93,81 @@ TEST(Deviation, NothingComparedSaysWhy) {
     const Curve a = made(1, [](double x) { return x; });
     EXPECT_FALSE(at_equal_parameter(a, {}).not_compared.empty());
     EXPECT_FALSE(at_equal_parameter({}, a).not_compared.empty());
-    EXPECT_FALSE(at_equal_abscissa(a, {}).not_compared.empty());
+    EXPECT_FALSE(at_equal_travel(a, {}).not_compared.empty());
     Curve other = a;
-    other.load[7] += 1e-9;
+    other.a[7] += 1e-9;
     EXPECT_FALSE(at_equal_parameter(a, other).not_compared.empty());
     Curve folded = a;
-    std::swap(folded.travel[5], folded.travel[6]);
-    EXPECT_FALSE(at_equal_abscissa(a, folded).not_compared.empty());
+    std::swap(folded.values[5][0], folded.values[6][0]);
+    EXPECT_FALSE(at_equal_travel(a, folded).not_compared.empty());
     Curve elsewhere = made(1, [](double x) { return x; });
-    for (auto& t : elsewhere.travel) t += 100;
-    const auto reading = at_equal_abscissa(a, elsewhere);
+    for (auto& v : elsewhere.values) v[0] += 100;
+    const auto reading = at_equal_travel(a, elsewhere);
     EXPECT_EQ(reading.channels[1].compared, 0);
     EXPECT_TRUE(std::isnan(reading.channels[1].max));
+}
+
+TEST(Deviation, TwoWayCurvesAreComparedAroundTheirStartHoweverFarTheyGot) {
+    Curve a = made(1, [](double x) { return x; }), b = a;
+    for (Curve* curve : {&a, &b}) {
+        curve->start = 20;
+        for (double& x : curve->a) x -= 5;
+    }
+    // b broke off on the near side: its first seven points are missing.
+    b.a.erase(b.a.begin(), b.a.begin() + 7);
+    b.values.erase(b.values.begin(), b.values.begin() + 7);
+    b.start -= 7;
+    b.values[0][1] += 0.5;
+    const auto reading = at_equal_parameter(a, b);
+    ASSERT_TRUE(reading.not_compared.empty()) << reading.not_compared;
+    EXPECT_EQ(reading.channels[1].compared, 34);
+    EXPECT_DOUBLE_EQ(reading.channels[1].max, 0.5);
+    EXPECT_DOUBLE_EQ(reading.channels[1].at, a.a[7]);
+    EXPECT_TRUE(std::isnan(distance(outputs, a, b).mm));  // not one and the same branch
+    EXPECT_EQ(profile_at_equal_parameter(outputs, a, b).apart.size(), 34u);
+}
+
+TEST(Deviation, ProfilesAreTheWorstMainChannelPointByPoint) {
+    const Curve a = made(1, [](double x) { return x; });
+    Curve b = a;
+    b.values[3][0] += 9;  // travel is no main channel
+    b.values[5][1] -= 0.25;
+    const auto load = profile_at_equal_parameter(outputs, a, b);
+    EXPECT_EQ(load.apart[3].mm, 0);
+    EXPECT_EQ(load.apart[5].mm, 0.25);
+    EXPECT_EQ(distance(outputs, a, b).mm, 0.25);
+    const Curve c = made(0.9, [](double x) { return x; });
+    const auto travel = profile_at_equal_abscissa(outputs, a, c, abscissa(outputs, 0, a, c));
+    EXPECT_LE(travel.apart[30].mm, 1e-12);
+    EXPECT_TRUE(std::isnan(travel.apart[40].mm));  // not reached
+}
+
+TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
+    const Curve a = made(1, [](double x) { return (x - 4) * (x - 4); });
+    EXPECT_EQ(abscissa(outputs, 0, a, a).why_not, "");
+    EXPECT_EQ(abscissa(outputs, 1, a, a).why_not, "y turns back at 4 N (at 0 mm)");
+    const Curve still = made(1, [](double) { return 7.0; });
+    EXPECT_EQ(abscissa(outputs, 1, still, still).why_not, "y does not move");
+    EXPECT_EQ(abscissa(outputs, 0, a, made(-1, [](double x) { return x; })).why_not,
+              "travel goes opposite ways");
+    Curve nowhere = a;
+    nowhere.values[6][0] = nan;
+    EXPECT_EQ(abscissa(outputs, 0, a, nowhere).why_not, "travel is not a number at 1.5 N");
+    EXPECT_EQ(abscissa(outputs, 0, a, {}).why_not, "a curve has fewer than two points");
+    EXPECT_EQ(at_equal_abscissa(a, a, abscissa(outputs, 1, a, a)).not_compared,
+              "y turns back at 4 N (at 0 mm)");
+}
+
+TEST(Abscissa, IsTravelWhereThereIsAWheelElseWhatMovesFarthest) {
+    const Curve a = made(0.5, [](double x) { return -3 * x; });
+    EXPECT_EQ(default_abscissa(outputs, a), 0);
+    const std::vector<Channel> probes{{.name = "x", .reads = Coordinate{}},
+                                      {.name = "y", .reads = Coordinate{}}};
+    EXPECT_EQ(default_abscissa(probes, a), 1);
+    const std::vector<Channel> forces{
+        {.name = "f", .unit = Unit::newton, .main = false, .reads = Reaction{}}};
+    EXPECT_EQ(default_abscissa(forces, a), -1);
+    EXPECT_FALSE(abscissa(forces, -1, a, a).why_not.empty());
 }
 
 TEST(Interpolation, IsExactForPolynomialsUpToItsDegreeOnBothDirections) {

@@ -11,18 +11,20 @@ namespace elastocheck::compare {
 namespace {
 
 // A leg, and of the recursion a method.
-struct Way {
+struct Stride {
     Leg leg;
     const char* method;
 };
-void PrintTo(const Way& way, std::ostream* out) { *out << (*way.method != 0 ? way.method : name(way.leg)); }
-constexpr Way ways[] = {{Leg::recursive, "published"},
-                        {Leg::recursive, "midpoint"},
-                        {Leg::recursive, "series"},
-                        {Leg::equilibrium, ""},
-                        {Leg::energy, ""}};
+void PrintTo(const Stride& way, std::ostream* out) {
+    *out << (*way.method != 0 ? way.method : name(way.leg));
+}
+constexpr Stride strides[] = {{Leg::recursive, "published"},
+                              {Leg::recursive, "midpoint"},
+                              {Leg::recursive, "series"},
+                              {Leg::equilibrium, ""},
+                              {Leg::energy, ""}};
 
-class EveryLeg : public testing::TestWithParam<Way> {
+class EveryLeg : public testing::TestWithParam<Stride> {
   protected:
     double bound() const { return GetParam().leg == Leg::energy ? 1e-7 : 1e-9; }
 
@@ -114,7 +116,7 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
                     size = std::max(size,
                                     (in_a - (position ? vector(run_a, 0) : Eigen::Vector3d::Zero())).norm());
                     for (std::size_t j = 0; j < list.size(); ++j)
-                        if (list[j].joint == list[c].joint && !position)
+                        if (list[j].joints() == list[c].joints() && !position)
                             size = std::max(size, std::abs(run_a.curve.values[p][j]));
                     worst = std::max(worst, (in_a - in_b).norm());
                 }
@@ -125,7 +127,7 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(ways),
+INSTANTIATE_TEST_SUITE_P(Invariance, EveryLeg, testing::ValuesIn(strides),
                          [](const auto& way) { return testing::PrintToString(way.param); });
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "models/compile.hpp"
 #include "tests/support/scenes.hpp"
@@ -77,7 +78,7 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
         EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
-        EXPECT_LT(m.constraint_error.back(), 1e-4);     // [m]: falling with the steps
+        EXPECT_LT(m.constraint_error.back(), 1e-4);          // [m]: falling with the steps
         EXPECT_GT(std::abs(m.equal_parameter[2].gap), 1.0);  // [mm]: not falling
         EXPECT_LE(m.equal_parameter[2].uncertainty, 1e-6);
         EXPECT_GT(m.equal_parameter[2].gap_exponent, 1.2);
@@ -148,11 +149,71 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
     EXPECT_NEAR(a.gap, b.gap, 1e-4 * std::abs(a.gap));
 }
 
+TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
+    // The preloaded strut settles before it walks: what is left when everything follows is within its band,
+    // and the whole is the gap that the study finds.
+    const Model model = compile(support::scene("mcpherson_preload"));
+    const Study s = study(model, options());
+    const auto attribution = attribute_gap(model);
+    ASSERT_EQ(attribution.size(), s.branches.size());
+    for (std::size_t b = 0; b < s.branches.size(); ++b) {
+        ASSERT_TRUE(attribution[b].not_attributed.empty()) << attribution[b].not_attributed;
+        EXPECT_EQ(attribution[b].branch, s.branches[b].branch);
+        EXPECT_EQ(s.branches[b].abscissa, "travel");
+        for (const auto& [shares, studied, why] :
+             {std::tuple{&attribution[b].equal_parameter, &s.branches[b].methods[0].equal_parameter, ""},
+              {&attribution[b].equal_abscissa, &s.branches[b].methods[0].equal_abscissa,
+               attribution[b].no_abscissa.c_str()}}) {
+            ASSERT_EQ(shares->size(), s.channels.size()) << why;
+            ASSERT_EQ(studied->size(), s.channels.size()) << s.branches[b].methods[0].no_abscissa;
+            for (std::size_t c = 0; c < shares->size(); ++c) {
+                const GapShare& share = (*shares)[c];
+                EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10);
+                EXPECT_LE(std::abs(share.rest), share.band) << s.channels[c].name;
+            }
+        }
+        // bit 2: the load follows, as in the published method
+        for (std::size_t c = 0; c < s.channels.size(); ++c) {
+            const auto& published = s.branches[b].methods[0].equal_parameter[c];
+            EXPECT_NEAR(attribution[b].equal_parameter[c].combinations[4], published.gap,
+                        attribution[b].equal_parameter[c].band + published.end.band)
+                << s.channels[c].name;
+        }
+    }
+}
+
+TEST(Study, ABranchWithTwoWaysIsStudiedAsTwo) {
+    Scene scene = support::scene("bushing_pair");
+    scene.branches.resize(1);
+    scene.branches[0].from = -scene.branches[0].to;
+    scene.branches[0].name = "both";
+    const Study s = study(compile(scene), options());
+    ASSERT_EQ(s.branches.size(), 2u);
+    EXPECT_TRUE(s.branches[0].branch.starts_with("both to -")) << s.branches[0].branch;
+    for (const auto& way : s.branches) {
+        EXPECT_EQ(way.belongs_to, "both");
+        EXPECT_EQ(way.steps, (std::vector<int>{25, 50, 100, 200, 400}));
+        EXPECT_EQ(way.methods[0].equal_parameter[2].end.behaviour, Behaviour::converging);
+    }
+    EXPECT_TRUE(s.conclusive());
+}
+
+TEST(Study, ABranchThatMovesNothingIsNotStudied) {
+    Scene scene = support::scene("pinned_bar");
+    for (auto& driver : scene.branches[0].drivers)
+        std::get<DeadForce>(std::get<Load>(driver.what).kind).f.setZero();
+    const Study s = study(compile(scene), options());
+    EXPECT_FALSE(s.conclusive());
+    ASSERT_FALSE(s.inconclusive.empty());
+    EXPECT_NE(s.inconclusive[0].find("nothing drives branch"), std::string::npos) << s.inconclusive[0];
+}
+
 TEST(Study, IsTheSameFromRunToRun) {
     const Model model = compile(support::scene("mcpherson"));
     const auto a = study(model, options()), b = study(model, options());
     for (std::size_t c = 0; c < a.channels.size(); ++c) {
-        EXPECT_EQ(a.branches[0].methods[0].equal_parameter[c].gap, b.branches[0].methods[0].equal_parameter[c].gap);
+        EXPECT_EQ(a.branches[0].methods[0].equal_parameter[c].gap,
+                  b.branches[0].methods[0].equal_parameter[c].gap);
         EXPECT_EQ(a.branches[0].methods[0].equal_abscissa[c].end.limit,
                   b.branches[0].methods[0].equal_abscissa[c].end.limit);
     }

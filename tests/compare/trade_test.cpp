@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -14,7 +15,6 @@
 #include "recursive/solve.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
-#include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -53,8 +53,10 @@ Accuracy solved_anew(const Model& model, const Trade& trade) {
     options.method = *recursive::find_method(point.method);
     options.steps = point.steps > 0 ? 10 * point.steps : outputs;
     options.record = outputs;
-    options.length_tolerance = point.own_tolerance;
-    options.angle_tolerance = 1.745 * point.own_tolerance;
+    if (auto* adaptive = std::get_if<recursive::Adaptive>(&options.method.kind))
+        *adaptive = {point.own_tolerance, 1.745 * point.own_tolerance};
+    if (auto* series = std::get_if<recursive::Series>(&options.method.kind))
+        series->tolerance = point.own_tolerance;
     const auto all = channels(model);
     Accuracy worst;
     for (const auto& branch : model.branches) {
@@ -421,18 +423,61 @@ TEST(Trade, TheEquilibriumLegIsTimedTwiceAndStandsAtOne) {
 
 // ---- the arithmetic
 
-TEST(Trade, WithoutTimesTheRecommendationIsTheOneWithTheLeastWork) {
-    TradeOptions options = quick({0.01, 0.001}, 640);
+TEST(Trade, TheRecommendationIsTheSameInEveryRunWhateverTheClockSays) {
+    for (const auto& name : {"mcpherson", "pinned_bar"}) {
+        const Model model = shipped(name);
+        std::vector<Trade> runs;
+        for (const int rounds : {0, 1, 3}) {
+            TradeOptions options = quick({0.01, 0.001}, 160);
+            options.rounds = rounds;
+            runs.push_back(trade(model, options));
+            ASSERT_TRUE(runs.back().recommendation) << name;
+            EXPECT_EQ(runs.back().recommendation->point, runs.front().recommendation->point) << name;
+            EXPECT_EQ(runs.back().recommendation->high.mm, runs.front().recommendation->high.mm) << name;
+            EXPECT_EQ(runs.back().rejected, runs.front().rejected) << name;
+        }
+        const Trade& result = runs.front();
+        for (const auto& point : result.points)
+            EXPECT_TRUE(std::isnan(point.ratio) && std::isnan(point.work.seconds)) << describe(point);
+    }
+}
+
+TEST(Trade, WhatIsRecommendedIsToldNoMoreThanIsAskedFor) {
+    // A series of high order is as good when it is told 1 mm, by luck.
+    for (const Tolerance asked : {Tolerance{0.01, 0.001}, Tolerance{0.01}, Tolerance{infinity, 0.001}}) {
+        TradeOptions options = quick(asked, 40);
+        options.rounds = 0;
+        options.methods = {"adaptive", "series"};
+        const Trade result = trade(shipped("mcpherson"), options);
+        ASSERT_TRUE(result.recommendation);
+        const TradePoint& chosen = result.points[result.recommendation->point];
+        EXPECT_LE(1e3 * chosen.own_tolerance, asked.mm) << describe(chosen);
+        EXPECT_LE(1.745 * chosen.own_tolerance * 180 / std::numbers::pi, asked.deg) << describe(chosen);
+        // and of the rungs that cost the same, the loosest that may be
+        for (const auto& point : result.points)
+            if (point.method == chosen.method && point.own_tolerance > chosen.own_tolerance &&
+                1e3 * point.own_tolerance <= asked.mm && 100 * point.own_tolerance <= asked.deg) {
+                EXPECT_GT(point.work.price, chosen.work.price) << describe(point);
+            }
+    }
+}
+
+TEST(Trade, ThePriceIsCountedInBackSubstitutions) {
+    TradeOptions options = quick({0.01, 0.001}, 160);
     options.rounds = 0;
     const Model model = shipped("mcpherson");
     const Trade result = trade(model, options);
     ASSERT_TRUE(result.recommendation);
-    const auto work = [](const TradePoint& p) { return p.work.factorisations + p.work.evaluations; };
+    const double N = coordinates(model) + constraint_rows(model);
     const TradePoint& chosen = result.points[result.recommendation->point];
     for (const auto& point : result.points) {
-        EXPECT_TRUE(std::isnan(point.ratio) && std::isnan(point.work.seconds)) << describe(point);
+        EXPECT_NEAR(point.work.price,
+                    N / 3 * static_cast<double>(point.work.factorisations) +
+                        static_cast<double>(point.work.solves + point.work.evaluations),
+                    1e-9 * point.work.price)
+            << describe(point);
         if (point.method == "tangent" && share_of(result.tolerance, point.error) <= 1) {
-            EXPECT_LE(work(chosen), work(point)) << describe(point);
+            EXPECT_LE(chosen.work.price, point.work.price) << describe(point);
         }
     }
     EXPECT_LE(result.recommendation->confirmed.mm, 0.01);
@@ -440,13 +485,45 @@ TEST(Trade, WithoutTimesTheRecommendationIsTheOneWithTheLeastWork) {
     EXPECT_THROW((void)trade(model, options), std::invalid_argument);
 }
 
+TEST(Trade, ATwoWayBranchIsPricedAsItsTwoHalves) {
+    Scene both = support::scene("pinned_bar");
+    const Scene halves = both;
+    ASSERT_EQ(both.branches.size(), 2u);
+    both.branches.resize(1);
+    both.branches[0].from = halves.branches[1].to;
+    TradeOptions options = quick({0.01}, 40);
+    options.rounds = 0;
+    options.points = 20;
+    const Trade one = trade(compile(both), options);
+    options.points = 10;
+    options.most_steps = 20;
+    const Trade two = trade(compile(halves), options);
+    for (const auto& method : {"published", "tangent", "midpoint"}) {
+        const auto *a = find(one, method, 40), *b = find(two, method, 20);
+        ASSERT_TRUE(a != nullptr && b != nullptr) << method;
+        EXPECT_EQ(a->work.solves, b->work.solves) << method;
+        EXPECT_EQ(a->error.mm, b->error.mm) << method;
+    }
+    EXPECT_TRUE(one.recommendation);
+}
+
+TEST(Trade, ABranchThatMovesNothingLeavesNothingToJudge) {
+    Scene scene = support::scene("pinned_bar");
+    for (auto& driver : scene.branches[0].drivers)
+        std::get<DeadForce>(std::get<Load>(driver.what).kind).f.setZero();
+    const Trade result = trade(compile(scene), quick({0.01}, 10));
+    ASSERT_FALSE(result.inconclusive.empty());
+    EXPECT_NE(result.inconclusive[0].find("nothing drives branch"), std::string::npos);
+    EXPECT_FALSE(result.recommendation);
+}
+
 TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
     const Model model = shipped("mcpherson");
     const auto channels = compare::channels(model);
     for (const auto& branch : model.branches) {
-        const Profile found = profile(model, branch, {.method = "tangent", .steps = 40});
-        ASSERT_EQ(found.load.size(), 41u);
-        EXPECT_EQ(found.load.back(), branch.to);
+        const Profile found = profile(model, branch, {.method = "tangent", .steps = 40}).profile;
+        ASSERT_EQ(found.a.size(), 41u);
+        EXPECT_EQ(found.a.back(), branch.to);
         const auto truth = reference::energy::solve(model, branch, std::vector{0.0, branch.to});
         const auto path =
             recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 40});
@@ -456,15 +533,17 @@ TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
             if (channels[c].main)
                 (channels[c].unit == Unit::deg ? deg : mm) =
                     std::max(channels[c].unit == Unit::deg ? deg : mm, std::abs(v[c] - u[c]));
-        EXPECT_NEAR(found.mm.back(), mm, 1e-6);
-        EXPECT_NEAR(found.deg.back(), deg, 1e-6);
-        EXPECT_GT(found.mm.back(), 1e-4);
-        for (const double error : profile(model, branch, {.leg = Leg::equilibrium}).mm) EXPECT_EQ(error, 0);
+        EXPECT_NEAR(found.apart.back().mm, mm, 1e-6);
+        EXPECT_NEAR(found.apart.back().deg, deg, 1e-6);
+        EXPECT_GT(found.apart.back().mm, 1e-4);
+        for (const auto& error : profile(model, branch, {.leg = Leg::equilibrium}).profile.apart)
+            EXPECT_EQ(error.mm, 0);
     }
     for (const char* method : {"adaptive", "series"}) {
-        const auto found = profile(model, model.branches[0], {.method = method, .own_tolerance = 1e-6});
-        EXPECT_EQ(found.load.size(), static_cast<std::size_t>(model.branches[0].steps) + 1) << method;
-        EXPECT_LE(*std::ranges::max_element(found.mm), 1e-3) << method;
+        const auto found =
+            profile(model, model.branches[0], {.method = method, .own_tolerance = 1e-6}).profile;
+        EXPECT_EQ(found.a.size(), static_cast<std::size_t>(model.branches[0].steps) + 1) << method;
+        for (const auto& error : found.apart) EXPECT_LE(error.mm, 1e-3) << method;
     }
 }
 
@@ -525,41 +604,6 @@ TEST(Precision, AMethodWithStepsOfItsOwnIsRefused) {
     EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
     options.methods = {"publshed"};
     EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
-}
-
-// ---- as it is read
-
-TEST(TradeTables, TextCsvAndJsonSayTheSame) {
-    const Model model = shipped("pendulum", 2);
-    const Trade result = trade(model, quick({0.01, 0.001}, 640));
-    ASSERT_TRUE(result.recommendation);
-    const std::string text = reports::trade_table(model, result), csv = reports::trade_csv(result);
-    EXPECT_NE(text.find("the same 10 output points"), std::string::npos);
-    EXPECT_NE(text.find("For 0.01 mm: " + describe(result.points[result.recommendation->point])),
-              std::string::npos)
-        << text;
-    EXPECT_NE(text.find("diverged"), std::string::npos);
-    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), result.points.size() + 1);
-    const auto json = nlohmann::ordered_json::parse(reports::trade_json(result).dump());
-    EXPECT_EQ(json["points"].size(), result.points.size());
-    EXPECT_TRUE(json["tolerance"]["deg"].is_null());
-    EXPECT_EQ(json["recommendation"]["position"], result.recommendation->point);
-    for (std::size_t k = 0; k < result.points.size(); ++k)
-        EXPECT_EQ(json["points"][k]["error"]["mm"].is_null(), std::isnan(result.points[k].error.mm)) << k;
-
-    const Trade none = trade(model, quick({1e-15}, 10));
-    EXPECT_NE(reports::trade_table(model, none).find("nothing here reaches it"), std::string::npos);
-    EXPECT_TRUE(reports::trade_json(none)["recommendation"].is_null());
-}
-
-TEST(TradeTables, PrecisionIsOneRowALevel) {
-    PrecisionOptions options;
-    options.most_steps = 160;
-    const PrecisionStudy study = precision_study(shipped("pinned_bar"), options);
-    const std::string csv = reports::precision_csv(study);
-    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 3 * 3 * 3);
-    EXPECT_EQ(reports::precision_json(study)["series"].size(), 9u);
-    EXPECT_NE(reports::precision_table(study).find("long double"), std::string::npos);
 }
 
 }  // namespace

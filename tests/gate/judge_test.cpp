@@ -18,7 +18,7 @@ Measurement measurement() {
     Measurement m;
     m.scene = "s";
     for (const char* branch : {"in", "out"}) {
-        m.branches.push_back({branch, {0, 10, 20}});
+        m.branches.push_back({branch, "N", {0, 10, 20}});
         m.series.push_back({branch, Quantity::recursive, "toe", "deg", {0, 1, 4}});
         m.series.push_back({branch, Quantity::equilibrium, "toe", "deg", {0, 1, 2}});
         m.series.push_back({branch, Quantity::deviation_at_equal_abscissa, "toe", "deg", {0.5}});
@@ -79,8 +79,9 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
             EXPECT_EQ(offence.was, was);
             EXPECT_EQ(offence.tolerance, tolerance);
             EXPECT_GT(sign * offence.difference(), tolerance);
-            EXPECT_EQ(offence.has_load, quantity == Quantity::recursive);
-            EXPECT_EQ(offence.load, offence.has_load ? 10.0 * static_cast<double>(k) : 0);
+            EXPECT_EQ(offence.a.has_value(), quantity == Quantity::recursive);
+            EXPECT_EQ(offence.a.value_or(0), offence.a ? 10.0 * static_cast<double>(k) : 0);
+            EXPECT_EQ(offence.a_unit, offence.a ? "N" : "");
         }
     }
 }
@@ -136,10 +137,12 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
          [](auto& b, auto&) { b.accepted.series[0].values.pop_back(); }},
         {"no numbers in the baseline",
          [](auto& b, auto& m) { b.accepted.series[0].values.clear(), m.series[0].values.clear(); }},
-        {"not as many numbers as its branch has loads",
-         [](auto& b, auto& m) { b.accepted.branches[0].loads.pop_back(), m.branches[0].loads.pop_back(); }},
-        {"at other loads", [](auto&, auto& m) { m.branches[0].loads.back() = 21; }},
-        {"at other loads", [](auto&, auto& m) { m.branches[0].loads.pop_back(); }},
+        {"not as many numbers as its branch has points",
+         [](auto& b, auto& m) { b.accepted.branches[0].a.pop_back(), m.branches[0].a.pop_back(); }},
+        {"elsewhere than the accepted one", [](auto&, auto& m) { m.branches[0].a.back() = 21; }},
+        {"is driven in mm and was in N", [](auto&, auto& m) { m.branches[0].unit = "mm"; }},
+        {"elsewhere than the accepted one (2 points, 0 to 10 N instead of 3 points, 0 to 20 N)",
+         [](auto&, auto& m) { m.branches[0].a.pop_back(); }},
         {"branch 'out' is in the baseline", [](auto&, auto& m) { m.branches.pop_back(); }},
         {"branch 'out' is new", [](auto& b, auto&) { b.accepted.branches.pop_back(); }},
         {"was in deg and is in mm", [](auto&, auto& m) { m.series[0].unit = "mm"; }},
@@ -184,9 +187,9 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
     }
 }
 
-TEST(Gate, NumbersAtOtherLoadsAreNotComparedWithTheAcceptedOnes) {
+TEST(Gate, NumbersElsewhereAreNotComparedWithTheAcceptedOnes) {
     Measurement m = measurement();
-    m.branches[0].loads.back() = 30;
+    m.branches[0].a.back() = 30;
     value(m, Quantity::recursive, "toe", 2) = 9;
     const Verdict verdict = judged(baseline(), m);
     EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);

@@ -1,0 +1,291 @@
+#include "compare/table.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double count(auto number) { return static_cast<double>(number); }
+
+// Calls sink(words of the reading, it) for both readings of a pair-like thing.
+template <class T, class Sink>
+void both(const T& at_parameter, const T& at_abscissa, Sink&& sink) {
+    sink(std::string("at equal parameter"), at_parameter);
+    sink(std::string("at equal abscissa"), at_abscissa);
+}
+
+}  // namespace
+
+Table channel_table(const std::vector<Channel>& channels) {
+    Table table{"channels", {{"output"}, {"unit"}, {"definition"}}, {}};
+    for (const auto& c : channels) table.rows.push_back({c.name, symbol(c.unit), c.definition});
+    return table;
+}
+
+Table settled_table(const std::vector<Channel>& channels, const std::vector<Settled>& settled) {
+    Table table{"settled",
+                {{"branch"},
+                 {"outcome"},
+                 {"output"},
+                 {"unit"},
+                 {"displacement", "", "value at a = 0, settled under what is held, less its value as drawn"}},
+                {}};
+    for (const auto& s : settled)
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (channels[c].main)
+                table.rows.push_back({s.branch, elastocheck::name(s.outcome), channels[c].name,
+                                      symbol(channels[c].unit), s.displacement[c]});
+    return table;
+}
+
+Table curve_table(const Comparison& comparison) {
+    Table table{
+        "curves", {{"branch"}, {"leg"}, {"a", "", "parameter of the branch"}, {"unit", "", "of a"}}, {}};
+    for (const auto& c : comparison.channels) table.columns.push_back({c.name, symbol(c.unit), c.definition});
+    for (const auto& branch : comparison.branches)
+        for (const auto& run : branch.runs)
+            for (std::size_t k = 0; k < run.curve.a.size(); ++k) {
+                std::vector<Cell> row{branch.branch, name(run.leg), run.curve.a[k], symbol(run.curve.unit)};
+                for (const double v : run.curve.values[k]) row.emplace_back(v);
+                table.rows.push_back(std::move(row));
+            }
+    return table;
+}
+
+Table deviation_table(const Comparison& comparison) {
+    Table table{"deviation",
+                {{"branch"},
+                 {"reading"},
+                 {"output"},
+                 {"unit"},
+                 {"range", "", "of the equilibrium leg"},
+                 {"deviation", "", "recursion less equilibrium leg where that is largest"},
+                 {"where", "", "value of the parameter or abscissa there"},
+                 {"where unit"},
+                 {"end", "", "deviation at the last compared point"},
+                 {"rms"},
+                 {"compared", "", "numbers"},
+                 {"references apart", "", "energy leg from equilibrium leg, at most"},
+                 {"not compared", "", "why"}},
+                {}};
+    for (const auto& branch : comparison.branches)
+        both(std::pair{&branch.deviation.equal_parameter, &branch.uncertainty.equal_parameter},
+             std::pair{&branch.deviation.equal_abscissa, &branch.uncertainty.equal_abscissa},
+             [&](const std::string& reading, const auto& found) {
+                 const auto& [off, doubt] = found;
+                 const bool parameter = off == &branch.deviation.equal_parameter;
+                 const Unit where = parameter || branch.abscissa < 0
+                                        ? branch.unit
+                                        : comparison.channels[static_cast<std::size_t>(branch.abscissa)].unit;
+                 if (!off->not_compared.empty())
+                     table.rows.push_back({branch.branch, reading, "", "", nan, nan, nan, symbol(where), nan,
+                                           nan, 0.0, nan, off->not_compared});
+                 for (std::size_t c = 0; c < off->channels.size(); ++c) {
+                     if (!branch.determined[c]) continue;
+                     const Deviation& d = off->channels[c];
+                     table.rows.push_back({branch.branch, reading, comparison.channels[c].name,
+                                           symbol(comparison.channels[c].unit), d.range, d.signed_max, d.at,
+                                           symbol(where), d.end, d.rms, count(d.compared),
+                                           c < doubt->channels.size() ? doubt->channels[c].max : nan, ""});
+                 }
+             });
+    return table;
+}
+
+Table agreement_table(const Comparison& comparison) {
+    Table table{"agreement",
+                {{"branch"},
+                 {"positions", "mm", "by which the references may be apart"},
+                 {"angles", "deg", "likewise"},
+                 {"forces", "N", "likewise"},
+                 {"moments", "N·m", "likewise"},
+                 {"balance", "N", "that a reference's states may leave in the other's equations"},
+                 {"constraints", "mm", "likewise"},
+                 {"objections", "", "how many"},
+                 {"worst", "", "in words"}},
+                {}};
+    for (const auto& b : comparison.branches)
+        table.rows.push_back({b.branch, b.bounds.length, b.bounds.angle, b.bounds.force, b.bounds.moment,
+                              b.bounds.residual_force, b.bounds.residual_length, count(b.inconclusive.count),
+                              b.inconclusive.empty() ? "" : b.inconclusive.worst.front().what});
+    return table;
+}
+
+Table rate_table(const std::vector<RateError>& errors) {
+    Table table{"wheel rate",
+                {{"branch"},
+                 {"wheel"},
+                 {"end", "", "of the branch"},
+                 {"unit"},
+                 {"error", "%", "of the recursion's force over travel; positive: too stiff"},
+                 {"travel", "mm", "recursion less reference at that end"},
+                 {"jack force", "N", "likewise"}},
+                {}};
+    for (const auto& e : errors)
+        table.rows.push_back({e.branch, e.wheel, e.to, symbol(e.unit), 100 * e.off, e.travel, e.force});
+    return table;
+}
+
+Table study_table(const Study& study) {
+    Table table{"convergence",
+                {{"branch"},
+                 {"method"},
+                 {"reading"},
+                 {"output"},
+                 {"unit"},
+                 {"behaviour"},
+                 {"order"},
+                 {"gap", "", "own limit less reference at the end"},
+                 {"band", "", "uncertainty of the limit"},
+                 {"largest gap"},
+                 {"references apart"},
+                 {"not studied", "", "why"}},
+                {}};
+    for (const auto& branch : study.branches)
+        for (const auto& method : branch.methods)
+            both(method.equal_parameter, method.equal_abscissa,
+                 [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
+                     if (found.empty())
+                         table.rows.push_back(
+                             {branch.branch, method.method, reading, "", "", "", nan, nan, nan, nan, nan,
+                              method.not_studied.empty() ? method.no_abscissa : method.not_studied});
+                     for (std::size_t c = 0; c < found.size(); ++c) {
+                         const ChannelStudy& s = found[c];
+                         table.rows.push_back({branch.branch, method.method, reading, study.channels[c].name,
+                                               symbol(study.channels[c].unit), name(s.end.behaviour),
+                                               s.end.order, s.gap, s.end.band, s.gap_max, s.uncertainty, ""});
+                     }
+                 });
+    return table;
+}
+
+Table step_table(const Study& study) {
+    Table table{"step error",
+                {{"branch"},
+                 {"method"},
+                 {"reading"},
+                 {"output"},
+                 {"unit"},
+                 {"steps"},
+                 {"end", "", "value less own limit at the end"},
+                 {"largest"},
+                 {"rms"}},
+                {}};
+    for (const auto& branch : study.branches)
+        for (const auto& method : branch.methods)
+            both(method.equal_parameter, method.equal_abscissa,
+                 [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
+                     for (std::size_t c = 0; c < found.size(); ++c)
+                         for (std::size_t l = 0; l < branch.steps.size(); ++l)
+                             table.rows.push_back({branch.branch, method.method, reading,
+                                                   study.channels[c].name, symbol(study.channels[c].unit),
+                                                   count(branch.steps[l]), found[c].step_error_end[l],
+                                                   found[c].step_error_max[l], found[c].step_error_rms[l]});
+                 });
+    return table;
+}
+
+Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttribution>& attribution) {
+    Table table{"gap",
+                {{"branch"},
+                 {"reading"},
+                 {"output"},
+                 {"unit"},
+                 {"whole", "", "gap of the recursion in which nothing follows the bodies"},
+                 {"lever", "", "share of the lever of the stored force"},
+                 {"axis", "", "share of its axis and law"},
+                 {"load", "", "share of the lever of the load"},
+                 {"rest", "", "what is left when all three follow: 0 within the band"},
+                 {"band"},
+                 {"not attributed", "", "why"}},
+                {}};
+    for (const auto& branch : attribution)
+        both(branch.equal_parameter, branch.equal_abscissa,
+             [&](const std::string& reading, const std::vector<GapShare>& found) {
+                 if (found.empty())
+                     table.rows.push_back(
+                         {branch.branch, reading, "", "", nan, nan, nan, nan, nan, nan,
+                          branch.not_attributed.empty() ? branch.no_abscissa : branch.not_attributed});
+                 for (std::size_t c = 0; c < found.size(); ++c) {
+                     const GapShare& s = found[c];
+                     table.rows.push_back({branch.branch, reading, main[c].name, symbol(main[c].unit),
+                                           s.whole, s.lever, s.axis, s.load, s.rest, s.band, ""});
+                 }
+             });
+    return table;
+}
+
+Table order_table(const std::vector<BranchOrders>& orders) {
+    Table table{"orders",
+                {{"branch"},
+                 {"told", "m"},
+                 {"order"},
+                 {"outcome"},
+                 {"expansions"},
+                 {"rejected"},
+                 {"solves"},
+                 {"factorisations"},
+                 {"evaluations"},
+                 {"error", "mm"},
+                 {"angle error", "deg"},
+                 {"first reach", "", "share of the branch"}},
+                {}};
+    for (const auto& branch : orders)
+        for (const auto& l : branch.levels)
+            table.rows.push_back({branch.branch, l.tolerance, count(l.order), elastocheck::name(l.outcome),
+                                  count(l.expansions), count(l.rejected), count(l.work.solves),
+                                  count(l.work.factorisations), count(l.work.evaluations), l.error.mm,
+                                  l.error.deg, l.first_reach});
+    return table;
+}
+
+Table precision_table(const PrecisionStudy& study) {
+    Table table{"precision",
+                {{"method"},
+                 {"arithmetic"},
+                 {"steps"},
+                 {"outcome"},
+                 {"constraint error", "m", "or rad: |Φ| at the end, eq. (31)"},
+                 {"error", "mm"},
+                 {"angle error", "deg"}},
+                {}};
+    for (const auto& series : study.series)
+        for (const auto& l : series.levels)
+            table.rows.push_back({series.method, name(series.precision), count(l.steps),
+                                  elastocheck::name(l.outcome), l.constraint, l.error.mm, l.error.deg});
+    return table;
+}
+
+Table trade_table(const Trade& trade) {
+    Table table{"trade",
+                {{"leg"},
+                 {"method"},
+                 {"steps", "", "per branch; 0: its own"},
+                 {"told", "m"},
+                 {"outcome"},
+                 {"solves"},
+                 {"factorisations"},
+                 {"evaluations"},
+                 {"price", "", "in back-substitutions: N/3 · factorisations + solves + evaluations"},
+                 {"time ratio", "", "to the equilibrium leg"},
+                 {"error", "mm"},
+                 {"angle error", "deg"},
+                 {"share", "", "of the tolerance"},
+                 {"not ranked", "", "why"},
+                 {"recommended"}},
+                {}};
+    for (std::size_t k = 0; k < trade.points.size(); ++k) {
+        const TradePoint& p = trade.points[k];
+        const bool chosen = trade.recommendation && trade.recommendation->point == k;
+        table.rows.push_back({name(p.leg), p.method, count(p.steps), p.own_tolerance,
+                              elastocheck::name(p.outcome), count(p.work.solves),
+                              count(p.work.factorisations), count(p.work.evaluations), p.work.price, p.ratio,
+                              p.error.mm, p.error.deg, p.share, p.not_ranked, chosen ? "yes" : ""});
+    }
+    return table;
+}
+
+}  // namespace elastocheck::compare

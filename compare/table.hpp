@@ -1,0 +1,45 @@
+// One table a study: what text, CSV, JSON and the page are rendered from, so that no format says anything
+// else.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compare/compare.hpp"
+#include "compare/findings.hpp"
+#include "compare/order_study.hpp"
+#include "compare/precision.hpp"
+#include "compare/study.hpp"
+#include "compare/trade.hpp"
+
+namespace elastocheck::compare {
+
+using Cell = std::variant<double, std::string>;  // a number that is not there is NaN
+
+struct Column {
+    std::string name;
+    std::string unit = {};  // "" where it differs from row to row (then a column `unit` says it) or has none
+    std::string description = {};
+};
+
+struct Table {
+    std::string name;  // "deviation", "curves", ...
+    std::vector<Column> columns;
+    std::vector<std::vector<Cell>> rows;  // as many cells as columns
+};
+
+Table channel_table(const std::vector<Channel>& channels);  // what every output is, with its sign
+Table settled_table(const std::vector<Channel>& channels, const std::vector<Settled>& settled);
+Table curve_table(const Comparison& comparison);         // every leg, branch and point, all channels
+Table deviation_table(const Comparison& comparison);     // per branch, reading and channel
+Table agreement_table(const Comparison& comparison);     // bounds and objections per branch
+Table rate_table(const std::vector<RateError>& errors);  // wheel rates
+Table study_table(const Study& study);                   // per way, method, reading and channel
+Table step_table(const Study& study);                    // ... and level
+Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttribution>& attribution);
+Table order_table(const std::vector<BranchOrders>& orders);
+Table precision_table(const PrecisionStudy& study);
+Table trade_table(const Trade& trade);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,184 @@
+// What a comparison comes to, and measured points beside it.
+#include "compare/findings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compare/measured.hpp"
+#include "models/compile.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+const Model& mcpherson() {
+    static const Model model = compile(support::scene("mcpherson"));
+    return model;
+}
+const Comparison& compared() {
+    static const Comparison comparison = compare(mcpherson());
+    return comparison;
+}
+std::size_t channel(const std::string& name) {
+    return static_cast<std::size_t>(find_channel(compared().channels, name));
+}
+
+// ---- Wheel rates
+
+TEST(RateErrors, AreSaidPerBranchWithTheirSign) {
+    // The published recursion is too soft in jounce, too stiff in rebound.
+    const auto errors = rate_errors(mcpherson(), compared());
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_EQ(errors[0].branch, "jounce");
+    EXPECT_EQ(errors[0].to, 3000);
+    EXPECT_LT(errors[0].off, -0.01);
+    EXPECT_EQ(errors[1].branch, "rebound");
+    EXPECT_EQ(errors[1].to, -3000);
+    EXPECT_GT(errors[1].off, 0.01);
+    for (std::size_t b = 0; b < 2; ++b) {
+        const auto& runs = compared().branches[b].runs;
+        const double fast = runs[0].curve.values.back()[channel("travel")],
+                     truth = runs[1].curve.values.back()[channel("travel")];
+        EXPECT_NEAR(errors[b].travel, fast - truth, 1e-12);
+        EXPECT_NEAR(errors[b].off, truth / fast - 1, 1e-9);  // it is drawn at rest
+    }
+}
+
+TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
+    const auto with = [](auto&& change) {
+        Scene scene = support::scene("mcpherson");
+        scene.branches.resize(1);
+        scene.branches[0].steps = 5;
+        change(scene.branches[0], scene);
+        const Model model = compile(scene);
+        return rate_errors(model, compare(model)).size();
+    };
+    EXPECT_EQ(with([](Branch&, Scene&) {}), 1u);
+    const auto force = [](Branch& branch) -> DeadForce& {
+        return std::get<DeadForce>(std::get<Load>(branch.drivers[0].what).kind);
+    };
+    EXPECT_EQ(with([&](Branch& b, Scene&) { force(b).f = {1, 0, 1}; }), 0u);
+    EXPECT_EQ(with([&](Branch& b, Scene&) { force(b).f = {0, 0.1, 0}; }), 0u);
+    EXPECT_EQ(with([&](Branch& b, Scene& s) { force(b).at.body = s.wheels[0].body == 0 ? 1 : 0; }), 0u);
+    EXPECT_EQ(with([&](Branch& b, Scene&) {
+                  b.drivers.push_back(b.drivers[0]), force(b).f = {0, 1e-3, 0};
+              }),
+              0u);
+    // What is held beside it does not move, so it is no part of the rate.
+    EXPECT_EQ(with([&](Branch& b, Scene&) {
+                  b.drivers.push_back(b.drivers[0]);
+                  b.drivers[1].rate = 0;
+                  b.drivers[1].start = 10;
+              }),
+              1u);
+}
+
+// ---- The worst, and its parts
+
+TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
+    for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
+        for (const Unit unit : {Unit::mm, Unit::deg}) {
+            const auto worst = worst_deviation(compared(), kind, unit);
+            ASSERT_TRUE(worst);
+            for (const auto& branch : compared().branches)
+                for (std::size_t c = 0; c < compared().channels.size(); ++c)
+                    if (compared().channels[c].main && compared().channels[c].unit == unit) {
+                        EXPECT_LE(reading_of(branch.deviation, kind).channels[c].max, worst->max);
+                    }
+        }
+    Comparison broken = compared();
+    broken.branches[0].deviation.equal_parameter.channels[0].max = std::nan("");
+    EXPECT_TRUE(std::isnan(worst_deviation(broken, ReadingKind::equal_parameter, Unit::mm)->max));
+    EXPECT_LE(worst_disagreement(compared(), Unit::mm)->max, 1e-6);
+    EXPECT_FALSE(worst_deviation({}, ReadingKind::equal_parameter, Unit::mm));
+}
+
+TEST(Findings, TheGapIsTheLimitOfTheDeviation) {
+    StudyOptions options;
+    options.steps = {50, 100, 200, 400, 800};
+    const Study s = study(mcpherson(), options);
+    const auto part = gap_part(compared(), s, "published");
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->channel, "wheel_centre_z");
+    EXPECT_NEAR(part->gap / part->deviation, 1, 0.1);
+    EXPECT_EQ(part->role, GapRole::nearly_all);
+    EXPECT_FALSE(gap_part(compared(), s, "tangent"));  // not what was compared
+    EXPECT_FALSE(gap_part(compared(), {}, "published"));
+}
+
+// ---- Measured points
+
+// Points of the equilibrium leg, off by `off`, at a few places of one branch.
+Measured taken(std::size_t branch, double off, bool by_travel, bool named) {
+    Measured measured;
+    const Curve& truth = compared().branches[branch].runs[1].curve;
+    measured.columns.push_back({channel("toe"), false, {}});
+    for (const std::size_t k : {30u, 120u, 299u}) {
+        (by_travel ? measured.at : measured.a)
+            .push_back(by_travel ? truth.values[k][channel("travel")] : truth.a[k]);
+        measured.columns[0].values.push_back(truth.values[k][channel("toe")] - off);
+        if (named) measured.branch.push_back(compared().branches[branch].branch);
+    }
+    if (by_travel) measured.abscissa = channel("travel");
+    return measured;
+}
+
+TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
+    for (const std::size_t branch : {0u, 1u})
+        for (const bool by_travel : {false, true})
+            for (const bool named : {false, true}) {
+                const auto found =
+                    compare_measured(mcpherson(), compared(), taken(branch, 0.25, by_travel, named));
+                ASSERT_EQ(found.readings.size(), 1u);
+                EXPECT_EQ(found.readings[0].by_parameter, !by_travel);
+                const MeasuredRow& row = found.readings[0].rows[0];
+                EXPECT_EQ(row.compared, 3);
+                EXPECT_NEAR(row.off[1].signed_max, 0.25, 1e-6);
+                EXPECT_NEAR(row.off[1].rms, 0.25, 1e-6);
+                EXPECT_EQ(found.branch, std::vector<std::string>(3, compared().branches[branch].branch));
+            }
+}
+
+TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
+    Measured measured = taken(0, 0, true, true);
+    for (auto& name : measured.branch) name = "rebound";  // which does not reach them
+    const auto found = compare_measured(mcpherson(), compared(), measured);
+    EXPECT_EQ(found.compared, 0);
+    EXPECT_TRUE(std::isnan(found.readings[0].rows[0].off[1].rms));
+    measured.branch[0] = "bump";
+    EXPECT_THROW((void)compare_measured(mcpherson(), compared(), measured), std::invalid_argument);
+}
+
+TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
+    Scene scene = support::scene("mcpherson");
+    scene.branches[1].to = 1000;
+    for (auto& branch : scene.branches) branch.steps = 5;
+    const Model model = compile(scene);
+    const auto both = compare(model);
+    EXPECT_THROW((void)compare_measured(model, both, taken(0, 0, true, false)), std::invalid_argument);
+    EXPECT_EQ(compare_measured(model, both, taken(0, 0, true, true)).branch[0], "jounce");
+}
+
+TEST(Measured, AChangeCountsFromTheDesignPosition) {
+    // Also where the scene settles before it walks: 12 mm of travel there are not the zero of a measurement.
+    Scene scene = support::scene("mcpherson");
+    scene.branches.resize(1);
+    scene.branches[0].steps = 30;
+    scene.branches[0].drivers[0].start = 300;
+    const Model model = compile(scene);
+    const auto comparison = compare(model);
+    const auto c = static_cast<std::size_t>(find_channel(comparison.channels, "wheel_centre_y"));
+    const auto& truth = comparison.branches[0].runs[1].curve;
+    const double drawn = evaluate(model, comparison.channels, design_state(model))[c];
+    Measured measured;
+    measured.a = {truth.a[10]};
+    measured.columns.push_back({c, true, {truth.values[10][c] - drawn}});
+    const auto found = compare_measured(model, comparison, measured);
+    EXPECT_EQ(found.compared, 1);
+    EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, 0, 1e-9);
+    EXPECT_GT(truth.values[0][static_cast<std::size_t>(find_channel(comparison.channels, "travel"))], 1);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
