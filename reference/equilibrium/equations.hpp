@@ -66,11 +66,12 @@ Interaction<T> interaction(const AxialSpring& spring, const T& free_length, cons
 //
 // (A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) A_iᵀ A_j, whence the left Jacobian.) The body feels -∂U: on j the
 // force -F at p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the
-// moment A_i m. Where neither law nor preload care how the markers are turned against each other (`rotational`
-// is false) they may turn any number of times, and the logarithm, which ends at half a turn, is not asked.
+// moment A_i m. Where neither law nor preload care how the markers are turned against each other
+// (`rotational` is false) they may turn any number of times, and the logarithm, which ends at half a turn, is
+// not asked.
 template <class T>
-Interaction<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational,
-                           const Frame<T>& i, const Frame<T>& j) {
+Interaction<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational, const Frame<T>& i,
+                           const Frame<T>& j) {
     const Vec3<T> p_i = position(i, bushing.i.s_local), p_j = position(j, bushing.j.s_local);
     const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local),
                                axes_j = product(j.p, bushing.j.A_local);
@@ -128,7 +129,8 @@ Holding<T> holding(const PointInPlane& c, const T& value, const Frame<T>& i, con
 }
 
 template <class T>
-Holding<T> holding(const PerpendicularDirections& c, const T&, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const PerpendicularDirections& c, const T&, const Frame<T>& i, const Frame<T>& j,
+                   const T* R) {
     const Vec3<T> u_i = direction(i, c.i.u_local), u_j = direction(j, c.j.u_local), about = cross(u_i, u_j);
     Holding<T> h;
     h.Phi[0] = dot(u_i, u_j);
@@ -139,7 +141,8 @@ Holding<T> holding(const PerpendicularDirections& c, const T&, const Frame<T>& i
 
 // A bar that pushes its ends apart with R.
 template <class T>
-Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j, const T* R) {
+Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j,
+                   const T* R) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, c.i.s_local), bar = p_i - position(j, c.j.s_local);
     const T length = sqrt(dot(bar, bar)), push = R[0] / length;
@@ -150,8 +153,8 @@ Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, 
     return h;
 }
 
-// u_i across the direction v_j = cos α y_j - sin α x_j, which turns with α. Then u_i = cos α x_j + sin α y_j, and
-// u_i × v_j is the axis: R is the moment about x_j × y_j on body i.
+// u_i across the direction v_j = cos α y_j - sin α x_j, which turns with α. Then u_i = cos α x_j + sin α y_j,
+// and u_i × v_j is the axis: R is the moment about x_j × y_j on body i.
 template <class T>
 Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j,
                    const T* R) {
@@ -172,12 +175,12 @@ Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i,
 
 // Whether the rows are cosines of directions [-] and their reactions moments, or lengths and forces.
 inline bool is_direction(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
-                                 [](const PointInPlane&) { return false; },
-                                 [](const PerpendicularDirections&) { return true; },
-                                 [](const DistanceBetween&) { return false; },
-                                 [](const DirectionAtAngle&) { return true; }},
-                      kind);
+    return std::visit(
+        overloaded{[](const CoincidentPoints&) { return false; }, [](const PointInPlane&) { return false; },
+                   [](const PerpendicularDirections&) { return true; },
+                   [](const DistanceBetween&) { return false; },
+                   [](const DirectionAtAngle&) { return true; }},
+        kind);
 }
 
 // ---- Loads

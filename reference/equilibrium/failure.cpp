@@ -40,15 +40,16 @@ std::string joints_in(const System& system, const VectorXd& by_row) {
     return names;
 }
 
-// What the constraints alone leave open near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ. Where they
-// cannot be met it ends at Φ_qᵀ Φ = 0, so that Φ names those that stand against each other.
+// What the constraints alone leave open near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ. Where
+// they cannot be met it ends at Φ_qᵀ Φ = 0, so that Φ names those that stand against each other.
 VectorXd gap(Walk& walk, double a, VectorXd x) {
     constexpr int iterations = 30;  // it is quadratic where they can be met, and need not be exact where not
     const System& system = walk.system;
     const int m = system.constraint_rows;
     const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        const MatrixXd Phi_q = derivatives(system, {a}, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
+        const MatrixXd Phi_q =
+            derivatives(system, {a}, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
         VectorXd dx = VectorXd::Zero(system.equations());
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
         decomposition.setThreshold(1e-10);
@@ -87,15 +88,18 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         return {Outcome::singular,
                 "the system is singular and the branch may divide or lose its stability " + where};
     if (trial.verdict == Verdict::uncertain)
-        return {Outcome::singular, "the system is too nearly singular to say that the branch goes on " + where};
-    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen some steps further.
+        return {Outcome::singular,
+                "the system is too nearly singular to say that the branch goes on " + where};
+    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen some steps
+    // further.
     constexpr double further = 12;
     const double target = settling ? 0 : walk.here.t + further * (t - walk.here.t);
     const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
     if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
         return {Outcome::inconsistent_constraints,
-                settling ? fmt::format("no pose near the design pose satisfies all joints at {}: {} cannot be closed",
-                                       at(0), joints_in(system, Phi))
+                settling ? fmt::format(
+                               "no pose near the design pose satisfies all joints at {}: {} cannot be closed",
+                               at(0), joints_in(system, Phi))
                          : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
                                        at(walk.here.t), joints_in(system, Phi))};
     if (const std::string bushing = bushing_at_half_turn(system, walk.here.x); !bushing.empty())

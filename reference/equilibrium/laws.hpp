@@ -1,5 +1,5 @@
-// The laws of mechanism.hpp as forces, ∂u/∂x and ∂u/∂e, for double and for Ceres' Jets: each law once, whatever the
-// geometry that deforms.
+// The laws of mechanism.hpp as forces, ∂u/∂x and ∂u/∂e, for double and for Ceres' Jets: each law once,
+// whatever the geometry that deforms.
 #pragma once
 
 #include "models/mechanism.hpp"

@@ -10,7 +10,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the equilibrated matrix: singular values below this, over the largest, are null. Healthy models stay above 1e-6.
+// Of the equilibrated matrix: singular values below this, over the largest, are null. Healthy models stay
+// above 1e-6.
 constexpr double null_threshold = 1e-11;
 
 // Sweeps of the equilibration; each halves the logarithm of what the sizes are apart.
@@ -72,7 +73,8 @@ bool track(Linearisation& at) {
     ones.bottomRows(k).setIdentity();
     const MatrixXd right = at.bordered.solve(ones), left = at.bordered.transpose().solve(ones);
     const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
-    if (!right.allFinite() || !left.allFinite() || !(stiffness <= idle_stiffness * at.J.cwiseAbs().maxCoeff()))
+    if (!right.allFinite() || !left.allFinite() ||
+        !(stiffness <= idle_stiffness * at.J.cwiseAbs().maxCoeff()))
         return false;
     at.modes = {orthonormal(right.topRows(n)), orthonormal(left.topRows(n))};
     return true;

@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A part of the system depends on two bodies, at most three reactions and the parameter: 7 + 7 + 3 + 1 derivatives, scattered
-// afterwards.
+// A part of the system depends on two bodies, at most three reactions and the parameter: 7 + 7 + 3 + 1
+// derivatives, scattered afterwards.
 constexpr int first_reaction = 14, the_parameter = 17;
 using Jet = ceres::Jet<double, 18>;
 
@@ -43,7 +43,7 @@ struct Seeds {
 struct Scatter {
     const System& system;
     VectorXd E;
-    RowMajor dE;   // ∂E/∂x [n × (7 nb + m)]
+    RowMajor dE;      // ∂E/∂x [n × (7 nb + m)]
     VectorXd E_rate;  // dE/dt [n]
 
     void add(const Part& part, int row, const Jet& term) {
@@ -133,8 +133,8 @@ ceres::Solver::Options solver_options(const Options& options) {
     o.initial_trust_region_radius = o.max_trust_region_radius = hardly_any_damping;
     o.min_lm_diagonal = 1;
     o.jacobi_scaling = false;
-    // Tolerances are ours (StopAtFloor), except for a standstill: Newton's method makes the cost of a step much
-    // smaller, or has come as far as it will.
+    // Tolerances are ours (StopAtFloor), except for a standstill: Newton's method makes the cost of a step
+    // much smaller, or has come as far as it will.
     o.function_tolerance = 1e-4;
     o.gradient_tolerance = 0;
     o.parameter_tolerance = 0;

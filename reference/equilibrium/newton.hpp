@@ -21,6 +21,7 @@ struct Derivatives {
 };
 
 // By automatic differentiation.
-Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x, Counts& counts);
+Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x,
+                        Counts& counts);
 
 }  // namespace elastocheck::reference::equilibrium

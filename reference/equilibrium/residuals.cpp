@@ -54,7 +54,8 @@ MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
         for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
             const auto on_i =
-                holding(judge.system, c, judge.state.load, 0., judge.frame(i), judge.frame(j), unit.data()).reaction;
+                holding(judge.system, c, judge.state.load, 0., judge.frame(i), judge.frame(j), unit.data())
+                    .reaction;
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
                 (on_i.moment + cross(Vector3d(on_i.at - at), on_i.force)) / judge.system.length;

@@ -1,7 +1,7 @@
 // Reference leg 1: the full nonlinear constraint and equilibrium equations, solved by Ceres.
 //
-// Everything is SI (m, N, N·m, rad). Nothing is kept between calls and nothing is shared: any number of threads may
-// solve and judge one model at the same time.
+// Everything is SI (m, N, N·m, rad). Nothing is kept between calls and nothing is shared: any number of
+// threads may solve and judge one model at the same time.
 #pragma once
 
 #include <span>
@@ -18,22 +18,25 @@ struct Options {
     int halvings = 16;          // of the whole branch: the smallest step, before the branch is given up
 };
 
-// The equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the order they are to be
-// visited: E(x; a) = 0, each warm-started from the one before. Before the first, all that stands at a = 0 is settled:
-// static loads and preloads, what the drivers hold, constraints that the design pose misses.
+// The equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the order they
+// are to be visited: E(x; a) = 0, each warm-started from the one before. Before the first, all that stands at
+// a = 0 is settled: static loads and preloads, what the drivers hold, constraints that the design pose
+// misses.
 //
-// The path has one Equilibrium a point, up to the first that is not reached. It ends, whatever the points, where the
-// branch does: `branch_lost` where it turns back or steepens, `singular` where it divides or loses its stability,
-// `inconsistent_constraints` where the joints cannot be closed, by name, `loaded_idle_mode` where a load meets no
-// resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome has its reason in `detail`.
+// The path has one Equilibrium a point, up to the first that is not reached. It ends, whatever the points,
+// where the branch does: `branch_lost` where it turns back or steepens, `singular` where it divides or loses
+// its stability, `inconsistent_constraints` where the joints cannot be closed, by name, `loaded_idle_mode`
+// where a load meets no resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome
+// has its reason in `detail`.
 //
-// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or element does
-// not have.
+// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or
+// element does not have.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options = {});
 
 // How well a state, from any leg, satisfies this leg's equations at a = state.load; balances are formed from
-// Equilibrium::reactions. NaN where the state has not one pose a body and one reaction a joint. Throws as `solve` does.
+// Equilibrium::reactions. NaN where the state has not one pose a body and one reaction a joint. Throws as
+// `solve` does.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reference::equilibrium

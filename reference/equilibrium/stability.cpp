@@ -20,13 +20,23 @@ constexpr double eigenvalue_round_off = 1e-13;
 // How far below its least node the parabola may go before the step is halved.
 constexpr double deepest_dip = 0.5;
 
-MatrixXd null_space(const MatrixXd& Phi_q) {
-    if (Phi_q.rows() == 0) return MatrixXd::Identity(Phi_q.cols(), Phi_q.cols());
+MatrixXd null_space(const MatrixXd& A) {
+    if (A.rows() == 0) return MatrixXd::Identity(A.cols(), A.cols());
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
     qr.setThreshold(rank_threshold);
-    qr.compute(Phi_q.transpose());
+    qr.compute(A.transpose());
     const MatrixXd Q = qr.householderQ();
     return Q.rightCols(Q.cols() - qr.rank());
+}
+
+int sign_of_determinant(const MatrixXd& A) {
+    const Eigen::PartialPivLU<MatrixXd> lu(A);
+    int sign = static_cast<int>(lu.permutationP().determinant());
+    for (Index k = 0; k < A.rows(); ++k) {
+        const double pivot = lu.matrixLU()(k, k);
+        sign *= pivot > 0 ? 1 : pivot < 0 ? -1 : 0;
+    }
+    return sign;
 }
 
 }  // namespace
@@ -53,8 +63,24 @@ Stiffness stiffness(const System& system, const MatrixXd& J, const NullSpaces& i
     return {least, eigenvalue_round_off * size};
 }
 
-// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),  has its least value
-// λ₀ - b² / 4c where 0 < -b / 2c < 1.
+bool constraints_keep_their_side(const System& system, const MatrixXd& J_from, const MatrixXd& J_to) {
+    const Index n = 6 * system.bodies, m = system.constraint_rows;
+    if (m == 0) return true;
+    const MatrixXd Phi_q = J_from.bottomLeftCorner(m, n);
+    const MatrixXd Z = null_space(Phi_q), U = null_space(Phi_q.transpose());
+    if (m + Z.cols() != n + U.cols()) return false;  // at the singular point itself, by round-off
+    const auto bordered = [&](const MatrixXd& J) {
+        MatrixXd B = MatrixXd::Zero(m + Z.cols(), n + U.cols());
+        B.topLeftCorner(m, n) = J.bottomLeftCorner(m, n);
+        B.topRightCorner(m, U.cols()) = U;
+        B.bottomLeftCorner(Z.cols(), n) = Z.transpose();
+        return B;
+    };
+    return sign_of_determinant(bordered(J_from)) == sign_of_determinant(bordered(J_to));
+}
+
+// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),  has its
+// least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to) {
     const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
     const double round_off = std::max({from.round_off, middle.round_off, to.round_off});

@@ -1,21 +1,23 @@
 // Whether an equilibrium is stable, and a step from one to the next stays so.
 //
-// What the constraints leave free is Z, an orthonormal basis of the null space of Φ_q. There the equilibrium is as
-// stiff as
+// What the constraints leave free is Z, an orthonormal basis of the null space of Φ_q. There the equilibrium
+// is as stiff as
 //
 //   M = -Zᵀ ∂(balance)/∂q Z      [d × d]
 //
-// the Hessian of the energy with its constraints' curvature, over F L. A path of equilibria on which no eigenvalue of M
-// reaches zero neither divides nor turns back nor loses its stability. A sign at both ends of a step says nothing of
-// what lies between, so the least eigenvalue is followed over each step by a parabola through its ends and its middle.
+// the Hessian of the energy with its constraints' curvature, over F L. A path of equilibria on which no
+// eigenvalue of M reaches zero neither divides nor turns back nor loses its stability. A sign at both ends of
+// a step says nothing of what lies between, so the least eigenvalue is followed over each step by a parabola
+// through its ends and its middle.
 #pragma once
 
 #include "reference/equilibrium/linearisation.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
-// Of M without its idle modes: the least eigenvalue (the modulus where it is complex, which takes a dead moment: a zero
-// eigenvalue is what matters), and the size below which it is round-off. 1 where nothing is free. NaN if J is.
+// Of M without its idle modes: the least eigenvalue (the modulus where it is complex, which takes a dead
+// moment: a zero eigenvalue is what matters), and the size below which it is round-off. 1 where nothing is
+// free. NaN if J is.
 struct Stiffness {
     double least = 1;
     double round_off = 0;
@@ -28,5 +30,15 @@ enum class Stability {
     uncertain  // the parabola dips: a shorter step will tell
 };
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to);
+
+// Whether the constraints, which may divide too, have done so on a step from J to J. The determinant of J has
+// that of Φ_q in it twice and does not notice; that of
+//
+//   ⎡ Φ_q  U ⎤
+//   ⎣ Zᵀ   0 ⎦     Z, U: null spaces of Φ_q and Φ_qᵀ where the step begins
+//
+// changes its sign where Φ_q loses rank.
+bool constraints_keep_their_side(const System& system, const Eigen::MatrixXd& J_from,
+                                 const Eigen::MatrixXd& J_to);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -122,9 +122,12 @@ void set_turns(System& system) {
         system.turns.push_back(0);
         const auto* angle = std::get_if<DirectionAtAngle>(&system.model->constraints[c].kind);
         if (angle == nullptr) continue;
-        const auto drawn = [&](const Direction& d) { return direction(frame_of(system, x, d.body), d.u_local); };
+        const auto drawn = [&](const Direction& d) {
+            return direction(frame_of(system, x, d.body), d.u_local);
+        };
         const Vector3d u_i = drawn(angle->i);
-        system.turns[c] = std::atan2(u_i.dot(drawn(angle->y_j)), u_i.dot(drawn(angle->j))) - system.values[c].at(0.0);
+        system.turns[c] =
+            std::atan2(u_i.dot(drawn(angle->y_j)), u_i.dot(drawn(angle->j))) - system.values[c].at(0.0);
     }
 }
 
@@ -138,15 +141,17 @@ std::vector<Vector3d> hardpoints(const System& system) {
         const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
         points.push_back(pose.r + turned(pose.p, s_local));
     };
-    const auto add_end = overloaded{[&](const Point& p) { add(p.body, p.s_local); },
-                                    [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
+    const auto add_end =
+        overloaded{[&](const Point& p) { add(p.body, p.s_local); },
+                   [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
     const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
     for (const auto& body : system.model->bodies) points.push_back(body.design.r);
     for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
     for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
     for (const auto& load : system.loads)
-        std::visit(overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); }, [](const DeadMoment&) {}},
-                   load.kind);
+        std::visit(
+            overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); }, [](const DeadMoment&) {}},
+            load.kind);
     return points;
 }
 
@@ -198,7 +203,8 @@ double force_scale(const System& system, double a) {
 
 System make_system(const Model& model, const Branch& branch, std::span<const double> points) {
     if (!stands_on(model, branch))
-        throw std::invalid_argument("branch '" + branch.name + "' wants one way from 0, and the model as it "
+        throw std::invalid_argument("branch '" + branch.name +
+                                    "' wants one way from 0, and the model as it "
                                     "stands there (on_branch)");
     System system;
     system.model = &model;
@@ -326,8 +332,8 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
         const double unit = is_direction(constraint.kind) ? system.force * system.length : system.force;
         Vector3d R = Vector3d::Zero();
         R.head(rows(constraint.kind)) = unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
-        const auto h =
-            holding(system, c, loading.a, loading.held, frame_of(system, x, i), frame_of(system, x, j), R.data());
+        const auto h = holding(system, c, loading.a, loading.held, frame_of(system, x, i),
+                               frame_of(system, x, j), R.data());
         Phi2 += h.Phi.head(rows(constraint.kind)).squaredNorm();
 
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];

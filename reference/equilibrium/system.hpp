@@ -7,12 +7,13 @@
 //   per body   Σ forces / F,  Σ moments about its origin / (F L)
 //   per row    Φ / L, or Φ where it is a cosine
 //
-// L is the radius of the model about `centre`, F the largest of what is applied, of what is stored at the design
-// pose and of what the stiffest element makes of a hundredth of L: then the round-off of stiff elements stays well
-// below the tolerance, whatever moves the branch, whatever the units and wherever the ground frame sits.
+// L is the radius of the model about `centre`, F the largest of what is applied, of what is stored at the
+// design pose and of what the stiffest element makes of a hundredth of L: then the round-off of stiff
+// elements stays well below the tolerance, whatever moves the branch, whatever the units and wherever the
+// ground frame sits.
 //
-// All that a driver may move, static or not, stands as start + rate·a. So E is a function of (x, a) like any other,
-// and ∂E/∂a comes out of the same automatic differentiation as ∂E/∂x.
+// All that a driver may move, static or not, stands as start + rate·a. So E is a function of (x, a) like any
+// other, and ∂E/∂a comes out of the same automatic differentiation as ∂E/∂x.
 #pragma once
 
 #include <array>
@@ -47,10 +48,11 @@ struct LoadPath {
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
-    std::vector<Affine> values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
-    std::vector<double> turns;   // per Model::constraints: from such an angle to the drawn one [rad], or 0
-    std::vector<ElementPath> elements;  // per Model::elastics
-    std::vector<LoadPath> loads;        // static and driven
+    std::vector<Affine>
+        values;                 // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    std::vector<double> turns;  // per Model::constraints: from such an angle to the drawn one [rad], or 0
+    std::vector<ElementPath> elements;                 // per Model::elastics
+    std::vector<LoadPath> loads;                       // static and driven
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
     double length = 1;                                 // L [m]
     double force = 1;                                  // F [N]
@@ -62,18 +64,19 @@ struct System {
     int equations() const { return 6 * bodies + constraint_rows; }
 };
 
-// What is asked of the system: E(x; a, held) = held · at_design. With held = 1 the design pose is an equilibrium because
-// somebody holds it; letting go, to held = 0, settles all that stands at a = 0: static loads and preloads, what the
-// drivers hold, constraints that the design pose misses. An angle is let go of as an angle, value + held · turn: its row
-// is a sine, which would let go to the nearer of two opposite directions.
+// What is asked of the system: E(x; a, held) = held · at_design. With held = 1 the design pose is an
+// equilibrium because somebody holds it; letting go, to held = 0, settles all that stands at a = 0: static
+// loads and preloads, what the drivers hold, constraints that the design pose misses. An angle is let go of
+// as an angle, value + held · turn: its row is a sine, which would let go to the nearer of two opposite
+// directions.
 struct Loading {
     double a = 0;
     double held = 0;                   // [-]
     double a_rate = 0, held_rate = 0;  // along the way that is walked
 };
 
-// `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a driver
-// moves what its joint or element does not have.
+// `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a
+// driver moves what its joint or element does not have.
 System make_system(const Model& model, const Branch& branch, std::span<const double> points);
 
 Eigen::VectorXd design_unknowns(const System& system);
@@ -104,16 +107,16 @@ template <class T>
 Interaction<T> interaction(const System& system, std::size_t e, const T& a, const Frame<T>& i,
                            const Frame<T>& j) {
     const ElementPath& path = system.elements[e];
-    return std::visit(
-        overloaded{[&](const AxialSpring& spring) {
-                       return interaction(spring, path.free_length.at(a), i, j);
-                   },
-                   [&](const Bushing& bushing) {
-                       Vec6<T> preload;
-                       for (int k = 0; k < 6; ++k) preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
-                       return interaction(bushing, preload, path.rotational, i, j);
-                   }},
-        system.model->elastics[e].kind);
+    return std::visit(overloaded{[&](const AxialSpring& spring) {
+                                     return interaction(spring, path.free_length.at(a), i, j);
+                                 },
+                                 [&](const Bushing& bushing) {
+                                     Vec6<T> preload;
+                                     for (int k = 0; k < 6; ++k)
+                                         preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
+                                     return interaction(bushing, preload, path.rotational, i, j);
+                                 }},
+                      system.model->elastics[e].kind);
 }
 
 // Constraint c with the reactions R of its rows [N, N·m].

@@ -77,11 +77,13 @@ Stability stability_between(Walk& walk, const Station& from, const Station& to) 
     return over_step(from.stiffness, stiffness(walk.system, by.J, from.linearised.modes), to.stiffness);
 }
 
-// Whether a continuation is on this side of every singular point. On the way from the design pose somebody holds the
-// bodies, and only the settled state is judged.
+// Whether a continuation is on this side of every singular point. On the way from the design pose somebody
+// holds the bodies, and only the settled state is judged.
 Verdict side_of(Walk& walk, const Station& next) {
     if (walk.stage == Stage::settling) return Verdict::accepted;
     if (!next.linearised.modes_are_new && next.linearised.orientation != walk.here.linearised.orientation)
+        return Verdict::turned_over;
+    if (!constraints_keep_their_side(walk.system, walk.here.linearised.J, next.linearised.J))
         return Verdict::turned_over;
     switch (stability_between(walk, walk.here, next)) {
         case Stability::kept: return Verdict::accepted;
@@ -115,8 +117,8 @@ Trial try_step(Walk& walk, double t) {
     return trial;
 }
 
-// No step of h is believed. A singular point that a step happens to hit says nothing; past it there is the branch, on
-// the other side, or there is not.
+// No step of h is believed. A singular point that a step happens to hit says nothing; past it there is the
+// branch, on the other side, or there is not.
 Failure the_end(Walk& walk, double h, double t, Trial refused) {
     for (const double steps : past_the_end) {
         if (walk.stage == Stage::settling || refused.verdict == Verdict::turned_over) break;
@@ -150,8 +152,8 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
 
 std::optional<Failure> advance(Walk& walk, double target) {
     double h = target - walk.here.t;
-    const double smallest = std::min(std::ldexp(walk.length, -walk.options.halvings),
-                                     std::ldexp(std::abs(h), -least_halvings));
+    const double smallest =
+        std::min(std::ldexp(walk.length, -walk.options.halvings), std::ldexp(std::abs(h), -least_halvings));
     std::optional<Trial> refused;  // the most telling since the last step
     while (walk.here.t != target) {
         const double rest = target - walk.here.t;
@@ -160,9 +162,9 @@ std::optional<Failure> advance(Walk& walk, double target) {
         if (unanswered > std::max(walk.options.tolerance, unanswered_round_off * asked))
             return unanswerable(walk.system, walk.here.linearised.modes.left * walk.here.mu);
         if (!walk.here.tangent.allFinite())
-            return Failure{Outcome::singular,
-                           fmt::format("the system is singular at {}",
-                                       parameter(*walk.system.branch, loading_at(walk.stage, walk.here.t).a))};
+            return Failure{Outcome::singular, fmt::format("the system is singular at {}",
+                                                          parameter(*walk.system.branch,
+                                                                    loading_at(walk.stage, walk.here.t).a))};
 
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
         const double t = h == rest ? target : walk.here.t + h;
@@ -173,8 +175,8 @@ std::optional<Failure> advance(Walk& walk, double target) {
             refused.reset();
             h *= 2;
         } else {
-            const bool says_more = !refused || (refused->verdict != Verdict::turned_over &&
-                                                trial.verdict != Verdict::uncertain);
+            const bool says_more =
+                !refused || (refused->verdict != Verdict::turned_over && trial.verdict != Verdict::uncertain);
             if (says_more) refused = std::move(trial);
             h /= 2;
             if (std::abs(h) < smallest * (1 - 1e-9)) return the_end(walk, h, t, std::move(*refused));

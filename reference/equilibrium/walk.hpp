@@ -1,10 +1,11 @@
 // Walking along a branch: from the design pose to the settled state at a = 0, then from point to point.
 //
-// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium there is. So
-// a step is believed only if it is a short, nearly straight piece of one curve, on which nothing becomes singular: the
-// chord between two equilibria and the tangents at both its ends agree within a quarter, the Jacobian is oriented alike
-// at both, and the stiffness stays positive over all of it (stability.hpp), whatever points lie on it. Otherwise the
-// step is halved, and if that does not help, the branch has ended here.
+// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium
+// there is. So a step is believed only if it is a short, nearly straight piece of one curve, on which nothing
+// becomes singular: the chord between two equilibria and the tangents at both its ends agree within a
+// quarter, the Jacobian is oriented alike at both, and the stiffness stays positive over all of it
+// (stability.hpp), whatever points lie on it. Otherwise the step is halved, and if that does not help, the
+// branch has ended here.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,8 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), the branch (t = a).
+// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), the branch (t
+// = a).
 enum class Stage { settling, branch };
 
 inline Loading loading_at(Stage stage, double t) {

@@ -30,12 +30,13 @@ inline Scene slider_crank(double r, double l, double e, double to) {
 // The point at the distance b from p and c from q, in the x-y plane, to the left of the way from p to q.
 inline Vector3d circles_meet(const Vector3d& p, double b, const Vector3d& q, double c) {
     const Vector3d way = q - p;
-    const double d = way.norm(), along = (d * d + b * b - c * c) / (2 * d), across = std::sqrt(b * b - along * along);
+    const double d = way.norm(), along = (d * d + b * b - c * c) / (2 * d),
+                 across = std::sqrt(b * b - along * along);
     return p + along * way / d + across * Vector3d(-way[1], way[0], 0) / d;
 }
 
-// In the x-y plane: crank a at the origin, drawn along +x, coupler b, rocker c about (d, 0). 18 coordinates, 18
-// constraints.
+// In the x-y plane: crank a at the origin, drawn along +x, coupler b, rocker c about (d, 0). 18 coordinates,
+// 18 constraints.
 inline Scene four_bar(double a, double b, double c, double d) {
     Scene s;
     s.name = "four-bar";
@@ -70,8 +71,8 @@ inline Scene with_jack(Scene s) {
     return s;
 }
 
-// The McPherson strut whose tie rod ends on a rack, the fourth body, which slides along y and is held by the last joint,
-// 'rack'.
+// The McPherson strut whose tie rod ends on a rack, the fourth body, which slides along y and is held by the
+// last joint, 'rack'.
 inline Scene with_rack(Scene s) {
     auto& tie = std::get<Distance>(s.joints[2].kind);
     const Vector3d inner = tie.j.s_local;
@@ -86,7 +87,9 @@ inline Scene with_rack(Scene s) {
 
 // e = (d, θ) of a bushing between ground and a body, or two bodies, in a state.
 inline Vector6 deformation(const Bushing& b, const Equilibrium& state) {
-    const auto pose = [&](BodyId body) { return body == ground ? Pose{} : state.poses[static_cast<std::size_t>(body)]; };
+    const auto pose = [&](BodyId body) {
+        return body == ground ? Pose{} : state.poses[static_cast<std::size_t>(body)];
+    };
     const Pose i = pose(b.i.body), j = pose(b.j.body);
     const Eigen::AngleAxisd turn(Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
     Vector6 e;
@@ -96,10 +99,13 @@ inline Vector6 deformation(const Bushing& b, const Equilibrium& state) {
 }
 
 inline double stored_energy(const Model& model, const Equilibrium& state) {
-    const auto pose = [&](BodyId body) { return body == ground ? Pose{} : state.poses[static_cast<std::size_t>(body)]; };
+    const auto pose = [&](BodyId body) {
+        return body == ground ? Pose{} : state.poses[static_cast<std::size_t>(body)];
+    };
     double U = 0;
     for (const auto& elastic : model.elastics)
-        U += std::visit([&](const auto& e) { return energy(e, pose(e.i.body), pose(e.j.body)); }, elastic.kind);
+        U += std::visit([&](const auto& e) { return energy(e, pose(e.i.body), pose(e.j.body)); },
+                        elastic.kind);
     return U;
 }
 
@@ -110,7 +116,8 @@ inline std::vector<std::pair<double, double>> gauss_legendre(int n) {
         double x = std::cos(M_PI * (k - 0.25) / (n + 0.5)), slope = 0;
         for (int iteration = 0; iteration < 10; ++iteration) {
             double p_0 = 1, p_1 = x;
-            for (int m = 2; m <= n; ++m) p_0 = std::exchange(p_1, ((2 * m - 1) * x * p_1 - (m - 1) * p_0) / m);
+            for (int m = 2; m <= n; ++m)
+                p_0 = std::exchange(p_1, ((2 * m - 1) * x * p_1 - (m - 1) * p_0) / m);
             slope = n * (x * p_1 - p_0) / (x * x - 1);
             x -= p_1 / slope;
         }

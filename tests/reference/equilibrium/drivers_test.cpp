@@ -1,4 +1,5 @@
-// What moves a branch: lengths, offsets, angles, free lengths and preloads, alone and together, against formulas.
+// What moves a branch: lengths, offsets, angles, free lengths and preloads, alone and together, against
+// formulas.
 #include <fmt/format.h>
 
 #include <thread>
@@ -74,10 +75,12 @@ TEST(EquilibriumDrivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
         ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
         Worst worst;
         for (const auto& state : solved.path.points) {
-            const Vector3d tip = circles_meet(a * Vector3d(std::cos(state.load), std::sin(state.load), 0), b,
-                                              {d, 0, 0}, c);
-            worst.see((position(state, {2, {c, 0, 0}}) - tip).norm() / d, fmt::format("rocker at {}", state.load));
-            worst.see((position(state, {1, {b, 0, 0}}) - tip).norm() / d, fmt::format("coupler at {}", state.load));
+            const Vector3d tip =
+                circles_meet(a * Vector3d(std::cos(state.load), std::sin(state.load), 0), b, {d, 0, 0}, c);
+            worst.see((position(state, {2, {c, 0, 0}}) - tip).norm() / d,
+                      fmt::format("rocker at {}", state.load));
+            worst.see((position(state, {1, {b, 0, 0}}) - tip).norm() / d,
+                      fmt::format("coupler at {}", state.load));
         }
         EXPECT_TRUE(within(worst, 1e-12));
     }
@@ -151,11 +154,13 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
     Scene s = with_jack(scene("mcpherson"));
     const Vector3d design = position_in(s, s.wheels[0]);
     for (const double to : {3000., -3000.}) {
-        s.branches = {branch_of("load", {driven_by({"vertical", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local},
-                                                                          {0, 0, 1}}})},
-                                to, 30),
-                      branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}},
-                                std::copysign(0.15, to), 30, ParameterUnit::metre)};
+        s.branches = {
+            branch_of(
+                "load",
+                {driven_by({"vertical", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 0, 1}}})},
+                to, 30),
+            branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}},
+                      std::copysign(0.15, to), 30, ParameterUnit::metre)};
         const auto loaded = solved_at(s, 0, equally(to, 30));
         ASSERT_EQ(loaded.path.outcome, Outcome::converged) << loaded.path.detail;
         std::vector<double> travels;
@@ -187,7 +192,8 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
 // ---- Work
 
 // ∫ (driver force) da over the branch is the energy it stores.
-void expect_work_is_energy(const Scene& s, double to, const std::function<double(const Solved&, const Equilibrium&)>& force,
+void expect_work_is_energy(const Scene& s, double to,
+                           const std::function<double(const Solved&, const Equilibrium&)>& force,
                            const std::function<void(Scene&, double)>& set) {
     const auto gauss = gauss_legendre(40);
     std::vector<double> points = {0};
@@ -203,7 +209,8 @@ void expect_work_is_energy(const Scene& s, double to, const std::function<double
     const double stored = stored_energy(compile(at_end), solved.path.points.back()) -
                           stored_energy(compile(at_start), solved.path.points.front());
     EXPECT_GT(std::abs(stored), 1e-3) << s.name;
-    EXPECT_LE(std::abs(work - stored), 1e-9 * std::abs(stored)) << s.name << ": " << work << " J, " << stored << " J";
+    EXPECT_LE(std::abs(work - stored), 1e-9 * std::abs(stored))
+        << s.name << ": " << work << " J, " << stored << " J";
 }
 
 TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
@@ -218,14 +225,16 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
         expect_work_is_energy(s, to, jack_force, nothing);
     }
     Scene arch = scene("two_spring_arch");
-    arch.joints.push_back({"jack", InPlane{{0, {0, 0, 0}}, {ground, {0, 0, .08}}, {ground, {0, 0, 1}}}, true});
+    arch.joints.push_back(
+        {"jack", InPlane{{0, {0, 0, 0}}, {ground, {0, 0, .08}}, {ground, {0, 0, 1}}}, true});
     arch.branches = {branch_of("jack", {{Motion{1}, 0, 1}}, -0.2, 1, ParameterUnit::metre)};
     expect_work_is_energy(arch, -0.2, jack_force, nothing);
 
     // ∂U/∂ℓ₀ = -u'(ℓ - ℓ₀)
     Scene coil = scene("mcpherson");
     coil.branches = {branch_of("trim", {{FreeLength{0}, 0, 1}}, 0.03, 1, ParameterUnit::metre)};
-    coil.static_loads = {{"weight", DeadForce{{coil.wheels[0].body, coil.wheels[0].centre_local}, {0, 0, 0}}}};
+    coil.static_loads = {
+        {"weight", DeadForce{{coil.wheels[0].body, coil.wheels[0].centre_local}, {0, 0, 0}}}};
     expect_work_is_energy(
         coil, 0.03,
         [](const Solved& solved, const Equilibrium& state) {
@@ -255,7 +264,8 @@ TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     const double k_1 = 30e3, k_2 = 12e3, W = 500;
     Scene s;
     s.bodies = {{"block", {}}};
-    s.joints = {{"guide", Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, {ground, {0, 0, 1}}}}};
+    s.joints = {
+        {"guide", Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, {ground, {0, 0, 1}}}}};
     s.elastics = {{"lower", AxialSpring{{ground, {0, 0, -0.3}}, {0, {0, 0, 0}}, LinearRate{k_1}, 0.3}},
                   {"upper", AxialSpring{{ground, {0, 0, 0.4}}, {0, {0, 0, 0}}, LinearRate{k_2}, 0.4}}};
     s.static_loads = {{"weight", DeadForce{{0, {0, 0, 0}}, {0, 0, -W}}}};
@@ -266,7 +276,8 @@ TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
     Worst worst;
     for (const auto& state : solved.path.points)
-        worst.see(std::abs(state.poses[0].r[2] - (k_1 * (start + rate * state.load) - W) / (k_1 + k_2)), "block");
+        worst.see(std::abs(state.poses[0].r[2] - (k_1 * (start + rate * state.load) - W) / (k_1 + k_2)),
+                  "block");
     EXPECT_TRUE(within(worst, 1e-14));
 }
 
@@ -288,7 +299,8 @@ TEST(EquilibriumDrivers, APreloadIsAnsweredByItsBushing) {
         for (const auto& state : solved.path.points) {
             const Vector6 e = deformation(bushing, state);
             const Vector6 expected = -stiffness_of(bushing).K.ldlt().solve(start + state.load * rate);
-            worst.see((e - expected).norm() / expected.norm(), fmt::format("trial {}, a = {}", trial, state.load));
+            worst.see((e - expected).norm() / expected.norm(),
+                      fmt::format("trial {}, a = {}", trial, state.load));
         }
     }
     EXPECT_TRUE(within(worst, 1e-11));
@@ -298,7 +310,8 @@ TEST(EquilibriumDrivers, APreloadIsAnsweredByItsBushing) {
 
 TEST(EquilibriumDrivers, AHeldRackIsGround) {
     const Scene held = with_rack(scene("mcpherson"));
-    const auto with = solved_at(held, 0, {1000, 3000}), without = solved_at(scene("mcpherson"), 0, {1000, 3000});
+    const auto with = solved_at(held, 0, {1000, 3000}),
+               without = solved_at(scene("mcpherson"), 0, {1000, 3000});
     ASSERT_EQ(with.path.outcome, Outcome::converged) << with.path.detail;
     Worst worst;
     for (std::size_t n = 0; n < 2; ++n)
@@ -310,7 +323,8 @@ TEST(EquilibriumDrivers, AHeldRackIsGround) {
     EXPECT_TRUE(within(worst, 1e-11));
 }
 
-// The rack goes where it is driven, at every height the wheel is held at; its force is the tie rod's, along the rack.
+// The rack goes where it is driven, at every height the wheel is held at; its force is the tie rod's, along
+// the rack.
 TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
     for (const double height : {-0.05, 0., 0.05})
         for (const double to : {0.03, -0.03}) {
@@ -333,7 +347,8 @@ TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
                 const auto& on_wheel = state.reactions[joint(solved.model, "tie_rod")].force;
                 const auto& drive = state.reactions[joint(solved.model, "rack")].force;
                 force.see((drive - Vector3d(0, on_wheel[1], 0)).norm() / 1e3, "rack force");
-                const Vector3d spin = state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local;
+                const Vector3d spin =
+                    state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local;
                 const double toe = std::atan2(spin[0], spin[1]);
                 least = std::min(least, toe), most = std::max(most, toe);
             }
@@ -349,7 +364,8 @@ TEST(EquilibriumDrivers, TheOrderOfDriversDoesNotMatter) {
     const Vector3d brake(-1500, 0, 0);
     const auto build = [&](bool steer_last) {
         Scene s = with_jack(with_rack(scene("mcpherson")));
-        s.static_loads.push_back({"side", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 400, 0}}});
+        s.static_loads.push_back(
+            {"side", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 400, 0}}});
         const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
         const Load braking{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, brake}};
         const double now = steer_last ? 1 : 0;

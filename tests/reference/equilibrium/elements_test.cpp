@@ -50,7 +50,8 @@ TEST(EquilibriumElements, SpringForceIsTheNegativeGradientOfItsEnergy) {
     std::mt19937 random(1);
     Worst worst;
     for (int trial = 0; trial < 300; ++trial) {
-        AxialSpring spring{{0, random_vector(random, 0.3)}, {1, random_vector(random, 0.3)}, LinearRate{3e4}, 0.4};
+        AxialSpring spring{
+            {0, random_vector(random, 0.3)}, {1, random_vector(random, 0.3)}, LinearRate{3e4}, 0.4};
         const Pose i{random_vector(random, 0.3), random_turn(random)};
         const Pose j{random_vector(random, 0.3) + Vector3d(1.2, 0, 0), random_turn(random)};
         worst.see(deviation_from_gradient(spring, i, j), fmt::format("trial {}", trial));

@@ -70,14 +70,16 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
     ::testing::Test::RecordProperty("worst_deviation", fmt::format("{:.1e}", worst.value));
 }
 
-// Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a preload, a free length.
+// Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a preload, a
+// free length.
 Scene driven_scene() {
     Scene s = with_jack(with_rack(scene("mcpherson")));
     s.name = "driven";
     const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
     Vector6 preload;
     preload << 900, -400, 300, 4, 7, -3;
-    const Driver braking = {Load{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}}, 900, 0};
+    const Driver braking = {
+        Load{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}}, 900, 0};
     s.branches = {
         branch_of("load", {{s.branches[0].drivers[0].what, 0, 1}, {Motion{rack}, 0.015, 0}}, 2000, 8),
         branch_of("travel", {{Motion{jack}, 0, 1}, {Preload{2, preload}, 1, 0}, braking}, -0.08, 8,

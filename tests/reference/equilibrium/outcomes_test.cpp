@@ -251,7 +251,9 @@ TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
     for (const double bad : {nan, infinity, -infinity}) {
         const std::vector<std::pair<const char*, std::function<void(Scene&)>>> places = {
             {"load direction",
-             [&](Scene& s) { std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).f[1] = bad; }},
+             [&](Scene& s) {
+                 std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).f[1] = bad;
+             }},
             {"load moment",
              [&](Scene& s) {
                  s.branches[0].drivers.push_back(driven_by({"m", DeadMoment{1, {0, bad, 0}}}));
@@ -261,12 +263,15 @@ TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
                  s.static_loads.push_back({"f", DeadForce{{0, {0, 0, 0}}, {bad, 0, 0}}});
              }},
             {"load point",
-             [&](Scene& s) { std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).at.s_local[0] = bad; }},
+             [&](Scene& s) {
+                 std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind).at.s_local[0] = bad;
+             }},
             {"position", [&](Scene& s) { s.bodies[1].design.r[2] = bad; }},
             {"orientation", [&](Scene& s) { s.bodies[1].design.p.x() = bad; }},
             {"rate", [&](Scene& s) { rate_of(std::get<AxialSpring>(s.elastics[0].kind)).k = bad; }},
             {"free length", [&](Scene& s) { std::get<AxialSpring>(s.elastics[0].kind).free_length = bad; }},
-            {"stiffness", [&](Scene& s) { stiffness_of(std::get<Bushing>(s.elastics[1].kind)).K(4, 4) = bad; }},
+            {"stiffness",
+             [&](Scene& s) { stiffness_of(std::get<Bushing>(s.elastics[1].kind)).K(4, 4) = bad; }},
             {"preload", [&](Scene& s) { std::get<Bushing>(s.elastics[1].kind).preload[4] = bad; }},
             {"bar", [&](Scene& s) { std::get<Distance>(s.joints[2].kind).length = bad; }},
         };

@@ -26,8 +26,8 @@ TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
         s.joints = {
             {"weld",
              Fixed{{i, at}, {j, at}, {i, {1, 0, 0}}, {i, {0, 1, 0}}, {j, {1, 0, 0}}, {j, {0, 1, 0}}}}};
-        s.branches = {
-            branch_of("both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1, 1)};
+        s.branches = {branch_of(
+            "both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1, 1)};
         s.probes = {{"p", {0, p}}};
         const Model model = compile(s);
         const double a = 250, sign = ground_first ? -1 : 1;  // what the joint does to ground is the opposite

@@ -237,10 +237,9 @@ inline Scene with_length_unit(Scene s, double c) {
             if (length) driver.rate /= c;
             double of_length = 1;  // what the driven quantity becomes
             if (const auto* motion = std::get_if<Motion>(&driver.what))
-                of_length = std::holds_alternative<Angle>(
-                                s.joints[static_cast<std::size_t>(motion->joint)].kind)
-                                ? 1
-                                : c;
+                of_length =
+                    std::holds_alternative<Angle>(s.joints[static_cast<std::size_t>(motion->joint)].kind) ? 1
+                                                                                                          : c;
             if (std::holds_alternative<FreeLength>(driver.what)) of_length = c;
             if (auto* preload = std::get_if<Preload>(&driver.what))
                 preload->direction = T.asDiagonal() * preload->direction;
@@ -312,17 +311,17 @@ inline Scene rich_scene() {
         {"tube", InLine{point(link, {-.2, .7, 0}), point(arm, {-.2, .7, 0}), along(arm, {1, .1, 0})}},
     };
     bushing("spin", link, arm, {-.2, .7, 0}, 0);
-    s.elastics.push_back(
-        {"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}), LinearRate{30e3}, .49}});
-    s.elastics.push_back(
-        {"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}), LinearRate{20e3}, .27}});
+    s.elastics.push_back({"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}),
+                                              LinearRate{30e3}, .49}});
+    s.elastics.push_back({"damper spring", AxialSpring{point(slider, {.25, .5, .15}),
+                                                       point(arm, {.2, .6, -.1}), LinearRate{20e3}, .27}});
     s.static_loads = {{"weight", DeadForce{point(knuckle, {0, .85, .1}), {0, 0, 400}}}};
     s.branches = {branch_of("mixed",
                             {driven_by({"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}),
                              driven_by({"twist", DeadMoment{knuckle, {.02, .05, .03}}})},
                             1500, 30)};
     s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local,
-                    along(plate, {0, 1, 0}).u_local, 1}};
+                      along(plate, {0, 1, 0}).u_local, 1}};
     return s;
 }
 

@@ -27,8 +27,8 @@ void expect_singular_at(const Scene& s, double to, double at) {
     }
 }
 
-// An arch whose apex may leave sideways against a rate of k_y, and is pushed through by a jack, or by a load against a
-// rate of k_z that is stiff enough to leave no limit point. Straight through, at the height z,
+// An arch whose apex may leave sideways against a rate of k_y, and is pushed through by a jack, or by a load
+// against a rate of k_z that is stiff enough to leave no limit point. Straight through, at the height z,
 //
 //   sideways stiffness  k_y + 2 k (1 - ℓ₀ / ℓ)
 //
@@ -58,8 +58,9 @@ struct Arch {
         mount.i.s_local = at.s_local;
         stiffness_of(mount).K.diagonal() << 0, k_y, driven ? 0 : k_z, 0, 0, 0;
         s.elastics.push_back({"mount", mount});
-        s.branches = {driven ? branch_of("push", {{Motion{4}, 0, 1}}, -2 * h, 1, ParameterUnit::metre)
-                             : branch_of("push", {driven_by({"f", DeadForce{apex, {0, 0, 1}}})}, load(-h), 1)};
+        s.branches = {driven
+                          ? branch_of("push", {{Motion{4}, 0, 1}}, -2 * h, 1, ParameterUnit::metre)
+                          : branch_of("push", {driven_by({"f", DeadForce{apex, {0, 0, 1}}})}, load(-h), 1)};
         s.probes = {{"apex", apex}};
         return s;
     }
@@ -99,7 +100,8 @@ TEST(EquilibriumStability, AStraightColumnEndsAtItsBucklingLoad) {
 TEST(EquilibriumStability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.bodies.push_back({"upper", {{0, 0, 0.5}, Quaterniond::Identity()}});
-    s.joints.push_back({"middle", Revolute{{1, {0, 0, 0}}, {0, {0, 0, 0.5}}, {1, {0, 1, 0}}, {0, {0, 1, 0}}}});
+    s.joints.push_back(
+        {"middle", Revolute{{1, {0, 0, 0}}, {0, {0, 0, 0.5}}, {1, {0, 1, 0}}, {0, {0, 1, 0}}}});
     Bushing torsion = std::get<Bushing>(s.elastics[0].kind);
     torsion.i = {1, {0, 0, 0}};
     torsion.j = {0, {0, 0, 0.5}};
@@ -110,7 +112,8 @@ TEST(EquilibriumStability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
     expect_singular_at(s, 8000, 2000 * (3 - std::sqrt(5)) / 2);  // past the second one too, at 5236 N
 }
 
-// Free to lean in two planes with the same stiffness: both eigenvalues pass at once and the determinant keeps its sign.
+// Free to lean in two planes with the same stiffness: both eigenvalues pass at once and the determinant keeps
+// its sign.
 TEST(EquilibriumStability, AColumnThatBucklesInTwoPlanesAtOnceIsNoticed) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.joints = {{"ball", Spherical{{0, {0, 0, 0}}, {ground, {0, 0, 0}}}}};
