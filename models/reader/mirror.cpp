@@ -156,8 +156,9 @@ JointKind twin(const JointKind& joint, const Definitions& defs) {
                               return Planar{point(s.i), point(s.j), along(s.normal_i), along(s.normal_j)};
                           },
                           [&](const Fixed& s) -> JointKind {
+                              // x and y as a frame: S A S
                               return Fixed{point(s.i),   point(s.j),   along(s.x_i),
-                                           along(s.y_i), along(s.x_j), along(s.y_j)};
+                                           about(s.y_i), along(s.x_j), about(s.y_j)};
                           },
                           [&](const Distance& s) -> JointKind {
                               return Distance{point(s.i), point(s.j), s.length};

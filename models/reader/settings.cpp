@@ -50,7 +50,8 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
         const std::string head = setting.path.substr(0, setting.path.size() - rest.size());
         const std::string in = head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
         if (names.empty()) fail(file, value->line, shown_path, fmt::format("{} is one value", in));
-        const std::string_view wrong = rest.substr(0, rest.find('.'));
+        const bool ends_in_dot = rest.find('.') + 1 == rest.size();
+        const std::string_view wrong = ends_in_dot ? rest : rest.substr(0, rest.find('.'));
         fail(file, 0, shown_path,
              fmt::format("{} has no {}{}", in, quote(wrong), did_you_mean(wrong, names, "there")));
     }

@@ -11,6 +11,7 @@
 
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
+#include "tests/models/axle_scene.hpp"
 #include "tests/models/bench_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 
@@ -18,7 +19,7 @@ namespace elastocheck {
 namespace {
 
 std::vector<std::string> sound_texts() {
-    std::vector<std::string> texts{bench_scene};
+    std::vector<std::string> texts{bench_scene, axle_scene};
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
         if (entry.path().extension() != ".yaml") continue;
         std::ifstream file(entry.path(), std::ios::binary);

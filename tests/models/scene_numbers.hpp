@@ -84,7 +84,9 @@ inline void add_driver(SceneNumbers& n, const Driver& driver) {
     if (const auto* length = std::get_if<FreeLength>(&driver.what)) n.add("free_length", length->elastic);
     if (const auto* preload = std::get_if<Preload>(&driver.what)) {
         n.add("preload", preload->elastic);
-        n.add("direction", preload->direction);
+        n.add("start", driver.start * preload->direction);  // e_y at -1 is -e_y at 1
+        n.add("rate", driver.rate * preload->direction);
+        return;
     }
     n.add("start", driver.start);
     n.add("rate", driver.rate);
