@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "models/overloaded.hpp"
+
 namespace elastocheck {
 namespace {
 
@@ -12,8 +14,10 @@ std::vector<bool> standing(const Model& model, const Branch& branch) {
     std::vector<bool> stands;
     for (const auto& joint : model.joints) stands.push_back(!joint.only_where_driven);
     for (const auto& driver : branch.drivers)
-        if (const auto* motion = std::get_if<Motion>(&driver.what))
-            stands[static_cast<std::size_t>(motion->joint)] = true;
+        std::visit(overloaded{[](const Load&) {},
+                              [&](const Motion& m) { stands[static_cast<std::size_t>(m.joint)] = true; },
+                              [](const FreeLength&) {}, [](const Preload&) {}},
+                   driver.what);
     return stands;
 }
 

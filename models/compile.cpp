@@ -101,10 +101,13 @@ DrivenParts driven_parts(const Scene& scene) {
     for (const auto& branch : scene.branches)
         for (const auto& driver : branch.drivers) {
             if (is_zero(driver, scene)) continue;
-            if (const auto* m = std::get_if<Motion>(&driver.what))
-                parts.joints[static_cast<std::size_t>(m->joint)] = true;
-            if (const auto* p = std::get_if<Preload>(&driver.what))
-                parts.preloads[static_cast<std::size_t>(p->elastic)] = true;
+            std::visit(
+                overloaded{
+                    [](const Load&) {},
+                    [&](const Motion& m) { parts.joints[static_cast<std::size_t>(m.joint)] = true; },
+                    [](const FreeLength&) {},
+                    [&](const Preload& p) { parts.preloads[static_cast<std::size_t>(p.elastic)] = true; }},
+                driver.what);
         }
     return parts;
 }

@@ -27,7 +27,11 @@ namespace {
 constexpr int most_steps = 1'000'000;
 constexpr double most_poses = 1e7;  // of one branch: steps times bodies
 
-bool is_moment(const Load& load) { return std::holds_alternative<DeadMoment>(load.kind); }
+bool is_moment(const Load& load) {
+    return std::visit(
+        overloaded{[](const DeadForce&) { return false; }, [](const DeadMoment&) { return true; }},
+        load.kind);
+}
 
 bool is_zero(const Load& load) {
     return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },

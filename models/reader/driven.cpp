@@ -120,14 +120,23 @@ void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
 }  // namespace
 
 std::optional<Joint> drive_of(const Joint& joint) {
-    const std::string name = joint.name + ".drive";
-    if (const auto* s = std::get_if<Translational>(&joint.kind))
-        return Joint{name, InPlane{s->i, s->j, s->axis_j, 0}};
-    if (const auto* s = std::get_if<Revolute>(&joint.kind))
-        return Joint{name, angle_about(s->axis_i, s->axis_j)};
-    if (const auto* s = std::get_if<Cylindrical>(&joint.kind))
-        return Joint{name, angle_about(s->axis_i, s->axis_j)};
-    return std::nullopt;
+    using Drive = std::optional<JointKind>;
+    const Drive none;
+    const Drive kind =
+        std::visit(overloaded{[&](const Spherical&) { return none; },
+                              [](const Revolute& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
+                              [&](const Universal&) { return none; },
+                              [](const Cylindrical& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
+                              [](const Translational& s) {
+                                  return Drive(InPlane{s.i, s.j, s.axis_j, 0});
+                              },
+                              [&](const Planar&) { return none; }, [&](const Fixed&) { return none; },
+                              [&](const Distance&) { return none; }, [&](const InPlane&) { return none; },
+                              [&](const InLine&) { return none; }, [&](const Perpendicular&) { return none; },
+                              [&](const Parallel&) { return none; }, [&](const Angle&) { return none; }},
+                   joint.kind);
+    if (!kind) return std::nullopt;
+    return Joint{joint.name + ".drive", *kind};
 }
 
 Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
