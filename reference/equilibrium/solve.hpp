@@ -29,6 +29,8 @@ struct Options {
 //
 // Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or element does
 // not have.
+//
+// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options = {});
 
