@@ -28,6 +28,8 @@ struct Options {
 //
 // What is told of the model alone (analysis.hpp) can be given, and then serves any number of branches and, being
 // constant, threads; std::invalid_argument where it is of another model.
+//
+// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
 

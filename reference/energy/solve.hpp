@@ -38,6 +38,8 @@ struct Options {
 // reaction of a driven joint is what its drive exerts: the jack's force, the rack's, the steering moment.
 // Counts: `evaluations` of energy or constraints with derivatives, `iterations` are charts, `factorisations`
 // are QR.
+//
+// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
                       const Options& options = {});
 

@@ -29,8 +29,10 @@ struct Options {
 // where a load meets no resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome
 // has its reason in `detail`.
 //
-// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or
-// element does not have.
+// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or element does
+// not have.
+//
+// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options = {});
 
