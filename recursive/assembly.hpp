@@ -45,30 +45,6 @@ void assemble_consistent(const Model& model, const Branch& branch, const Inputs<
     add_consistent_tangent<Real>(model, branch, inputs, q, lambda, M);
 }
 
-// The matrix somewhere where nothing vanishes by chance: what is zero here is zero everywhere.
-template <class Real>
-Matrix<Real> generic_matrix(const Model& model, const Branch& branch, const Matrix<Real>& like) {
-    // Multiples of the golden ratio, less their whole part: no two alike, none zero.
-    const auto fill = [](Vector<Real>& v, Real size) {
-        for (Eigen::Index k = 0; k < v.size(); ++k) {
-            const Real x = static_cast<Real>(k + 1) * Real(0.6180339887498949);
-            v[k] = size * (x - std::floor(x) + Real(0.1));
-        }
-    };
-    State<Real> q = design_state<Real>(model);
-    Vector<Real> dq(coordinates(model)), lambda(constraint_rows(model)), Phi(constraint_rows(model));
-    fill(dq, Real(0.3));
-    fill(lambda, Real(1e3));
-    advance(q, dq);
-    Matrix<Real> M = like;
-    Inputs<Real> inputs = inputs_at<Real>(model, branch, Real(0));
-    for (std::size_t k = 0; k < inputs.load_factor.size(); ++k)
-        inputs.load_factor[k] += Real(1e3) * static_cast<Real>(k + 1);
-    for (auto& offset : inputs.offset) offset += Real(0.1);
-    assemble_consistent<Real>(model, branch, inputs, q, lambda, M, Phi);
-    return M;
-}
-
 // Φ_qᵀ λ [6nb] and Φ(q), without the matrix.
 template <class Real>
 void constraint_force(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,

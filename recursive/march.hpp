@@ -1,9 +1,11 @@
 // What all methods march with: the state, the system, and the pieces of a step.
 #pragma once
 
+#include <stdexcept>
+
 #include "models/equilibrium_path.hpp"
+#include "recursive/analysis.hpp"
 #include "recursive/assembly.hpp"
-#include "recursive/diagnosis.hpp"
 #include "recursive/drive.hpp"
 #include "recursive/method.hpp"
 #include "recursive/reactions.hpp"
@@ -70,28 +72,23 @@ struct March {
     int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
     int swings = 0;       // steps in a row that reversed the one before and were larger
 
-    March(const Model& model_, const Branch& branch_, const Diagnosis& diagnosis)
+    March(const Model& model_, const Branch& branch_, const Analysis& analysis)
         : model(model_),
           branch(branch_),
-          length(diagnosis.length),
+          length(analysis.diagnosis.length),
           q(design_state<Real>(model)),
           before(q),
-          drawn(inputs_as_drawn<Real>(model)) {
-        const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
-        system.M.setZero(n + m, n + m);
-        system.weight.setOnes(n + m);
-        for (int b = 0; b < n / 6; ++b)
-            system.weight.segment(6 * b + 3, 3).setConstant(static_cast<Real>(length));
-        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last, &R_d}) v->setZero(n);
-        for (auto* v : {&lambda, &lambda_half, &lower, &Phi, &Phi_d}) v->setZero(m);
+          drawn(inputs_as_drawn<Real>(model)),
+          R_d(analysis.R_d.cast<Real>()),
+          Phi_d(analysis.Phi_d.cast<Real>()),
+          system(in_arithmetic<Real>(analysis.system)) {
+        const int n = system.n, m = system.m;
+        if (n != coordinates(model) || m != constraint_rows(model))
+            throw std::invalid_argument("the analysis is of another model");
+        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
+        for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
-        assemble<Real>(model, drawn, q, system.M, Phi);
-        prepare(system, static_cast<int>(diagnosis.idle.size()), diagnosis.null_space,
-                generic_matrix<Real>(model, branch, system.M));
         set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
-        external_force<Real>(model, branch, inputs, q, R_d);
-        R_d -= elastic_force<Real>(model, inputs, q);
-        Phi_d = constraint_values<Real>(model, inputs, q);
         if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
     }
     int n() const { return system.n; }
@@ -195,15 +192,9 @@ bool has_diverged(March<Real>& s) {
     return s.swings >= guard::swings || too_long || !(turn <= Real(guard::largest_turn));
 }
 
-// Assembles and factorises the method's matrix at (q, λ) with the present inputs, and judges it.
+// The factors now in the system, of its matrix at q.
 template <class Real>
-Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
-    if (s.consistent)
-        assemble_consistent<Real>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
-    else
-        assemble<Real>(s.model, s.inputs, q, s.system.M, s.Phi);
-    const Real pivot_ratio = factorise(s.system);
-    ++s.counts.factorisations;
+Outcome judge(const March<Real>& s, const State<Real>& q, Real pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
     // More than what blurs is real, and holding it would be a quiet wrong number.
@@ -215,6 +206,18 @@ Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& l
           rounding + Real(guard::share_per_error) * blur))
         return Outcome::loaded_idle_mode;
     return Outcome::converged;
+}
+
+// Assembles and factorises the method's matrix at (q, λ) with the present inputs, and judges it.
+template <class Real>
+Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
+    if (s.consistent)
+        assemble_consistent<Real>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
+    else
+        assemble<Real>(s.model, s.inputs, q, s.system.M, s.Phi);
+    const Real pivot_ratio = factorise(s.system);
+    ++s.counts.factorisations;
+    return judge(s, q, pivot_ratio);
 }
 
 // G = f_elast + Φ_qᵀ λ - f_ext at (q, λ) and the present inputs, and Φ, less what is still held of them: the

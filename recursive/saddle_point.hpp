@@ -31,8 +31,11 @@ struct SaddlePoint {
     Matrix<Real> held;    // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
     Vector<Real> weight;  // W: 1 for Δr [m], L for Δπ, 1 for λ
     Matrix<Real> moves;   // 1 where an entry of `held` may be other than zero
-    Matrix<Real> bordered, scaling;           // M̂ with its border; what each entry of M is multiplied by
-    std::vector<Eigen::Index> entries, into;  // of M other than zero, and where each goes in `bordered`
+    // M̂ with its border, entry by entry of the pattern; where an entry of M lies (column by column), -1 for one
+    // of the border; what it is multiplied by.
+    std::vector<Real> values, scaling;
+    std::vector<int> source;
+    Matrix<Real> border;  // b in scaled coordinates, of unit length [(n+m) × d]
     Vector<Real> rhs, solution;
     SparseLU<Real> lu;
 
@@ -69,12 +72,53 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// Fixes the scaling from the matrix now in M, what to hold, `idle` modes first, then redundant combinations,
-// in the columns of `null_space` [(n+m) × d], and what can be other than zero, which `generic` shows: M
-// somewhere where nothing vanishes by chance. A held mode moves the same bodies wherever the branch leads.
+// The border of every held direction around the pattern of M.
+inline Pattern bordered(const Pattern& inner, const Eigen::MatrixXd& moves) {
+    const auto N = inner.size, d = static_cast<int>(moves.cols());
+    Pattern all{N + d, {}, {}};
+    for (int j = 0; j < N + d; ++j) {
+        all.first.push_back(static_cast<int>(all.row.size()));
+        if (j < N) {
+            const auto column = static_cast<std::size_t>(j);
+            all.row.insert(all.row.end(), inner.row.begin() + inner.first[column],
+                           inner.row.begin() + inner.first[column + 1]);
+            for (int c = 0; c < d; ++c)
+                if (moves(j, c) != 0) all.row.push_back(N + c);
+        } else {
+            for (int i = 0; i < N; ++i)
+                if (moves(i, j - N) != 0) all.row.push_back(i);
+        }
+    }
+    all.first.push_back(static_cast<int>(all.row.size()));
+    return all;
+}
+
+// Gathers M̂ and its border from M and what is held.
 template <class Real>
-void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space,
-             const Matrix<Real>& generic) {
+void scale_entries(SaddlePoint<Real>& system) {
+    const int N = system.n + system.m;
+    for (int c = 0; c < system.borders(); ++c) {
+        auto b = system.border.col(c);
+        b = system.scale.array() * system.weight.array().square() * system.held.col(c).array();
+        b.normalize();
+    }
+    const Pattern& pattern = system.lu.order.pattern;
+    const Real* const M = system.M.data();
+    const int inner = pattern.first[static_cast<std::size_t>(N)];
+    for (int e = 0; e < inner; ++e) {
+        const auto at = static_cast<std::size_t>(e);
+        const int source = system.source[at];
+        system.values[at] = source >= 0 ? M[source] * system.scaling[at] : system.border.data()[-1 - source];
+    }
+    for (auto at = static_cast<std::size_t>(inner); at < pattern.entries(); ++at)
+        system.values[at] = system.border.data()[-1 - system.source[at]];
+}
+
+// Fixes the scaling from the matrix now in M, what to hold, `idle` modes first, then redundant combinations,
+// in the columns of `null_space` [(n+m) × d], and the order of elimination; `inner` is what of M can be other
+// than zero. A held mode moves the same bodies wherever the branch leads.
+template <class Real>
+void analyse(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space, const Pattern& inner) {
     const Eigen::Index N = system.n + system.m, d = null_space.cols();
     system.scale = equilibration<Real>(system.M);
     system.idle = idle;
@@ -96,23 +140,53 @@ void prepare(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
     }
     orthonormalise(system);
 
-    system.bordered.setZero(N + d, N + d);
-    system.bordered.topLeftCorner(N, N) = generic;
-    system.bordered.topRightCorner(N, d) = system.moves;
-    system.bordered.bottomLeftCorner(d, N) = system.moves.transpose();
-    reserve(system.lu, system.bordered);
-    system.bordered.setZero();
-    system.scaling = system.scale * system.scale.transpose();
-    system.entries.clear();
-    system.into.clear();
-    for (Eigen::Index j = 0; j < N; ++j)
-        for (Eigen::Index i = 0; i < N; ++i)
-            if (generic(i, j) != Real(0)) {
-                system.entries.push_back(j * N + i);
-                system.into.push_back(j * (N + d) + i);
-            }
+    const Pattern pattern = bordered(inner, system.moves.template cast<double>());
+    system.source.clear();
+    system.scaling.clear();
+    for (int j = 0; j < pattern.size; ++j)
+        for (int e = pattern.first[static_cast<std::size_t>(j)]; e < pattern.first[static_cast<std::size_t>(j) + 1];
+             ++e) {
+            const int i = pattern.row[static_cast<std::size_t>(e)];
+            const bool inside = i < N && j < N;
+            const auto flat = [&](int row, int column) { return static_cast<int>(column * N) + row; };
+            system.source.push_back(inside ? flat(i, j)
+                                           : -1 - (i < N ? flat(i, j - static_cast<int>(N))
+                                                         : flat(j, i - static_cast<int>(N))));
+            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : Real(1));
+        }
+    system.values.assign(pattern.entries(), 0);
+    system.border.setZero(N, d);
     system.rhs.setZero(N + d);
     system.solution.setZero(N + d);
+    system.lu.order.pattern = pattern;
+    scale_entries(system);
+    analyse(system.lu, pattern, system.values.data());
+}
+
+// The same system in another arithmetic, in the order of elimination of this one; not factorised yet.
+template <class Real>
+SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
+    SaddlePoint<Real> system;
+    system.n = from.n;
+    system.m = from.m;
+    system.M = from.M.cast<Real>();
+    system.scale = from.scale.cast<Real>();
+    system.idle = from.idle;
+    system.held = from.held.cast<Real>();
+    system.weight = from.weight.cast<Real>();
+    system.moves = from.moves.cast<Real>();
+    system.values.assign(from.values.begin(), from.values.end());
+    system.scaling.assign(from.scaling.begin(), from.scaling.end());
+    system.source = from.source;
+    system.border = from.border.cast<Real>();
+    system.rhs = from.rhs.cast<Real>();
+    system.solution = from.solution.cast<Real>();
+    analyse(system.lu, from.lu.order);
+    return system;
+}
+template <>
+inline SaddlePoint<double> in_arithmetic(const SaddlePoint<double>& from) {
+    return from;
 }
 
 // x = (Δq, λ) for the right-hand side (f, lower), with the factors of the last `factorise`. Nothing is
@@ -133,23 +207,14 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
     const int N = system.n + system.m, d = system.borders();
-    const auto& D = system.scale;
-    for (std::size_t e = 0; e < system.entries.size(); ++e)
-        system.bordered.data()[system.into[e]] =
-            system.M.data()[system.entries[e]] * system.scaling.data()[system.entries[e]];
-    for (int c = 0; c < d; ++c) {  // b in scaled coordinates, to unit length
-        auto b = system.bordered.col(N + c).head(N);
-        b = D.array() * system.weight.array().square() * system.held.col(c).array();
-        b.normalize();
-        system.bordered.row(N + c).head(N) = b.transpose();
-    }
-    const Real pivot_ratio = factorise(system.lu, system.bordered);
+    scale_entries(system);
+    const Real pivot_ratio = factorise(system.lu, system.values.data());
 
     for (int c = 0; c < d; ++c) {
         system.rhs.setZero();
         system.rhs[N + c] = 1;
         solve(system.lu, system.rhs.data(), system.solution.data());
-        system.held.col(c).array() = D.array() * system.solution.head(N).array();
+        system.held.col(c).array() = system.scale.array() * system.solution.head(N).array();
     }
     if (d > 0) orthonormalise(system);
     return pivot_ratio;

@@ -47,18 +47,19 @@ std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outc
 }
 
 EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch, const Options& options,
-                      const Diagnosis& diagnosis, double& stopped) {
+                      const Analysis& analysis, double& stopped) {
     switch (precision) {
-        case Precision::single: return sweep<float>(model, branch, options, diagnosis, stopped);
-        case Precision::twofold: return sweep<double>(model, branch, options, diagnosis, stopped);
-        case Precision::extended: return sweep<long double>(model, branch, options, diagnosis, stopped);
+        case Precision::single: return sweep<float>(model, branch, options, analysis, stopped);
+        case Precision::twofold: return sweep<double>(model, branch, options, analysis, stopped);
+        case Precision::extended: return sweep<long double>(model, branch, options, analysis, stopped);
     }
     return {};
 }
 
 }  // namespace
 
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options) {
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+                      const Analysis& analysis) {
     check(model, branch);
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         if (options.precision != Precision::twofold)
@@ -66,15 +67,19 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
-        return series::sample(model, series::follow(model, branch, *how), branch, points);
+        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points);
     }
-    const Diagnosis diagnosis = diagnose(model);
     double stopped = 0;
-    EquilibriumPath path = sweep(options.precision, model, branch, options, diagnosis, stopped);
+    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis, stopped);
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format("branch '{}': {}", branch.name,
-                                  words(diagnosis, options.method, path.outcome, stopped));
+                                  words(analysis.diagnosis, options.method, path.outcome, stopped));
     return path;
+}
+
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options) {
+    check(model, branch);
+    return solve(model, branch, options, analyse(model));
 }
 
 }  // namespace elastocheck::recursive

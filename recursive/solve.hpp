@@ -3,6 +3,7 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/analysis.hpp"
 #include "recursive/method.hpp"
 
 namespace elastocheck::recursive {
@@ -24,6 +25,10 @@ struct Options {
 // The published method takes one factorisation per step, and one more where static loads or preloads ask for
 // λ⁻¹. `adaptive` takes steps of its own and evaluates the recorded points between them,
 // as does `series`, in double precision only: std::invalid_argument for another.
+//
+// What is told of the model alone (analysis.hpp) can be given, and then serves any number of branches and, being
+// constant, threads; std::invalid_argument where it is of another model.
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
 
 // How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances

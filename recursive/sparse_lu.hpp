@@ -1,10 +1,16 @@
-// LU factors of a matrix whose zeros never move and whose pivots hardly do.
+// LU factors of a matrix whose zeros never move and whose pivots hardly do, behind three calls:
 //
-// Which entries of eq. (24) can be other than zero is decided by who is connected to whom, so the order of
-// elimination is chosen once, and afterwards only what can be other than zero is touched. Chosen is, step by
+//   analyse     pattern and a typical matrix → order of elimination and what it fills in, once for a model
+//   factorise   values → factors, in that order
+//   solve       right-hand side → solution
+//
+// Which entries of eq. (24) can be other than zero is decided by who is connected to whom (pattern.hpp), so
+// the order is chosen once, and afterwards only what can be other than zero is touched. Chosen is, step by
 // step, the pivot that fills in least (Markowitz: smallest (entries in its row - 1)(entries in its column -
 // 1)) among those no smaller than a tenth of their column. The choice stands while no multiplier of L exceeds
 // a hundred; when one does, the order is chosen anew from the values of the moment.
+//
+// Values are those of the pattern's entries, in its order.
 #pragma once
 
 #include <algorithm>
@@ -15,47 +21,54 @@
 
 namespace elastocheck::recursive {
 
-template <class Real>
-struct SparseLU {
+// Which entries of a square matrix may be other than zero, column by column, rows rising.
+struct Pattern {
     int size = 0;
-    std::vector<char> pattern;    // what may be other than zero [size × size], row by row
-    std::vector<int> row, col;    // the k-th pivot is A(row[k], col[k])
-    std::vector<int> source, to;  // where an entry of A lies (column by column), and where in W it goes
+    std::vector<int> first;  // of every column, and where the last one ends [size + 1]
+    std::vector<int> row;    // of every entry
+
+    std::size_t entries() const { return row.size(); }
+};
+
+// The order of elimination, and what it fills in. W is the matrix in the order of the pivots, row by row.
+struct Elimination {
+    Pattern pattern;
+    std::vector<int> row, col;  // the k-th pivot is A(row[k], col[k])
+    std::vector<int> to;        // where in W an entry goes
     // Entries of the k-th column of L and row of U beside the pivot, as numbers of rows and columns of W:
     // below[first_below[k] ... first_below[k+1]), right[...] likewise.
     std::vector<int> below, first_below, right, first_right;
-    std::vector<Real> W;                  // L (unit diagonal) and U in the order of the pivots, row by row
+    int parity = 1;  // of the two permutations `row` and `col` together: +1 or -1
+};
+
+template <class Real>
+struct SparseLU {
+    Elimination order;
+    std::vector<Real> W;                  // L (unit diagonal) and U
     std::vector<Real> inverse;            // 1 / pivots
     std::vector<Real> y;                  // the solution in the order of the pivots
     std::vector<char> filled;             // while the order is chosen: pattern of L + U ...
     std::vector<long> in_row, in_column;  // ... how many entries a row and a column still have
     std::vector<Real> largest;            // ... and the largest of a column
-    int orders = 0;                       // how often the order was chosen
-    int parity = 1;                       // of the two permutations `row` and `col` together: +1 or -1
+    int orders = 0;                       // how often the order was chosen here
     int orientation = 0;                  // sign of the determinant of the last matrix factorised
 
     static constexpr double least_pivot = 0.1, largest_multiplier = 100;
+    std::size_t size() const { return static_cast<std::size_t>(order.pattern.size); }
 };
 
-// Room for everything; `pattern` is taken from the entries of A [size × size] that are not zero.
+// Room for everything, so that nothing is allocated when an order has to be chosen anew.
 template <class Real>
-void reserve(SparseLU<Real>& lu, const Matrix<Real>& A) {
-    const auto n = static_cast<std::size_t>(A.rows());
-    lu.size = static_cast<int>(n);
-    lu.pattern.assign(n * n, 0);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j)
-            lu.pattern[i * n + j] = A(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) != Real(0);
-    lu.filled = lu.pattern;
+void reserve(SparseLU<Real>& lu) {
+    const std::size_t n = lu.size();
+    lu.filled.assign(n * n, 0);
     lu.W.assign(n * n, 0);
-    lu.inverse.assign(n, 0);
-    lu.y.assign(n, 0);
-    lu.in_row.assign(n, 0);
-    lu.in_column.assign(n, 0);
-    lu.largest.assign(n, 0);
-    for (auto* list : {&lu.row, &lu.col, &lu.first_below, &lu.first_right}) list->reserve(n + 1);
-    for (auto* list : {&lu.source, &lu.to, &lu.below, &lu.right}) list->reserve(n * n);
-    lu.orders = 0;
+    for (auto* list : {&lu.inverse, &lu.y, &lu.largest}) list->assign(n, 0);
+    for (auto* list : {&lu.in_row, &lu.in_column}) list->assign(n, 0);
+    for (auto* list : {&lu.order.row, &lu.order.col, &lu.order.first_below, &lu.order.first_right})
+        list->reserve(n + 1);
+    for (auto* list : {&lu.order.below, &lu.order.right}) list->reserve(n * n);
+    lu.order.to.reserve(lu.order.pattern.entries());
 }
 
 // +1 or -1, as an even or an odd number of swaps makes the permutation.
@@ -69,20 +82,24 @@ inline int parity(std::vector<int> permutation) {
     return sign;
 }
 
-// Chooses the order of elimination from the values of A.
+// Chooses the order of elimination from `values`.
 template <class Real>
-void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
-    const auto n = static_cast<std::size_t>(lu.size);
+void choose_order(SparseLU<Real>& lu, const Real* values) {
+    const std::size_t n = lu.size();
+    Elimination& order = lu.order;
+    const Pattern& pattern = order.pattern;
     ++lu.orders;
-    lu.row.resize(n);
-    lu.col.resize(n);
-    lu.filled = lu.pattern;
-    for (std::size_t i = 0; i < n; ++i) {
-        lu.row[i] = lu.col[i] = static_cast<int>(i);
-        for (std::size_t j = 0; j < n; ++j)
-            lu.W[i * n + j] = lu.pattern[i * n + j]
-                                  ? A(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))
-                                  : Real(0);
+    order.row.resize(n);
+    order.col.resize(n);
+    std::fill(lu.filled.begin(), lu.filled.end(), 0);
+    std::fill(lu.W.begin(), lu.W.end(), Real(0));
+    for (std::size_t j = 0; j < n; ++j) {
+        order.row[j] = order.col[j] = static_cast<int>(j);
+        for (int e = pattern.first[j]; e < pattern.first[j + 1]; ++e) {
+            const std::size_t at = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(e)]) * n + j;
+            lu.filled[at] = 1;
+            lu.W[at] = values[e];
+        }
     }
     // What is still to go is the block right and below of (k, k).
     const auto measure_column = [&](std::size_t c, std::size_t k) {
@@ -121,15 +138,15 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
                 best_c = c;
             }
         }
-        const auto swap_entries = [&](auto& values) {
-            if (best_r != k) std::swap_ranges(&values[k * n], &values[k * n] + n, &values[best_r * n]);
-            for (std::size_t r = 0; r < n; ++r) std::swap(values[r * n + k], values[r * n + best_c]);
+        const auto swap_entries = [&](auto& entries) {
+            if (best_r != k) std::swap_ranges(&entries[k * n], &entries[k * n] + n, &entries[best_r * n]);
+            for (std::size_t r = 0; r < n; ++r) std::swap(entries[r * n + k], entries[r * n + best_c]);
         };
         swap_entries(lu.W);
         swap_entries(lu.filled);
-        std::swap(lu.row[k], lu.row[best_r]);
+        std::swap(order.row[k], order.row[best_r]);
         std::swap(lu.in_row[k], lu.in_row[best_r]);
-        std::swap(lu.col[k], lu.col[best_c]);
+        std::swap(order.col[k], order.col[best_c]);
         std::swap(lu.in_column[k], lu.in_column[best_c]);
         std::swap(lu.largest[k], lu.largest[best_c]);
         for (std::size_t r = k + 1; r < n; ++r) {
@@ -149,39 +166,61 @@ void choose_order(SparseLU<Real>& lu, const Matrix<Real>& A) {
         for (std::size_t c = k + 1; c < n; ++c)
             if (lu.filled[k * n + c]) measure_column(c, k + 1);
     }
-    for (auto* list : {&lu.source, &lu.to, &lu.below, &lu.right, &lu.first_below, &lu.first_right})
+    for (auto* list :
+         {&order.below, &order.right, &order.first_below, &order.first_right})
         list->clear();
+    std::vector<long>&row_of = lu.in_row, &column_of = lu.in_column;  // of W, by row and column of A
     for (std::size_t k = 0; k < n; ++k) {
-        lu.first_below.push_back(static_cast<int>(lu.below.size()));
-        lu.first_right.push_back(static_cast<int>(lu.right.size()));
+        order.first_below.push_back(static_cast<int>(order.below.size()));
+        order.first_right.push_back(static_cast<int>(order.right.size()));
         for (std::size_t o = k + 1; o < n; ++o) {
-            if (lu.filled[o * n + k]) lu.below.push_back(static_cast<int>(o));
-            if (lu.filled[k * n + o]) lu.right.push_back(static_cast<int>(o));
+            if (lu.filled[o * n + k]) order.below.push_back(static_cast<int>(o));
+            if (lu.filled[k * n + o]) order.right.push_back(static_cast<int>(o));
         }
-        for (std::size_t c = 0; c < n; ++c) {
-            const auto i = static_cast<std::size_t>(lu.row[k]), j = static_cast<std::size_t>(lu.col[c]);
-            if (!lu.pattern[i * n + j]) continue;
-            lu.source.push_back(static_cast<int>(j * n + i));
-            lu.to.push_back(static_cast<int>(k * n + c));
-        }
+        row_of[static_cast<std::size_t>(order.row[k])] = static_cast<long>(k);
+        column_of[static_cast<std::size_t>(order.col[k])] = static_cast<long>(k);
     }
-    lu.first_below.push_back(static_cast<int>(lu.below.size()));
-    lu.first_right.push_back(static_cast<int>(lu.right.size()));
-    lu.parity = parity(lu.row) * parity(lu.col);
+    order.first_below.push_back(static_cast<int>(order.below.size()));
+    order.first_right.push_back(static_cast<int>(order.right.size()));
+    order.to.resize(pattern.entries());
+    for (std::size_t j = 0; j < n; ++j)
+        for (auto e = static_cast<std::size_t>(pattern.first[j]);
+             e < static_cast<std::size_t>(pattern.first[j + 1]); ++e)
+            order.to[e] = static_cast<int>(row_of[static_cast<std::size_t>(pattern.row[e])] *
+                                               static_cast<long>(n) +
+                                           column_of[j]);
+    order.parity = parity(order.row) * parity(order.col);
+}
+
+// Makes everything ready for matrices of this pattern, in the order of elimination that suits `values`.
+template <class Real>
+void analyse(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
+    lu.order = {};
+    lu.order.pattern = pattern;
+    lu.orders = 0;
+    reserve(lu);
+    choose_order(lu, values);
+}
+// The same in an order chosen before, for matrices of the same pattern in any arithmetic.
+template <class Real>
+void analyse(SparseLU<Real>& lu, const Elimination& order) {
+    lu.order = order;
+    lu.orders = 0;
+    reserve(lu);
 }
 
 // Eliminates in the order chosen. Returns the smallest over the largest pivot, 0 where one is exactly zero,
 // NaN for a matrix that is not finite; `largest` gets the largest multiplier.
 template <class Real>
-Real eliminate(SparseLU<Real>& lu, const Matrix<Real>& A, Real& largest) {
-    const auto n = static_cast<std::size_t>(lu.size);
+Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
+    const std::size_t n = lu.size();
     Real* const W = lu.W.data();
     std::fill(lu.W.begin(), lu.W.end(), Real(0));
     Real sum = 0;
-    for (std::size_t e = 0; e < lu.source.size(); ++e) {
-        const Real value = A.data()[lu.source[e]];
-        W[lu.to[e]] = value;
-        sum += std::abs(value);
+    const int* const to = lu.order.to.data();
+    for (std::size_t e = 0; e < lu.order.to.size(); ++e) {
+        W[to[e]] = values[e];
+        sum += std::abs(values[e]);
     }
     if (!std::isfinite(sum)) return std::numeric_limits<Real>::quiet_NaN();
     Real least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0;
@@ -194,16 +233,16 @@ Real eliminate(SparseLU<Real>& lu, const Matrix<Real>& A, Real& largest) {
         least_pivot = std::min(least_pivot, size);
         largest_pivot = std::max(largest_pivot, size);
         lu.inverse[k] = 1 / U[k];
-        const int* const right = lu.right.data() + lu.first_right[k];
-        const int entries = lu.first_right[k + 1] - lu.first_right[k];
-        for (int b = lu.first_below[k]; b < lu.first_below[k + 1]; ++b) {
-            Real* const into = W + static_cast<std::size_t>(lu.below[static_cast<std::size_t>(b)]) * n;
+        const int* const right = lu.order.right.data() + lu.order.first_right[k];
+        const int entries = lu.order.first_right[k + 1] - lu.order.first_right[k];
+        for (int b = lu.order.first_below[k]; b < lu.order.first_below[k + 1]; ++b) {
+            Real* const into = W + static_cast<std::size_t>(lu.order.below[static_cast<std::size_t>(b)]) * n;
             const Real l = into[k] *= lu.inverse[k];
             largest = std::max(largest, std::abs(l));
             for (int e = 0; e < entries; ++e) into[right[e]] -= l * U[right[e]];
         }
     }
-    lu.orientation = lu.parity;
+    lu.orientation = lu.order.parity;
     for (std::size_t k = 0; k < n; ++k)
         if (lu.inverse[k] < 0) lu.orientation = -lu.orientation;
     return least_pivot / largest_pivot;
@@ -217,44 +256,42 @@ Real log_determinant(const SparseLU<Real>& lu) {
     return sum;
 }
 
-// Factorises A, in the order of last time if that still serves. Returns the smallest over the largest pivot.
-// Nothing is allocated.
+// Factorises the matrix with these values, in the order of last time if that still serves. Returns the
+// smallest over the largest pivot. Nothing is allocated.
 template <class Real>
-Real factorise(SparseLU<Real>& lu, const Matrix<Real>& A) {
+Real factorise(SparseLU<Real>& lu, const Real* values) {
     Real largest = 0;
-    if (lu.orders > 0) {
-        const Real ratio = eliminate(lu, A, largest);
-        if (std::isnan(ratio) || (ratio > 0 && largest <= static_cast<Real>(lu.largest_multiplier)))
-            return ratio;
-    }
-    choose_order(lu, A);
-    return eliminate(lu, A, largest);
+    const Real ratio = eliminate(lu, values, largest);
+    if (std::isnan(ratio) || (ratio > 0 && largest <= static_cast<Real>(lu.largest_multiplier))) return ratio;
+    choose_order(lu, values);
+    return eliminate(lu, values, largest);
 }
 
 // x with A x = b, for the last matrix factorised. Nothing is allocated.
 template <class Real>
 void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
-    const auto n = static_cast<std::size_t>(lu.size);
+    const std::size_t n = lu.size();
+    const Elimination& order = lu.order;
     Real* const y = lu.y.data();
     const Real* const W = lu.W.data();
-    for (std::size_t k = 0; k < n; ++k) y[k] = b[lu.row[k]];
+    for (std::size_t k = 0; k < n; ++k) y[k] = b[order.row[k]];
     for (std::size_t k = 0; k < n; ++k) {
         const Real known = y[k];
         if (known == Real(0)) continue;
-        for (int e = lu.first_below[k]; e < lu.first_below[k + 1]; ++e) {
-            const auto i = static_cast<std::size_t>(lu.below[static_cast<std::size_t>(e)]);
+        for (int e = order.first_below[k]; e < order.first_below[k + 1]; ++e) {
+            const auto i = static_cast<std::size_t>(order.below[static_cast<std::size_t>(e)]);
             y[i] -= W[i * n + k] * known;
         }
     }
     for (std::size_t k = n; k-- > 0;) {
         Real left = y[k];
-        for (int e = lu.first_right[k]; e < lu.first_right[k + 1]; ++e) {
-            const auto j = static_cast<std::size_t>(lu.right[static_cast<std::size_t>(e)]);
+        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e) {
+            const auto j = static_cast<std::size_t>(order.right[static_cast<std::size_t>(e)]);
             left -= W[k * n + j] * y[j];
         }
         y[k] = left * lu.inverse[k];
     }
-    for (std::size_t k = 0; k < n; ++k) x[lu.col[k]] = y[k];
+    for (std::size_t k = 0; k < n; ++k) x[order.col[k]] = y[k];
 }
 
 }  // namespace elastocheck::recursive

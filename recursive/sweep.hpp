@@ -12,10 +12,10 @@ namespace elastocheck::recursive {
 // while settling) and the words for it are the caller's.
 template <class Real>
 EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                      const Diagnosis& diagnosis, double& stopped) {
+                      const Analysis& analysis, double& stopped) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
-    March<Real> s(model, branch, diagnosis);
+    March<Real> s(model, branch, analysis);
     EquilibriumPath path;
     make_room(model, points + 1, path);
     std::size_t reached = 0;
@@ -69,11 +69,11 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
         options.method.kind);
 }
 
-extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Diagnosis&,
+extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Analysis&,
                                              double&);
-extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Diagnosis&,
+extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
                                               double&);
 extern template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&,
-                                                   const Diagnosis&, double&);
+                                                   const Analysis&, double&);
 
 }  // namespace elastocheck::recursive

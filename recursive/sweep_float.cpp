@@ -2,6 +2,6 @@
 
 namespace elastocheck::recursive {
 
-template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Diagnosis&, double&);
+template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Analysis&, double&);
 
 }  // namespace elastocheck::recursive

@@ -2,7 +2,7 @@
 
 namespace elastocheck::recursive {
 
-template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&, const Diagnosis&,
+template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&, const Analysis&,
                                             double&);
 
 }  // namespace elastocheck::recursive

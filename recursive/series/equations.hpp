@@ -1,6 +1,6 @@
 // The full equations, order by order:
 //
-//   G(q, λ, a) = f_elast(q) + Φ_q(q)ᵀ λ - f_ext(q, a) = 0,   Φ(q) = 0,   q, λ, a power series in τ.
+//   G(q, λ, a) = f_elast(q, a) + Φ_q(q, a)ᵀ λ - f_ext(q, a) = 0,   Φ(q, a) = 0,   q, λ, a power series in τ.
 //
 // A body turns from where it is at τ = 0 by the Gibbs vector g = tan(θ/2) n, in which rotation is rational:
 //
@@ -9,16 +9,28 @@
 // once a body: what is fixed in it turns by a linear map of these coefficients. 2 g is Δπ to first order, so
 // that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
 // all.
+//
+// What a branch drives (loads, offsets, free lengths, preloads) is linear in the parameter: coefficient k of it
+// is a rate times a_k. While what is held settles, the parameter is t, and the starts of the drivers take the
+// place of their rates (inputs.hpp). A term keeps the kind that it is the series of, so that one visit of the
+// terms is all there is.
 #pragma once
 
 #include <variant>
 
-#include "models/model.hpp"
+#include "recursive/drive.hpp"
 #include "recursive/series/taylor.hpp"
 
 namespace elastocheck::recursive::series {
 
 using V3 = Vector3<double>;
+
+// start + rate · a, or · t
+template <class T>
+struct Driven {
+    T start = Series<T>::zero();
+    T rate = Series<T>::zero();
+};
 
 struct BodySeries {
     Vector3Series r, g, h;
@@ -34,69 +46,106 @@ struct Arm {
 };
 
 struct SpringSeries {
+    AxialSpring kind;
+    Driven<double> free_length;
     Arm i, j;
     Vector3Series D, F;
-    Scalar length_squared, length, inverse, tension;  // tension: F / D
+    Scalar length_squared, length, inverse, stretch, force, tension;  // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
 };
 
 struct BushingSeries {
+    Bushing kind;
+    Driven<Vector6<double>> preload;
+    bool rotational = true;  // whether any moment M' = ∂U/∂θ is there; else only d is followed
     Arm i, j;
     Matrix3<double> E_i;          // axes of marker i at τ = 0
     Eigen::Matrix4d to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion of A_iᵀ A_j, any length
     Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, force_i,
         moment_i, F, M;
     Series<Eigen::Vector4d> relative;
-    Series<Vector6<double>> stress;
+    Vector6Series e, gradient, stress;  // (d, θ), ∂u/∂e, ∂u/∂e + preload
     Scalar dot_g, W, inverse, s;
     Composition phi, psi;
 };
 
 struct CoincidentSeries {
+    static constexpr std::size_t rows = 3;
+    CoincidentPoints kind;
     Arm i, j;
     Vector3Series F;
 };
 struct PlaneSeries {
+    static constexpr std::size_t rows = 1;
+    PointInPlane kind;
+    Driven<double> offset;
     Arm i, j, normal;
     Vector3Series d, rho, F;
 };
 struct PerpendicularSeries {
+    static constexpr std::size_t rows = 1;
+    PerpendicularDirections kind;
     Arm i, j;
     Vector3Series M;
 };
 struct DistanceSeries {
+    static constexpr std::size_t rows = 1;
+    DistanceBetween kind;
+    Driven<double> length;
     Arm i, j;
+    Scalar ell, inverse, share;  // ℓ, 1/ℓ, λ/ℓ
     Vector3Series d, F;
 };
-struct LoadSeries {
+struct AngleSeries {
+    static constexpr std::size_t rows = 1;
+    DirectionAtAngle kind;
+    Driven<double> angle;
+    Arm i, x, y;
+    Scalar alpha, cosine, sine;
+    Vector3Series along, across, w, M;  // cos α y_j, sin α x_j, w = cos α y_j - sin α x_j, u_i × w
+};
+
+struct ForceSeries {
+    DeadForce kind;
+    Driven<double> factor;
+    Scalar size;
     Arm at;
+};
+struct MomentSeries {
+    DeadMoment kind;
+    Driven<double> factor;
 };
 
 using ElasticSeries = std::variant<SpringSeries, BushingSeries>;
-using ConstraintSeries = std::variant<CoincidentSeries, PlaneSeries, PerpendicularSeries, DistanceSeries>;
+using ConstraintSeries =
+    std::variant<CoincidentSeries, PlaneSeries, PerpendicularSeries, DistanceSeries, AngleSeries>;
+using LoadSeries = std::variant<ForceSeries, MomentSeries>;
 
-// Everything that has coefficients, allocated once for a model.
+// Everything that has coefficients, allocated once for a model on a branch.
 struct Equations {
-    int order = 0;
+    Room room;
+    Drive drive = Drive::rate;      // whether the parameter is a, or t
     std::vector<BodySeries> slots;  // ground, at rest, in slot 0
     std::vector<Scalar> lambda;     // one per row of Φ
-    Scalar a, one;                  // load factor, and that of the static loads
+    Scalar a;                       // the parameter
     std::vector<ElasticSeries> elastics;
     std::vector<ConstraintSeries> constraints;
-    std::vector<LoadSeries> static_loads, branch_loads;
-    Vector<double> G, Phi;  // coefficient k after pass `known` [6nb], [m]
+    std::vector<LoadSeries> loads;  // static, then driven
+    Vector<double> G, Phi;          // coefficient k after pass `known` [6nb], [m]
+    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d take the place of G and Φ; d: as drawn.
+    Vector<double> G_d, Phi_d;  // [6nb], [m]
 
+    int order() const { return room.order; }
     const BodySeries& operator[](BodyId b) const { return slots[static_cast<std::size_t>(b + 1)]; }
     BodySeries& operator[](BodyId b) { return slots[static_cast<std::size_t>(b + 1)]; }
 };
 
-Equations equations(const Model& model, const Branch& branch, int order);
+Equations equations(const Model& model, const Branch& branch, int order, Drive drive = Drive::rate);
 
 // Puts τ = 0 at (q, λ, a): coefficients 0 of the unknowns, and what is fixed in the bodies.
-void begin(Equations& e, const Model& model, const Branch& branch, const State<double>& q,
-           const Vector<double>& lambda, double a);
+void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, double a);
 
 // Coefficient k of everything; in pass `known` also of G and Φ.
-void evaluate(Equations& e, const Model& model, const Branch& branch, Order o);
+void evaluate(Equations& e, Order o);
 
 // x_k = (r_k, 2 g_k; λ_k) and a_k take their place in the unknowns.
 void assign(Equations& e, int k, const Vector<double>& x, double a);

@@ -11,6 +11,10 @@ Coefficients reserve_coefficients(const March<double>& s, int order) {
             Vector<double>::Zero(N)};
 }
 
+double parameter(const March<double>& s, Drive drive) {
+    return drive == Drive::start ? s.place.t : s.place.a;
+}
+
 void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
             const Vector<double>& ahead) {
     const int n = s.n();
@@ -18,17 +22,16 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     const auto inner = [&](const auto& a, const auto& b) {
         return (a.head(n).array() * W2 * b.head(n).array()).sum();
     };
-    begin(e, s.model, s.branch, s.q, s.lambda, s.a);
-    evaluate(e, s.model, s.branch, {0, Pass::known});
-
-    go_to(s, {1, s.a});
-    drive_at(s, Drive::rate, 1.0, s.q);
+    const double here = parameter(s, e.drive);
+    begin(e, s.q, s.lambda, here);
+    evaluate(e, {0, Pass::known});
+    drive_at(s, e.drive, 1.0, s.q);
     back_substitute(s);
     c.unit = s.x;
     c.x.setZero();
     c.x.col(0).tail(s.m()) = s.lambda;
     c.load.setZero();
-    c.load[0] = s.a;
+    c.load[0] = here;
     if (arc_length) {
         const double size = std::sqrt(inner(c.unit, c.unit));
         const bool back = ahead.isZero(0) ? first < 0 : inner(c.unit, ahead) < 0;
@@ -38,25 +41,23 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     }
     c.x.col(1) = c.load[1] * c.unit;
     s.x = c.x.col(1);
-    assign(e, 1, c.none, 0);
-    evaluate(e, s.model, s.branch, {1, Pass::known});
-    assign(e, 1, s.x, c.load[1]);
-    evaluate(e, s.model, s.branch, {1, Pass::change});
 
-    for (int k = 2; k <= e.order; ++k) {
+    for (int k = 1; k <= e.order(); ++k) {
         assign(e, k, c.none, 0);
-        evaluate(e, s.model, s.branch, {k, Pass::known});
-        s.upper = -e.G;
-        s.lower = -e.Phi;
-        back_substitute(s);
-        if (arc_length) {  // x_k ⟂ x_1
-            c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
-            s.x += c.load[k] * c.unit;
+        evaluate(e, {k, Pass::known});
+        if (k > 1) {
+            s.upper = -e.G;
+            s.lower = -e.Phi;
+            back_substitute(s);
+            if (arc_length) {  // x_k ⟂ x_1
+                c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
+                s.x += c.load[k] * c.unit;
+            }
+            c.x.col(k) = s.x;
         }
-        c.x.col(k) = s.x;
-        if (k == e.order) break;
+        if (k == e.order()) break;
         assign(e, k, s.x, c.load[k]);
-        evaluate(e, s.model, s.branch, {k, Pass::change});
+        evaluate(e, {k, Pass::change});
     }
 }
 

@@ -11,20 +11,23 @@ namespace elastocheck::recursive::series {
 struct Coefficients {
     Matrix<double> x;     // (r_k, 2 g_k; λ_k) [(n+m) × (p+1)]
     Vector<double> load;  // a_k
-    Vector<double> unit;  // x̂, the answer to one unit of the load factor
+    Vector<double> unit;  // x̂, the answer to one unit of a
     Vector<double> none;  // zero
 };
 
 Coefficients reserve_coefficients(const March<double>& s, int order);
 
-// The polynomial x(τ) about (s.q, s.lambda, s.a), with the factors now in s.system. `first` is a_1 with the
-// load as parameter; with arc length only its sign counts, or, where `ahead` [n] is not zero, the direction
+// The polynomial x(τ) about (s.q, s.lambda, s.a), with the factors now in s.system. `first` is a_1 with a
+// itself as parameter; with arc length only its sign counts, or, where `ahead` [n] is not zero, the direction
 // of the motion before. Nothing is allocated.
 void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
             const Vector<double>& ahead);
 
+// The parameter of the equations where the march is: a, or t while settling.
+double parameter(const March<double>& s, Drive drive);
+
 // Up to which τ the orders left out are worth less than `tolerance` [m]: (ε / |x_p|)^(1/p), |x| = √(|Δr|² +
-// L²|Δπ|² + (per_load a_k)²) with `per_load` metres for a unit of the load factor; nearer where the radius of
+// L²|Δπ|² + (per_load a_k)²) with `per_load` metres for a unit of a; nearer where the radius of
 // convergence R is less than twice that, since they fall as (τ/R)^k and sum to |x_p| τ^p (τ/R) / (1 - τ/R).
 // An x_p that vanishes by symmetry is taken for |x_{p-1}| / R. NaN if a coefficient is not finite.
 double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load, double radius);

@@ -46,24 +46,59 @@ std::optional<double> first_zero(Function f, double reach) {
     return std::nullopt;
 }
 
+// One way along the parameter: t from 0 to 1 while what is held settles, then a from 0 to the branch's end.
 struct Walk {
-    March<double> s;
+    March<double>& s;
+    const Options& options;
     Equations e;
     Coefficients c;
-    const Options& options;
-    double to;             // load factor of the end
-    double per_load;       // metres that an error of one unit of the load factor counts as
+    double to;             // of the parameter
+    double per_unit;       // metres that an error of one unit of the parameter counts as
     Vector<double> ahead;  // x'(τ) of the motion before: which way is on
-    double heading;        // a'(τ) at the end of the last piece: whether the load rises or falls
+    double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
     Vector<double> x;      // where on the polynomial
     Path path;
+
+    Walk(March<double>& s_, const Options& options_, Drive drive)
+        : s(s_),
+          options(options_),
+          e(equations(s.model, s.branch, options.order, drive)),
+          c(reserve_coefficients(s, options.order)),
+          to(drive == Drive::start ? 1 : s.branch.to),
+          per_unit(s.length / std::abs(to)),
+          ahead(Vector<double>::Zero(s.n() + s.m())) {
+        e.G_d = -s.R_d;
+        e.Phi_d = s.Phi_d;
+    }
+    bool by_arc() const { return options.arc_length && e.drive == Drive::rate; }
+    double at() const { return parameter(s, e.drive); }
+    void go_to(double value) {
+        recursive::go_to(s, e.drive == Drive::start ? recursive::Place<double>{value, 0}
+                                                    : recursive::Place<double>{1, value});
+        s.a = s.place.a;
+    }
 };
 
 double largest_force(const March<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
 double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff(); }
 
+// Joints that say a thing twice may be driven to say two: the border takes up what they cannot both meet.
+bool contradicts(March<double>& s) {
+    if (s.system.borders() == s.system.idle) return false;
+    residual_at(s, s.q, s.lambda);
+    return !(largest_violation(s) <= 1e-9 * std::max(1.0, s.length));
+}
+
+// s.applied, which idle modes are checked against: all that acts at the end of the way.
+void apply_all(Walk& w) {
+    const double here = w.at();
+    w.go_to(w.to);
+    external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
+    w.go_to(here);
+}
+
 // Newton at the present place, with factors that serve the next expansion. The first correction is the error
-// of what led here. With arc length the load gives way, so that nothing moves along the path.
+// of what led here. With arc length the parameter gives way, so that nothing moves along the path.
 Outcome arrive(Walk& w, Certificate* judged, double& error) {
     March<double>& s = w.s;
     const int n = s.n();
@@ -71,16 +106,12 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
-        elastocheck::recursive::go_to(s, {1, w.to});
-        external_force<double>(s.model, s.branch, s.inputs, s.q,
-                               s.applied);  // what idle modes are checked against
-        elastocheck::recursive::go_to(s, {1, s.a});
-        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
-            return outcome;
+        apply_all(w);
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
         double slid = 0;
-        const bool slide = w.options.arc_length && !w.ahead.isZero(0);
+        const bool slide = w.by_arc() && !w.ahead.isZero(0);
         if (slide) {
-            drive_at(s, Drive::rate, 1.0, s.q);
+            drive_at(s, w.e.drive, 1.0, s.q);
             back_substitute(s);
             w.c.unit = s.x;
         }
@@ -94,8 +125,8 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
             const auto along = w.ahead.head(n).array() * W2;
             const double da = -(along * s.x.head(n).array()).sum() / (along * w.c.unit.head(n).array()).sum();
             s.x += da * w.c.unit;
-            s.a += da;
-            slid = w.per_load * std::abs(da);
+            w.go_to(w.at() + da);
+            slid = w.per_unit * std::abs(da);
         }
         if (!s.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
@@ -108,7 +139,7 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         // The factors are those of the place before this correction: good while it was small.
         if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
     }
-    return Outcome::converged;
+    return contradicts(s) ? Outcome::inconsistent_constraints : Outcome::converged;
 }
 
 std::vector<Pose> poses_of(const State<double>& q) {
@@ -124,11 +155,11 @@ struct End {
     bool last = false;
 };
 
-// How far the expansion at load factor a_0 carries; an outcome where there is no way on.
+// How far the expansion at the parameter a_0 carries; an outcome where there is no way on.
 Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
-    end = {reach(w.s, w.c, w.options.tolerance, w.per_load, singularity.radius), false};
+    end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false};
     if (std::isnan(end.tau)) return Outcome::not_finite;
-    if (w.options.arc_length) {
+    if (w.by_arc()) {
         end.tau = std::min(end.tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
         if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
             end = {*met, true};
@@ -155,32 +186,33 @@ Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
 }
 
 // The polynomial about `from` at τ becomes the present state.
-void go_to(Walk& w, const State<double>& from, double tau) {
+void move_to(Walk& w, const State<double>& from, double tau) {
     horner(w.c.x, tau, w.x);
     displace(from, w.x, w.s.q);
     w.s.lambda = w.x.tail(w.s.m());
-    w.s.a = polynomial(w.c.load, tau);
+    w.go_to(polynomial(w.c.load, tau));
 }
 
 // Goes from `from` to the end and corrects it there, judging the expansion on the way; an end that is found
 // wanting is drawn nearer.
 Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged) {
     for (int shorter = 0; shorter <= 20; ++shorter) {
-        go_to(w, from, end.tau / 2);
-        elastocheck::recursive::go_to(w.s, {1, w.s.a});
+        move_to(w, from, end.tau / 2);
         residual_at(w.s, w.s.q, w.s.lambda);
         judged.force_middle = largest_force(w.s);
         judged.constraint_middle = largest_violation(w.s);
 
-        go_to(w, from, end.tau);
-        if (end.last && !w.options.arc_length) w.s.a = w.to;
-        w.ahead = w.options.arc_length ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
+        move_to(w, from, end.tau);
+        if (end.last && !w.by_arc()) w.go_to(w.to);
+        w.ahead = w.by_arc() ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
         const Outcome outcome = arrive(w, &judged, judged.error_end);
         const double error = judged.error_end;
         if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) return outcome;
-        if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
+        if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
+            outcome == Outcome::inconsistent_constraints)
+            return outcome;
         ++w.path.rejected;
-        const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order + 1));
+        const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order() + 1));
         end = {end.tau * (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5), false};
     }
     return Outcome::branch_lost;
@@ -202,64 +234,91 @@ void look_for_turns(Walk& w, double reach) {
     }
 }
 
+// Begins at the design position, where the analysis has the factors.
+Outcome begin_at_design(Walk& w, const Analysis& analysis) {
+    w.go_to(1);
+    if (w.e.drive == Drive::start && pushes_idle_mode(w.s)) return Outcome::loaded_idle_mode;
+    w.go_to(0);
+    apply_all(w);
+    return judge(w.s, w.s.q, analysis.pivot_ratio);
+}
+
+// From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
-    double error = 0;
-    if (const Outcome outcome = settle(s); outcome != Outcome::converged) return outcome;
-    if (const Outcome outcome = arrive(w, nullptr, error); outcome != Outcome::converged) return outcome;
     while (static_cast<int>(w.path.expansions.size()) < w.options.expansions) {
         const State<double> from = s.q;
-        expand(s, w.e, w.c, w.to, w.options.arc_length, w.ahead);
+        expand(s, w.e, w.c, w.to, w.by_arc(), w.ahead);
         const Singularity singularity = nearest_singularity(s, w.c);
         End end;
         Certificate judged;
-        if (const Outcome o = look_ahead(w, s.a, singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
-        if (w.options.arc_length) look_for_turns(w, end.tau);
+        if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
         if (end.last) return Outcome::converged;
-        if (w.options.arc_length && !(std::abs(s.a) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
+        if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
     }
     return Outcome::iteration_limit;
 }
 
 std::string words(const Walk& w, Outcome outcome) {
-    std::string at = fmt::format("branch '{}': at load factor {:.6g}", w.s.branch.name, w.s.a);
+    const bool settles = w.e.drive == Drive::start;
+    const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
+    const std::string at =
+        settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
+                : fmt::format("{}: at {:.6g}", branch, w.at());
     switch (outcome) {
         case Outcome::limit_point:
-            return fmt::format(
-                "branch '{}': limit point near load factor {:.9g}, past it no equilibrium continues the "
-                "branch",
-                w.s.branch.name, w.path.limits.back());
+            return settles ? fmt::format("{}: settling what is held, limit point at {:.9g} of it: from the drawing "
+                                         "no equilibrium leads further",
+                                         branch, w.path.limits.back())
+                           : fmt::format("{}: limit point near {:.9g}, past it no equilibrium continues the branch",
+                                         branch, w.path.limits.back());
         case Outcome::iteration_limit:
             return at + fmt::format(": {} expansions were not enough", w.options.expansions);
+        case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         default: return at;
     }
 }
 
+// Whether the branch holds anything that the drawing does not.
+bool starts_as_drawn(const Branch& branch) {
+    return std::ranges::all_of(branch.drivers, [](const Driver& driver) { return driver.start == 0; });
+}
+
 }  // namespace
 
-Path follow(const Model& model, const Branch& branch, const Options& options) {
+Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {
     check(model, branch);
-    const Diagnosis diagnosis = diagnose(model);
-    Walk w{March<double>(model, branch, diagnosis),
-           equations(model, branch, options.order),
-           {},
-           options,
-           branch.to,
-           diagnosis.length / std::abs(branch.to),
-           {},
-           0,
-           {},
-           {}};
-    w.c = reserve_coefficients(w.s, options.order);
-    w.ahead.setZero(w.s.n() + w.s.m());
-    const Outcome outcome = walk(w);
-    w.path.outcome = outcome;
-    if (outcome != Outcome::converged) w.path.detail = words(w, outcome);
-    w.path.counts = w.s.counts;
-    w.path.arc_length = options.arc_length;
-    return std::move(w.path);
+    March<double> s(model, branch, analysis);
+    s.consistent = true;
+    const auto finish = [&](Walk& w, Outcome outcome) {
+        w.path.outcome = outcome;
+        if (outcome != Outcome::converged) w.path.detail = words(w, outcome);
+        w.path.counts = s.counts;
+        w.path.arc_length = options.arc_length;
+        if (w.e.drive == Drive::start) w.path.expansions.clear();
+        return std::move(w.path);
+    };
+    // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium, the
+    // way to one begins there; where it is, the branch does.
+    if (!analysis.at_rest || !starts_as_drawn(branch)) {
+        Walk settling(s, options, Drive::start);
+        if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
+            return finish(settling, o);
+        if (const Outcome o = walk(settling); o != Outcome::converged) return finish(settling, o);
+        Walk w(s, options, Drive::rate);
+        w.go_to(0);
+        return finish(w, walk(w));
+    }
+    Walk w(s, options, Drive::rate);
+    if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged) return finish(w, o);
+    return finish(w, walk(w));
+}
+
+Path follow(const Model& model, const Branch& branch, const Options& options) {
+    return follow(model, branch, options, analyse(model));
 }
 
 std::optional<Place> find(const Path& path, double load) {
@@ -290,9 +349,9 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
     State<double> q = from;
     displace(from, x, q);
     Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
-    const double load = polynomial(expansion.load, place.tau);
-    record<double>(model, inputs_at<double>(model, branch, load), q, q,
-                   Vector<double>(x.tail(constraint_rows(model))), load, point);
+    const double a = polynomial(expansion.load, place.tau);
+    record<double>(model, inputs_at<double>(model, branch, a), q, q,
+                   Vector<double>(x.tail(constraint_rows(model))), a, point);
     return point;
 }
 
@@ -308,7 +367,13 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
     std::size_t reached = 0;
     std::vector<double> loads, taus;
     Matrix<double> powers, x;
-    Vector<double> lambda;
+    Vector<double> lambda(constraint_rows(model));
+    const Inputs<double> drawn = inputs_as_drawn<double>(model);
+    Inputs<double> inputs;
+    set_inputs<double>(model, branch, drawn, 1, 0, inputs);
+    // Of what a branch moves, wrenches know the offsets of joints alone.
+    const bool moves = std::ranges::any_of(
+        branch.drivers, [](const Driver& driver) { return std::holds_alternative<Motion>(driver.what); });
     for (std::size_t k = 0; k < path.expansions.size(); ++k) {
         const Expansion& expansion = path.expansions[k];
         const bool last = k + 1 == path.expansions.size();
@@ -337,10 +402,11 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
         const State<double> from = state_of<double>(expansion.start);
         State<double> q = from;
         for (Eigen::Index c = 0; c < x.cols(); ++c) {
+            const double load = loads[static_cast<std::size_t>(c)];
             displace(from, x.col(c), q);
-            lambda = x.col(c).tail(constraint_rows(model));
-            record<double>(model, inputs_at<double>(model, branch, loads[static_cast<std::size_t>(c)]), q, q,
-                           lambda, loads[static_cast<std::size_t>(c)], result.points[reached++]);
+            lambda = x.col(c).tail(lambda.size());
+            if (moves) set_inputs<double>(model, branch, drawn, 1, load, inputs);
+            record<double>(model, inputs, q, q, lambda, load, result.points[reached++]);
         }
     }
     result.points.resize(reached);

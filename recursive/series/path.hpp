@@ -16,6 +16,7 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
+#include "recursive/analysis.hpp"
 #include "recursive/series/options.hpp"
 
 namespace elastocheck::recursive::series {
@@ -50,7 +51,7 @@ struct Path {
     Outcome outcome = Outcome::converged;
     std::string detail;
     std::vector<Expansion> expansions;
-    std::vector<double> limits;  // load factors at which the path turns back (arc length), or ends (load)
+    std::vector<double> limits;  // values of a at which the path turns back (arc length), or ends
     bool arc_length = false;
     int rejected = 0;  // expansions whose far end was found wanting and drawn nearer
     Counts counts;     // iterations: back-substitutions; evaluations: residuals, not coefficients
@@ -58,6 +59,7 @@ struct Path {
 
 // From load factor 0 to branch.to. With the load as parameter, ends with `limit_point` where no equilibrium
 // continues the branch.
+Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
 Path follow(const Model& model, const Branch& branch, const Options& options = {});
 
 // Where on the path a load factor is met, the first time.

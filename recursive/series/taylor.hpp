@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <memory>
+#include <memory_resource>
+#include <span>
 
 #include "recursive/state.hpp"
 
@@ -23,11 +25,29 @@ struct Order {
     Pass pass = Pass::known;
 };
 
+// Memory of all coefficients of one set of equations: taken once, given back as a whole.
+struct Room {
+    int order = 0;  // p
+    std::unique_ptr<std::pmr::monotonic_buffer_resource> memory;
+
+    explicit Room(int p)
+        : order(p), memory(std::make_unique<std::pmr::monotonic_buffer_resource>(std::size_t{1} << 15)) {}
+
+    template <class T>
+    T* take(int count, const T& value) {
+        static_assert(std::is_trivially_destructible_v<T>);
+        const auto n = static_cast<std::size_t>(count);
+        T* const first = static_cast<T*>(memory->allocate(n * sizeof(T), alignof(T)));
+        std::uninitialized_fill_n(first, n, value);
+        return first;
+    }
+};
+
 template <class T>
 struct Series {
-    std::vector<T> c;  // c[0 ... p]
-    T change;          // what x_k added to c[k]
-    int last = 0;      // beyond it all coefficients are zero: 0 for a constant
+    T* c = nullptr;  // c[0 ... p], in the room of its equations
+    T change;        // what x_k added to c[k]
+    int last = 0;    // beyond it all coefficients are zero: 0 for a constant
 
     Series() : change(zero()) {}
     static T zero() {
@@ -39,20 +59,21 @@ struct Series {
 };
 using Scalar = Series<double>;
 using Vector3Series = Series<Vector3<double>>;
+using Vector6Series = Series<Vector6<double>>;
 using Matrix3Series = Series<Matrix3<double>>;
 
 template <class T>
-void reserve(Series<T>& s, int order, bool constant = false) {
-    s.c.assign(static_cast<std::size_t>(order) + 1, s.zero());
-    s.last = constant ? 0 : order;
+void reserve(Room& room, Series<T>& s, bool constant = false) {
+    s.c = room.take<T>(room.order + 1, s.zero());
+    s.last = constant ? 0 : room.order;
 }
 template <class T>
 T& at(Series<T>& s, int k) {
-    return s.c[static_cast<std::size_t>(k)];
+    return s.c[k];
 }
 template <class T>
 const T& at(const Series<T>& s, int k) {
-    return s.c[static_cast<std::size_t>(k)];
+    return s.c[k];
 }
 
 // Σ a_i b_{k-i}, times(a_i, b_j) any product.
@@ -129,6 +150,27 @@ inline void square_root(Order o, const Scalar& a, Scalar& c) {
     }
 }
 
+// c = cos α, s = sin α:  c' = -s α',  s' = c α'
+inline void cosine_sine(Order o, const Scalar& alpha, Scalar& c, Scalar& s) {
+    if (o.pass == Pass::change) {
+        c.change = -s.c[0] * alpha.change;
+        s.change = c.c[0] * alpha.change;
+        at(c, o.k) += c.change;
+        at(s, o.k) += s.change;
+    } else if (o.k == 0) {
+        c.c[0] = std::cos(alpha.c[0]);
+        s.c[0] = std::sin(alpha.c[0]);
+    } else {
+        double of_c = 0, of_s = 0;
+        for (int i = 1; i <= std::min(o.k, alpha.last); ++i) {
+            of_c -= i * at(alpha, i) * at(s, o.k - i);
+            of_s += i * at(alpha, i) * at(c, o.k - i);
+        }
+        at(c, o.k) = of_c / o.k;
+        at(s, o.k) = of_s / o.k;
+    }
+}
+
 // The functions of the logarithm of a rotation, regular at zero angle:
 //
 //   F_m(s) = Σ (-1)ⁿ sⁿ / (2n + m),   m F_m + 2 s F_m' = 1 / (1 + s)
@@ -139,7 +181,7 @@ inline void square_root(Order o, const Scalar& a, Scalar& c) {
 //   (2n + m) c_n + 2 (n + 1) s_0 / (1 + s_0) c_{n+1} = (-1)ⁿ / (1 + s_0) ,
 //
 // taken backwards, where an error shrinks by s_0 / (1 + s_0) each time: begun far enough out, it is gone.
-inline void taylor_of_F(int m, double s_0, std::vector<double>& b) {
+inline void taylor_of_F(int m, double s_0, std::span<double> b) {
     const double inverse = 1 / (1 + s_0), shrinks = s_0 * inverse;
     const int p = static_cast<int>(b.size()) - 1;
     const int beyond = shrinks > 0 ? static_cast<int>(std::min(-40 / std::log(shrinks), 1e6)) : 0;
@@ -154,15 +196,15 @@ inline void taylor_of_F(int m, double s_0, std::vector<double>& b) {
 
 // f(s(τ)) from the Taylor coefficients b_n of f about s_0:  Σ b_n σⁿ, σ = s - s_0.
 struct Composition {
-    std::vector<double> b;                   // [p + 1]
-    std::vector<std::vector<double>> power;  // power[n] = coefficients of σⁿ, n = 2 ... p
+    std::span<double> b;  // [p + 1]
+    double* power;        // coefficient k of σⁿ at n (p + 1) + k, n = 2 ... p
     Scalar f;
 };
-inline void reserve(Composition& c, int order) {
-    const auto n = static_cast<std::size_t>(order) + 1;
-    c.b.assign(n, 0);
-    c.power.assign(n, std::vector<double>(n, 0));
-    reserve(c.f, order);
+inline void reserve(Room& room, Composition& c) {
+    const int n = room.order + 1;
+    c.b = {room.take<double>(n, 0), static_cast<std::size_t>(n)};
+    c.power = room.take<double>(n * n, 0);
+    reserve(room, c.f);
 }
 inline void compose(Order o, const Scalar& s, Composition& c) {
     if (o.pass == Pass::change) {
@@ -174,16 +216,16 @@ inline void compose(Order o, const Scalar& s, Composition& c) {
         c.f.c[0] = c.b[0];
         return;
     }
-    const auto k = static_cast<std::size_t>(o.k);
-    double sum = c.b[1] * s.c[k];
-    for (std::size_t n = 2; n <= k; ++n) {
-        const std::vector<double>& lower = c.power[n - 1];
-        double power = 0;  // σⁿ⁻¹ begins at order n - 1
-        for (std::size_t i = 1; i + (n - 1) <= k; ++i) power += s.c[i] * (n == 2 ? s.c[k - i] : lower[k - i]);
-        c.power[n][k] = power;
-        sum += c.b[n] * power;
+    const int k = o.k, columns = static_cast<int>(c.b.size());
+    double sum = c.b[1] * at(s, k);
+    for (int n = 2; n <= k; ++n) {
+        const double* const lower = n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
+        double power = 0;
+        for (int i = 1; i + (n - 1) <= k; ++i) power += at(s, i) * lower[k - i];
+        c.power[n * columns + k] = power;
+        sum += c.b[static_cast<std::size_t>(n)] * power;
     }
-    c.f.c[k] = sum;
+    at(c.f, k) = sum;
 }
 
 }  // namespace elastocheck::recursive::series

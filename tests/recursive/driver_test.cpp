@@ -86,7 +86,13 @@ TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
 
 TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
     const Driven1 d = slider_crank(360);
-    const auto error = [&](int steps) { return run(d, rung("published"), steps, 4).points.back().constraint_error; };
+    // Over a whole turn the leading term comes back to zero: the worst of the way counts.
+    const auto error = [&](int steps) {
+        double worst = 0;
+        for (const auto& point : run(d, rung("published"), steps, 8).points)
+            worst = std::max(worst, point.constraint_error);
+        return worst;
+    };
     const double coarse = error(720), fine = error(1440);
     EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1) << coarse << " " << fine;
 }
@@ -155,10 +161,10 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
     const double free = std::hypot(half_span, height);
     const auto force = [&](double z) { return 2 * k * (std::hypot(half_span, z) - free) * z / std::hypot(half_span, z); };
     const Driven1 d = jacked(scene, scene.probes[0].at, {0, 0, height}, -2 * height - 0.02, 400);
-    for (const auto& method : methods) {
+    for (Method method : methods) {
         if (!steps_or_adapts(method)) continue;
+        if (method.name == "adaptive") method = adaptive(1e-9);
         const auto path = run(d, method, 400);
-        const bool truth = method.formal_order > 0;
         double work = 0, worst = 0;
         for (std::size_t n = 0; n < path.points.size(); ++n) {
             const double jack = path.points[n].reactions.back().force.z(), z = height + path.points[n].load;
@@ -167,9 +173,11 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
         }
         work *= d.branch.to / 400 / 3;
         const double stretch = std::hypot(half_span, height + d.branch.to) - free;
-        if (!truth) continue;
-        EXPECT_LE(worst, method.formal_order > 1 ? 1e-6 : 1) << method.name;
-        if (method.formal_order > 1) EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-7) << method.name;
+        // In newtons of 2.6 kN; what a method's λ lags behind by is its order.
+        const bool exact = method.name == "chord" || method.name == "adaptive";
+        EXPECT_LE(worst, exact ? 1e-5 : method.formal_order > 1 ? 0.1 : method.formal_order > 0 ? 5 : 300)
+            << method.name;
+        if (exact) EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-8) << method.name;
     }
 }
 

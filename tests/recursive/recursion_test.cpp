@@ -291,6 +291,21 @@ TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
     EXPECT_EQ(path.points.size(), 1u);
 }
 
+TEST(Outcome, APreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
+    // The spring pulls the bar round the guide: drawn off the axis, and stretched.
+    const Model model =
+        bar("bodies: {bar: {origin: a}}\n"
+            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
+            "bushings: {k: {bodies: [bar, ground], at: a, rates: [1000, 1000, 1000], "
+            "rotational_rates: [0, 10, 10], preload: [0, 0, 0, 5, 0, 0]}}\n"
+            "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n");
+    ASSERT_EQ(diagnose(model).idle.size(), 1u);
+    for (const auto& method : methods) {
+        const auto path = solve(model, model.branches[0], {.method = method});
+        EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << method.name << ": " << path.detail;
+    }
+}
+
 TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
     const std::string rest =
         "bodies: {bar: {origin: a}}\n"

@@ -27,15 +27,17 @@ Case anywhere(Random& random) {
 }
 
 // Coefficients that fall as 4^-k, so that orders up to 20 count at τ near one.
-void expect_same(const Case& c, Random& random, const std::string& what) {
+void expect_same(const Case& c, Random& random, const std::string& what, Drive drive) {
     constexpr int p = 30;
     const int n = coordinates(c.model), m = constraint_rows(c.model);
     Vector<double> lambda(m), load(p + 1);
     for (auto& value : lambda) value = random(-1e3, 1e3);
     load[0] = random(-1, 1);
-    Equations e = equations(c.model, c.branch, p);
-    begin(e, c.model, c.branch, c.q, lambda, load[0]);
-    evaluate(e, c.model, c.branch, {0, Pass::known});
+    Equations e = equations(c.model, c.branch, p, drive);
+    for (auto& value : e.G_d) value = random(-1e3, 1e3);
+    for (auto& value : e.Phi_d) value = random(-0.1, 0.1);
+    begin(e, c.q, lambda, load[0]);
+    evaluate(e, {0, Pass::known});
     Matrix<double> x = Matrix<double>::Zero(n + m, p + 1), left(n + m, p + 1);
     x.col(0).tail(m) = lambda;
     left.col(0) << e.G, e.Phi;
@@ -44,9 +46,11 @@ void expect_same(const Case& c, Random& random, const std::string& what) {
         for (int row = 0; row < n + m; ++row) x(row, k) = random(-size, size) * (row < n ? 1 : 1e3);
         load[k] = random(-size, size);
         assign(e, k, x.col(k), load[k]);
-        evaluate(e, c.model, c.branch, {k, Pass::known});
+        evaluate(e, {k, Pass::known});
         left.col(k) << e.G, e.Phi;
     }
+    const Inputs<double> drawn = inputs_as_drawn<double>(c.model);
+    Inputs<double> inputs;
     for (const double tau : {-1.0, -0.4, 0.3, 1.0}) {
         Vector<double> at, sum, a, f, Phi(m), part;
         horner(x, tau, at);
@@ -54,11 +58,19 @@ void expect_same(const Case& c, Random& random, const std::string& what) {
         horner(load.transpose(), tau, a);
         State<double> q = c.q;
         displace(c.q, at, q);
-        constraint_force<double>(c.model, q, at.tail(m), f, Phi);
-        elastic_force<double>(c.model, q, part);
+        if (drive == Drive::start)
+            set_inputs<double>(c.model, c.branch, drawn, a[0], 0, inputs);
+        else
+            set_inputs<double>(c.model, c.branch, drawn, 1, a[0], inputs);
+        constraint_force<double>(c.model, inputs, q, at.tail(m), f, Phi);
+        elastic_force<double>(c.model, inputs, q, part);
         f += part;
-        external_force<double>(c.model, c.branch, a[0], q, part);
+        external_force<double>(c.model, c.branch, inputs, q, part);
         f -= part;
+        if (drive == Drive::start) {
+            f -= (1 - a[0]) * e.G_d;
+            Phi -= (1 - a[0]) * e.Phi_d;
+        }
         EXPECT_LE((sum.head(n) - f).norm(), 1e-12 * left.topRows(n).norm()) << what << ", τ = " << tau;
         EXPECT_LE((sum.tail(m) - Phi).norm(), 1e-12 * (1 + left.bottomRows(m).norm()))
             << what << ", τ = " << tau;
@@ -66,8 +78,16 @@ void expect_same(const Case& c, Random& random, const std::string& what) {
     // Order by order that is no accident: the last orders are there, and count.
     EXPECT_GT(left.middleCols(8, 4).norm(), 0) << what;
 }
+void expect_same(const Case& c, Random& random, const std::string& what) {
+    expect_same(c, random, what, Drive::rate);
+    expect_same(c, random, what + " while settling", Drive::start);
+}
 
 Marker marker(BodyId body, Random& random) { return {body, random.vector(), random.rotation()}; }
+
+DirectionAtAngle angle_between(const Direction& i, const Direction& x, Random& random) {
+    return {i, x, {x.body, x.u_local.cross(random.unit()).normalized()}, random(-3, 3)};
+}
 
 TEST(SeriesEquations, HoldForEveryConstraintBetweenAnyBodies) {
     Random random;
@@ -76,8 +96,9 @@ TEST(SeriesEquations, HoldForEveryConstraintBetweenAnyBodies) {
             const Point at_i{i, random.vector()}, at_j{j, random.vector()};
             const Direction along_i{i, random.unit()}, along_j{j, random.unit()};
             const std::vector<ConstraintKind> kinds{
-                CoincidentPoints{at_i, at_j}, PointInPlane{at_i, at_j, along_j},
-                PerpendicularDirections{along_i, along_j}, DistanceBetween{at_i, at_j, random(0.3, 2)}};
+                CoincidentPoints{at_i, at_j}, PointInPlane{at_i, at_j, along_j, random()},
+                PerpendicularDirections{along_i, along_j}, DistanceBetween{at_i, at_j, random(0.3, 2)},
+                angle_between(along_i, along_j, random)};
             for (const auto& kind : kinds) {
                 Case c = anywhere(random);
                 c.model.constraints.push_back({0, kind});
@@ -91,7 +112,7 @@ TEST(SeriesEquations, HoldForASpringBetweenAnyBodies) {
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
-            const AxialSpring e{{i, random.vector()}, {j, random.vector()}, 3e4, random(0.1, 3)};
+            const AxialSpring e{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
             // Near to ends that meet the force is not analytic.
             if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local)).norm() < 1)
                 continue;
@@ -106,7 +127,7 @@ TEST(SeriesEquations, HoldForAnyBushingBetweenAnyBodiesAtAnyAngle) {
     for (const auto& [i, j] : sides)
         for (const double angle : {0.0, 1e-9, 1e-4, 0.04, 0.3, 1.0, 2.0}) {
             Case c = anywhere(random);
-            Bushing e{marker(i, random), marker(j, random), random.stiffness(), {}};
+            Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};
             e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
             const Eigen::Quaterniond turn = exponential<double>(angle * random.unit());
             e.j.A_local = c.q[j].p.conjugate() * c.q[i].p * e.i.A_local * turn;
@@ -115,16 +136,71 @@ TEST(SeriesEquations, HoldForAnyBushingBetweenAnyBodiesAtAnyAngle) {
         }
 }
 
-TEST(SeriesEquations, HoldForForcesAndMomentsOfBothKindsOfLoad) {
+TEST(SeriesEquations, HoldForABushingWithoutMoments) {
+    Random random;
+    for (const auto& [i, j] : sides) {
+        Case c = anywhere(random);
+        Matrix6<double> K = Matrix6<double>::Zero();
+        K.topLeftCorner<3, 3>() = random.stiffness().topLeftCorner<3, 3>();
+        c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K}, {}}});
+        expect_same(c, random, fmt::format("mount between {} and {}", i, j));
+        // Until something brings a moment about.
+        Preload preload{0, Vector6<double>::Zero()};
+        preload.direction.tail<3>() = random.vector(50);
+        c.branch.drivers.push_back({preload, random(), random()});
+        expect_same(c, random, fmt::format("twisted mount between {} and {}", i, j));
+    }
+}
+
+TEST(SeriesEquations, HoldForStaticLoadsAndForWhatABranchDrives) {
     Random random;
     for (BodyId body = 0; body < bodies; ++body) {
         Case c = anywhere(random);
-        for (auto* loads : {&c.model.static_loads, &c.branch.loads}) {
-            loads->push_back({"force", DeadForce{{body, random.vector()}, random.vector(1e3)}});
-            loads->push_back({"moment", DeadMoment{body, random.vector(1e3)}});
-        }
+        const Load force{"force", DeadForce{{body, random.vector()}, random.vector(1e3)}},
+            moment{"moment", DeadMoment{body, random.vector(1e3)}};
+        c.model.static_loads = {force, moment};
+        for (const auto& load : {force, moment, force}) c.branch.drivers.push_back({load, random(), random()});
         expect_same(c, random, fmt::format("loads on {}", body));
     }
+}
+
+TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (int trial = 0; trial < 10; ++trial) {
+            const Point at_i{i, random.vector()}, at_j{j, random.vector()};
+            const Direction along_i{i, random.unit()}, along_j{j, random.unit()};
+            const std::vector<ConstraintKind> kinds{PointInPlane{at_i, at_j, along_j, random()},
+                                                    DistanceBetween{at_i, at_j, random(2, 4)},
+                                                    angle_between(along_i, along_j, random)};
+            for (const auto& kind : kinds) {
+                Case c = anywhere(random);
+                c.model.joints.push_back({.name = "joint", .driven = 0});
+                c.model.constraints.push_back({0, kind});
+                // Two drivers of one joint: what they move adds up.
+                for (int k = 0; k < 2; ++k) c.branch.drivers.push_back({Motion{0}, random(0, 0.3), random(0, 0.3)});
+                expect_same(c, random, fmt::format("offset {} between {} and {}", kind.index(), i, j));
+            }
+        }
+}
+
+TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (int trial = 0; trial < 10; ++trial) {
+            Case c = anywhere(random);
+            const AxialSpring spring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
+            if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r - c.q[j].lever(spring.j.s_local)).norm() < 1)
+                continue;
+            c.model.elastics.push_back({"spring", spring});
+            c.model.elastics.push_back(
+                {"bushing", Bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}}});
+            c.branch.drivers.push_back({FreeLength{0}, random(), random()});
+            Preload preload{1, Vector6<double>::Zero()};
+            for (auto& value : preload.direction) value = random(-500, 500);
+            c.branch.drivers.push_back({preload, random(), random()});
+            expect_same(c, random, fmt::format("moving elements between {} and {}", i, j));
+        }
 }
 
 }  // namespace

@@ -6,10 +6,6 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "models/compile.hpp"
-#include "recursive/assembly.hpp"
-#include "recursive/solve.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -26,6 +22,33 @@ Matrix<double> random_saddle_point(std::mt19937& random, int n, int m) {
     return M;
 }
 
+// The three calls for a dense matrix: its entries other than zero are the pattern.
+Pattern pattern_of(const Matrix<double>& A) {
+    Pattern pattern{static_cast<int>(A.rows()), {}, {}};
+    for (int j = 0; j < pattern.size; ++j) {
+        pattern.first.push_back(static_cast<int>(pattern.row.size()));
+        for (int i = 0; i < pattern.size; ++i)
+            if (A(i, j) != 0) pattern.row.push_back(i);
+    }
+    pattern.first.push_back(static_cast<int>(pattern.row.size()));
+    return pattern;
+}
+std::vector<double> values_of(const Pattern& pattern, const Matrix<double>& A) {
+    std::vector<double> values;
+    for (int j = 0; j < pattern.size; ++j)
+        for (int e = pattern.first[static_cast<std::size_t>(j)];
+             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e)
+            values.push_back(A(pattern.row[static_cast<std::size_t>(e)], j));
+    return values;
+}
+void analyse(SparseLU<double>& lu, const Matrix<double>& A) {
+    const Pattern pattern = pattern_of(A);
+    recursive::analyse(lu, pattern, values_of(pattern, A).data());
+}
+double factorise(SparseLU<double>& lu, const Matrix<double>& A) {
+    return recursive::factorise(lu, values_of(lu.order.pattern, A).data());
+}
+
 TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
     std::mt19937 random(1);
     double worst = 0;
@@ -33,7 +56,7 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
         for (int m = 0; m <= n / 2; ++m) {
             Matrix<double> M = random_saddle_point(random, n, m);
             SparseLU<double> lu;
-            reserve(lu, M);
+            analyse(lu, M);
             for (int again = 0; again < 5; ++again) {  // other values in the same places
                 M = (M.array() * (1 + 0.3 * Matrix<double>::Random(n + m, n + m).array())).matrix();
                 ASSERT_GT(factorise(lu, M), 0);
@@ -50,7 +73,7 @@ TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
     Matrix<double> A(3, 3);
     A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any diagonal that is not negative, and one zero
     SparseLU<double> lu;
-    reserve(lu, A);
+    analyse(lu, A);
     for (double pivot = 1; pivot > 1e-17; pivot /= 10) {
         for (int k = 0; k < 3; ++k) {  // whichever comes first in the order
             Matrix<double> B = A;
@@ -69,8 +92,8 @@ TEST(SparseLU, KeepsItsOrderWhileItServes) {
     std::mt19937 random(2);
     const Matrix<double> M = random_saddle_point(random, 12, 5);
     SparseLU<double> lu;
-    reserve(lu, M);
-    for (int k = 0; k < 100; ++k) factorise<double>(lu, (1 + 0.01 * k) * M);
+    analyse(lu, M);
+    for (int k = 0; k < 100; ++k) factorise(lu, (1 + 0.01 * k) * M);
     EXPECT_EQ(lu.orders, 1);
 }
 
@@ -78,7 +101,7 @@ TEST(SparseLU, SaysSingularAndNotFinite) {
     Matrix<double> A(3, 3);
     A << 1, 2, 0, 2, 4, 0, 0, 0, 1;
     SparseLU<double> lu;
-    reserve(lu, A);
+    analyse(lu, A);
     EXPECT_EQ(factorise(lu, A), 0);
     A(1, 1) = 5;
     EXPECT_GT(factorise(lu, A), 0.01);
@@ -91,26 +114,33 @@ TEST(SparseLU, SaysSingularAndNotFinite) {
     EXPECT_GT(factorise(lu, A), 0.01);
 }
 
-TEST(SparseLU, WhatIsZeroInTheGenericMatrixStaysZeroAlongEveryBranch) {
-    for (const auto& name : support::scene_names()) {
-        const Model model = compile(support::scene(name));
-        const Eigen::Index N = coordinates(model) + constraint_rows(model);
-        Vector<double> Phi(constraint_rows(model));
-        for (const auto& branch : model.branches) {
-            const Matrix<double> generic = generic_matrix<double>(model, branch, Matrix<double>::Zero(N, N));
-            const auto path = solve(model, branch, {.method = *find_method("chord"), .steps = 60});
-            for (const auto& point : path.points) {
-                Matrix<double> M = Matrix<double>::Zero(N, N);
-                assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, point.load), state_of<double>(point.poses),
-                                            1e3 * Vector<double>::Random(constraint_rows(model)), M, Phi);
-                for (Eigen::Index i = 0; i < N; ++i)
-                    for (Eigen::Index j = 0; j < N; ++j) {
-                        if (generic(i, j) != 0) continue;
-                        EXPECT_LE(std::abs(M(i, j)), 1e-14 * M.row(i).cwiseAbs().maxCoeff())
-                            << name << " " << i << " " << j;
-                    }
-            }
-        }
+TEST(SparseLU, AnOrderServesOtherArithmetics) {
+    std::mt19937 random(5);
+    const Matrix<double> M = random_saddle_point(random, 14, 6);
+    SparseLU<double> lu;
+    analyse(lu, M);
+    SparseLU<long double> other;
+    recursive::analyse(other, lu.order);
+    const std::vector<double> values = values_of(lu.order.pattern, M);
+    const std::vector<long double> same(values.begin(), values.end());
+    ASSERT_GT(recursive::factorise(other, same.data()), 0);
+    EXPECT_EQ(other.orders, 0);  // chosen once
+    const Vector<long double> b = Vector<long double>::Ones(20);
+    Vector<long double> x(20);
+    solve(other, b.data(), x.data());
+    EXPECT_LE(static_cast<double>((M.cast<long double>() * x - b).norm()), 1e-16);
+}
+
+TEST(SparseLU, KnowsTheSignAndSizeOfTheDeterminant) {
+    std::mt19937 random(6);
+    for (int trial = 0; trial < 20; ++trial) {
+        const Matrix<double> M = random_saddle_point(random, 8, 3);
+        SparseLU<double> lu;
+        analyse(lu, M);
+        factorise(lu, M);
+        const double det = M.fullPivLu().determinant();
+        EXPECT_EQ(lu.orientation, det < 0 ? -1 : 1);
+        EXPECT_NEAR(log_determinant(lu), std::log2(std::abs(det)), 1e-9);
     }
 }
 

@@ -1,0 +1,41 @@
+#include "recursive/analysis.hpp"
+
+#include "recursive/assembly.hpp"
+#include "recursive/pattern.hpp"
+
+namespace elastocheck::recursive {
+
+Analysis analyse(const Model& model) {
+    Analysis result;
+    result.diagnosis = diagnose(model);
+    SaddlePoint<double>& system = result.system;
+    const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
+    const double L = result.diagnosis.length;
+    const State<double> q = design_state<double>(model);
+    const Branch nothing;  // is driven
+    const Inputs<double> drawn = inputs_as_drawn<double>(model);
+    Inputs<double> inputs;
+    set_inputs<double>(model, nothing, drawn, 0, 0, inputs);
+
+    Vector<double> Phi(m);
+    system.M.setZero(n + m, n + m);
+    system.weight.setOnes(n + m);
+    for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
+    assemble<double>(model, inputs, q, system.M, Phi);
+    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space, pattern(model));
+
+    assemble_consistent<double>(model, nothing, inputs, q, Vector<double>::Zero(m), system.M, Phi);
+    result.pivot_ratio = factorise(system);
+    external_force<double>(model, nothing, inputs, q, result.R_d);
+    result.R_d -= elastic_force<double>(model, inputs, q);
+    result.Phi_d = Phi;
+    // What is left of stiffness times length by rounding moves nothing.
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * L;
+    const double stiffest = n > 0 ? system.M.topLeftCorner(n, n).diagonal().cwiseAbs().maxCoeff() : 0;
+    const auto largest = [](const Vector<double>& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; };
+    result.at_rest = largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest &&
+                     largest(Phi) <= rounding;
+    return result;
+}
+
+}  // namespace elastocheck::recursive

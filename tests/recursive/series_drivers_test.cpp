@@ -1,0 +1,376 @@
+// The series driven by something other than a load: offsets, angles, free lengths, preloads, and what is held
+// while they move.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "recursive/analysis.hpp"
+#include "recursive/assembly.hpp"
+#include "recursive/pattern.hpp"
+#include "recursive/series/expand.hpp"
+#include "recursive/series/path.hpp"
+#include "recursive/solve.hpp"
+#include "tests/recursive/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive::series {
+namespace {
+
+struct Walked {
+    Model model;  // as it stands on the branch
+    Branch branch;
+};
+Walked walked(const Scene& scene, const Branch& branch) {
+    Scene with = scene;
+    with.branches = {branch};
+    const Model model = compile(with);
+    return {on_branch(model, model.branches[0]), model.branches[0]};
+}
+
+// Newton's method with dense factors of its own, the step of minimum norm where a motion is idle; from `start`.
+Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
+    const int n = coordinates(w.model), m = constraint_rows(w.model);
+    const Inputs<double> inputs = inputs_at<double>(w.model, w.branch, a);
+    State<double> q = state_of<double>(start);
+    Vector<double> lambda = Vector<double>::Zero(m), f, f_ext, f_elast, Phi(m), step;
+    Matrix<double> M(n + m, n + m);
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 60; ++k) {
+        assemble_consistent<double>(w.model, w.branch, inputs, q, lambda, M, Phi);
+        external_force<double>(w.model, w.branch, inputs, q, f_ext);
+        elastic_force<double>(w.model, inputs, q, f_elast);
+        constraint_force<double>(w.model, inputs, q, lambda, f, Phi);
+        Vector<double> right(n + m);
+        right << f_ext - f_elast - f, -Phi;
+        const Vector<double> D = equilibration<double>(M);
+        Eigen::CompleteOrthogonalDecomposition<Matrix<double>> factors;
+        factors.setThreshold(1e-10);
+        factors.compute(D.asDiagonal() * M * D.asDiagonal());
+        step = D.asDiagonal() * factors.solve(Vector<double>(D.asDiagonal() * right));
+        const double size = step.head(n).norm();
+        if (k > 3 && size < 1e-13 && !(size < before)) break;
+        before = size;
+        advance(q, step.head(n));
+        lambda += step.tail(m);
+    }
+    EXPECT_LE(before, 1e-12) << "Newton did not converge";
+    Equilibrium point{a, start, std::vector<Wrench>(w.model.joints.size()), 0};
+    record<double>(w.model, inputs, q, q, lambda, a, point);
+    return point;
+}
+
+// How far origins, and points 0.1 m beside them, are apart [m]; bodies that turn idly are left to their origins.
+double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
+    std::vector<bool> idle(model.bodies.size(), false);
+    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
+    double worst = 0;
+    for (std::size_t body = 0; body < idle.size(); ++body)
+        worst = std::max({worst, (a.poses[body].r - b.poses[body].r).norm(),
+                          idle[body] ? 0 : 0.1 * a.poses[body].p.angularDistance(b.poses[body].p)});
+    return worst;
+}
+
+Scene mcpherson_on_a_jack(Branch& branch) {
+    Scene scene = support::scene("mcpherson");
+    const Wheel& wheel = scene.wheels[0];
+    const Eigen::Vector3d centre = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+                                   scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+    scene.joints.push_back(
+        {"jack", InPlane{{wheel.body, wheel.centre_local}, {ground, centre}, {ground, Eigen::Vector3d::UnitZ()}, 0},
+         true});
+    branch.name = "travel";
+    branch.unit = ParameterUnit::metre;
+    branch.steps = 100;
+    branch.drivers = {{Motion{static_cast<int>(scene.joints.size()) - 1}, 0, 1}};
+    return scene;
+}
+
+TEST(SeriesDrivers, TravelCoversJounceAndReboundOfTheMcPherson) {
+    for (const double to : {0.11, -0.11}) {
+        Branch branch;
+        branch.to = to;
+        const Walked w = walked(mcpherson_on_a_jack(branch), branch);
+        const Path path = follow(w.model, w.branch);
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        const auto sampled = sample(w.model, path, w.branch, 40);
+        ASSERT_EQ(sampled.points.size(), 41u);
+        double worst = 0, open = 0;
+        std::vector<Pose> from = sampled.points[0].poses;
+        for (const auto& point : sampled.points) {
+            const Equilibrium exact = newton(w, point.load, from);
+            worst = std::max(worst, apart(w.model, point, exact));
+            open = std::max(open, point.constraint_error);
+            from = exact.poses;
+            // ... and the jack pushes with the load that holds the wheel there.
+            const Wrench& jack = point.reactions.back();
+            EXPECT_LE((jack.force - exact.reactions.back().force).norm(), 1e-6);
+        }
+        EXPECT_LE(worst, 1e-12) << to;  // 1e-9 mm
+        EXPECT_LE(open, 1e-12) << to;
+        // The wheel centre is where the jack holds it.
+        const Wheel& wheel = w.model.wheels[0];
+        const auto height = [&](const Equilibrium& point) {
+            const Pose& pose = point.poses[static_cast<std::size_t>(wheel.body)];
+            return (pose.r + pose.p * wheel.centre_local).z();
+        };
+        for (const auto& point : sampled.points)
+            EXPECT_NEAR(height(point) - height(sampled.points[0]), point.load, 1e-12);
+    }
+}
+
+TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
+    Branch branch;
+    branch.to = 0.08;
+    const Walked jack = walked(mcpherson_on_a_jack(branch), branch);
+    const Path by_travel = follow(jack.model, jack.branch);
+    ASSERT_EQ(by_travel.outcome, Outcome::converged) << by_travel.detail;
+    const Model loaded = compile(support::scene("mcpherson"));
+    const Path by_load = follow(loaded, loaded.branches[0]);
+    double force = 0, work = 0, before = 0;
+    const auto sampled = sample(jack.model, by_travel, jack.branch, 200);
+    for (const auto& point : sampled.points) {
+        const double next = point.reactions.back().force.z();
+        if (point.load > 0) work += (force + next) / 2 * (point.load - before);
+        force = next;
+        before = point.load;
+        const auto place = find(by_load, force);
+        if (!place) continue;  // to rounding below zero
+        EXPECT_LE(apart(loaded, point, evaluate(loaded, loaded.branches[0], by_load, *place)), 1e-9) << point.load;
+    }
+    EXPECT_GT(force, 500);
+    EXPECT_GT(work, 0);
+}
+
+// ---- Mechanisms that nothing but geometry moves, against it.
+
+const Direction along_z{ground, Eigen::Vector3d::UnitZ()};
+Direction z_of(BodyId body) { return {body, Eigen::Vector3d::UnitZ()}; }
+Body bar(const std::string& name, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return {name, {from, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), to - from)}};
+}
+Joint hinge(const std::string& name, BodyId i, const Eigen::Vector3d& on_i, BodyId j, const Eigen::Vector3d& on_j) {
+    return {name, Revolute{{i, on_i}, {j, on_j}, z_of(i), z_of(j)}};
+}
+Joint crank_drive(BodyId crank) {
+    return {"drive", Angle{{crank, Eigen::Vector3d::UnitX()},
+                           {ground, Eigen::Vector3d::UnitX()},
+                           {ground, Eigen::Vector3d::UnitY()},
+                           0}};
+}
+Branch full_turn(int joint) {
+    Branch branch;
+    branch.name = "turn";
+    branch.to = 2 * std::numbers::pi;
+    branch.steps = 360;
+    branch.unit = ParameterUnit::radian;
+    branch.drivers = {{Motion{joint}, 0, 1}};
+    return branch;
+}
+
+TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
+    const double r = 0.1, l = 0.27;
+    Scene scene;
+    const Eigen::Vector3d O(0, 0, 0), A(r, 0, 0), B(r + l, 0, 0);
+    scene.bodies = {bar("crank", O, A), bar("rod", A, B)};
+    scene.joints = {hinge("main", 0, O, ground, O), hinge("pin", 0, A, 1, O),
+                    {"slide", InPlane{{1, {l, 0, 0}}, {ground, O}, {ground, Eigen::Vector3d::UnitY()}, 0}},
+                    crank_drive(0)};
+    scene.probes = {{"slider", {1, {l, 0, 0}}}};
+    const Walked w = walked(scene, full_turn(3));
+    ASSERT_EQ(w.model.bodies.size(), 2u);
+    const Path path = follow(w.model, w.branch);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    double worst = 0;
+    const auto sampled = sample(w.model, path, w.branch, 360);
+    ASSERT_EQ(sampled.points.size(), 361u);
+    for (const auto& point : sampled.points) {
+        const double x = r * std::cos(point.load) + std::sqrt(l * l - std::pow(r * std::sin(point.load), 2));
+        const Eigen::Vector3d slider = point.poses[1].r + point.poses[1].p * Eigen::Vector3d(l, 0, 0);
+        worst = std::max(worst, (slider - Eigen::Vector3d(x, 0, 0)).norm() / x);
+    }
+    EXPECT_LE(worst, 1e-12);
+}
+
+TEST(SeriesDrivers, FourBarGoesAFullTurn) {
+    const double crank = 0.1, coupler = 0.3, rocker = 0.25, base = 0.28;  // Grashof: the crank turns
+    // Where coupler and rocker meet: always on the same side of the diagonal.
+    const auto joint = [&](double angle) {
+        const Eigen::Vector2d A(crank * std::cos(angle), crank * std::sin(angle)), D(base, 0);
+        const Eigen::Vector2d d = D - A;
+        const double along = (d.squaredNorm() + coupler * coupler - rocker * rocker) / (2 * d.norm());
+        const double across = std::sqrt(coupler * coupler - along * along);
+        const Eigen::Vector2d u = d.normalized(), C = A + along * u + across * Eigen::Vector2d(-u.y(), u.x());
+        return Eigen::Vector3d(C.x(), C.y(), 0);
+    };
+    const Eigen::Vector3d O(0, 0, 0), A(crank, 0, 0), C = joint(0), D(base, 0, 0);
+    Scene scene;
+    scene.bodies = {bar("crank", O, A), bar("coupler", A, C), bar("rocker", D, C)};
+    scene.joints = {hinge("O", 0, O, ground, O), hinge("A", 0, A, 1, O), hinge("D", 2, O, ground, D),
+                    {"C", InLine{{1, {coupler, 0, 0}}, {2, {rocker, 0, 0}}, z_of(2)}}, crank_drive(0)};
+    scene.probes = {{"C", {1, {coupler, 0, 0}}}};
+    const Walked w = walked(scene, full_turn(4));
+    ASSERT_EQ(w.model.bodies.size(), 3u);
+    const Path path = follow(w.model, w.branch);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    double worst = 0;
+    const auto sampled = sample(w.model, path, w.branch, 360);
+    ASSERT_EQ(sampled.points.size(), 361u);
+    for (const auto& point : sampled.points) {
+        const Eigen::Vector3d at = point.poses[1].r + point.poses[1].p * Eigen::Vector3d(coupler, 0, 0);
+        worst = std::max(worst, (at - joint(point.load)).norm() / coupler);
+    }
+    EXPECT_LE(worst, 1e-12);
+}
+
+TEST(SeriesDrivers, TheArchIsPushedThroughBothOfItsLimitPoints) {
+    Scene scene = support::scene("two_spring_arch");
+    const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h);
+    const Eigen::Vector3d apex = scene.bodies[0].design.r;
+    scene.joints.push_back({"jack", InPlane{{0, Eigen::Vector3d::Zero()},
+                                            {ground, apex},
+                                            {ground, Eigen::Vector3d::UnitZ()},
+                                            0},
+                            true});
+    Branch branch;
+    branch.name = "push";
+    branch.to = -2.2 * h;
+    branch.steps = 100;
+    branch.unit = ParameterUnit::metre;
+    branch.drivers = {{Motion{static_cast<int>(scene.joints.size()) - 1}, 0, 1}};
+    const Walked w = walked(scene, branch);
+    const Path path = follow(w.model, w.branch);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    EXPECT_TRUE(path.limits.empty());
+    const auto sampled = sample(w.model, path, w.branch, 100);
+    ASSERT_EQ(sampled.points.size(), 101u);
+    double least = 0, most = 0;
+    for (const auto& point : sampled.points) {
+        const double z = point.poses[0].r.z() - apex.z() + h, l = std::hypot(b, z);
+        EXPECT_NEAR(z, h + point.load, 1e-12);
+        const double force = point.reactions.back().force.z();
+        EXPECT_NEAR(force, 2 * k * (l - l_0) * z / l, 1e-8);
+        least = std::min(least, force);
+        most = std::max(most, force);
+    }
+    EXPECT_LT(least, -200);  // what the load could not go past
+    EXPECT_GT(most, 200);
+}
+
+// ---- What is held.
+
+TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
+    // Everything at once: the jack held 30 mm up, a preload in the mount, a free length 20 mm longer, a load
+    // that pulls aft; then travel moves on.
+    Branch branch;
+    branch.to = 0.05;
+    Scene scene = mcpherson_on_a_jack(branch);
+    branch.drivers[0].start = 0.03;
+    Preload preload{0, Vector6<double>::Zero()};
+    preload.direction << 300, -200, 1500, 0, 0, 0;
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k)
+        if (std::holds_alternative<AxialSpring>(scene.elastics[k].kind))
+            branch.drivers.push_back({FreeLength{static_cast<int>(k)}, 0.02, 0.1});
+        else if (preload.direction[0] == 300 && scene.elastics[k].name.find("mount") != std::string::npos)
+            preload.elastic = static_cast<int>(k);
+    branch.drivers.push_back({preload, 1, 3});
+    branch.drivers.push_back({Load{"brake", DeadForce{{scene.wheels[0].body, scene.wheels[0].contact_local},
+                                                      Eigen::Vector3d(-1, 0, 0)}},
+                              800, 1e4});
+    const Walked w = walked(scene, branch);
+    const Path path = follow(w.model, w.branch);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    const auto sampled = sample(w.model, path, w.branch, 20);
+    ASSERT_EQ(sampled.points.size(), 21u);
+    double worst = 0;
+    for (const auto& point : sampled.points)
+        worst = std::max(worst, apart(w.model, point, newton(w, point.load, point.poses)));
+    EXPECT_LE(worst, 1e-12);
+}
+
+TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
+    for (const double longer : {-0.03, 0.02}) {
+        Scene scene = support::scene("mcpherson");
+        for (auto& joint : scene.joints)
+            if (auto* rod = std::get_if<Distance>(&joint.kind)) rod->length += longer;
+        const Walked w = walked(scene, scene.branches[0]);
+        const Path path = follow(w.model, w.branch);
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        const auto sampled = sample(w.model, path, w.branch, 20);
+        ASSERT_EQ(sampled.points.size(), 21u);
+        for (const auto& point : sampled.points) {
+            EXPECT_LE(apart(w.model, point, newton(w, point.load, point.poses)), 1e-12) << longer;
+            EXPECT_LE(point.constraint_error, 1e-12);
+        }
+    }
+}
+
+// ---- One analysis for all.
+
+TEST(Analysis, ServesBranchesAndThreadsAlike) {
+    const Model model = compile(support::scene("mcpherson"));
+    const Analysis analysis = analyse(model);
+    std::vector<Path> shared(4);
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < shared.size(); ++k)
+        threads.emplace_back([&, k] { shared[k] = follow(model, model.branches[k % 2], {}, analysis); });
+    for (auto& thread : threads) thread.join();
+    for (std::size_t k = 0; k < shared.size(); ++k) {
+        const Path own = follow(model, model.branches[k % 2]);
+        ASSERT_EQ(own.expansions.size(), shared[k].expansions.size());
+        EXPECT_EQ(own.expansions.back().x, shared[k].expansions.back().x);
+    }
+}
+
+TEST(Analysis, OfAnotherModelIsRefused) {
+    const Model model = compile(support::scene("mcpherson"));
+    EXPECT_THROW(follow(model, model.branches[0], {}, analyse(compile(support::scene("pinned_bar")))),
+                 std::invalid_argument);
+}
+
+// ---- The pattern of (24).
+
+// The matrix far from where anything vanishes by chance.
+Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
+    State<double> q = design_state<double>(model);
+    Vector<double> dq(coordinates(model)), lambda(constraint_rows(model)), Phi(constraint_rows(model));
+    for (auto& value : dq) value = random(-0.3, 0.3);
+    for (auto& value : lambda) value = random(-1e3, 1e3);
+    advance(q, dq);
+    Matrix<double> M(dq.size() + lambda.size(), dq.size() + lambda.size());
+    const Branch& branch = model.branches[0];
+    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q, lambda, M, Phi);
+    pattern = recursive::pattern(model);
+    return M;
+}
+
+TEST(Pattern, HoldsAllThatIsNotZeroAndHardlyMore) {
+    Random random;
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(support::scene(name));
+        Pattern pattern;
+        Eigen::ArrayXXd met;
+        for (int trial = 0; trial < 5; ++trial) {
+            const Matrix<double> M = anywhere(model, random, pattern);
+            if (trial == 0) met.setZero(M.rows(), M.cols());
+            met = met.max((M.array() != 0).cast<double>());
+        }
+        double held = 0;
+        for (int j = 0; j < pattern.size; ++j)
+            for (int e = pattern.first[static_cast<std::size_t>(j)];
+                 e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
+                const int i = pattern.row[static_cast<std::size_t>(e)];
+                held += 1;
+                met(i, j) = 0;
+            }
+        EXPECT_EQ(met.sum(), 0) << name << ": entries that the pattern does not know of";
+        EXPECT_LE(held, 0.75 * static_cast<double>(met.size()) + 20) << name;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive::series
