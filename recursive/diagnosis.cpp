@@ -63,10 +63,11 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
 }
 
 // The rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment point,
-// turned to ground axes. What is soft in one of an element's own directions is told apart from what is nothing
-// only there: in other axes the rounding of the stiff directions covers it. K_e = S C S with a unit diagonal C,
-// so that rates of any size count alike.
-std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest, const State<double>& q) {
+// turned to ground axes. What is soft in one of an element's own directions is told apart from what is
+// nothing only there: in other axes the rounding of the stiff directions covers it. K_e = S C S with a unit
+// diagonal C, so that rates of any size count alike.
+std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
+                                       const State<double>& q) {
     const Axial<double> g = deformation<double>(e, q);
     if (!(hessian<double>(e.law, [&] { return g.length - rest.free_length; }) > 0)) return {};
     Vector6<double> row;
@@ -198,13 +199,15 @@ void find_undetermined(const Model& model, const MatrixXd& Y, Diagnosis& result)
             const int one = joint_of_row[static_cast<std::size_t>(k)],
                       other = joint_of_row[static_cast<std::size_t>(l)];
             result.determined[static_cast<std::size_t>(one)] = false;
-            const auto [low, high] = std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
+            const auto [low, high] =
+                std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
             std::ranges::replace(set, int(high), int(low));
         }
     for (int first = 0; first < static_cast<int>(joints); ++first) {
         std::vector<int> members;
         for (int joint = first; joint < static_cast<int>(joints); ++joint)
-            if (set[static_cast<std::size_t>(joint)] == first && !result.determined[static_cast<std::size_t>(joint)])
+            if (set[static_cast<std::size_t>(joint)] == first &&
+                !result.determined[static_cast<std::size_t>(joint)])
                 members.push_back(joint);
         if (!members.empty()) result.redundant_sets.push_back(members);
     }

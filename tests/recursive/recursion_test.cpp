@@ -133,7 +133,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
         Matrix<double> M(n + m, n + m);
         Vector<double> Phi(m);
         assemble<double>(model, drawn, q, M, Phi);
-        external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q, f);
+        external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q,
+                               f);
         Vector<double> rhs = Vector<double>::Zero(n + m);
         rhs.head(n) = f - stored;
         const Vector<double> x = M.fullPivLu().solve(rhs);
@@ -380,7 +381,8 @@ TEST(Outcome, TheModelMustStandOnTheBranch) {
     branch.from = -100;
     EXPECT_THROW(solve(model, branch), std::invalid_argument);
     branch.from = 0;
-    for (const Driven& what : {Driven{Motion{0}}, Driven{FreeLength{99}}, Driven{FreeLength{1}}, Driven{Preload{0}}}) {
+    for (const Driven& what :
+         {Driven{Motion{0}}, Driven{FreeLength{99}}, Driven{FreeLength{1}}, Driven{Preload{0}}}) {
         branch.drivers = {{what, 0, 1}};
         EXPECT_THROW(solve(model, branch), std::invalid_argument);
     }
