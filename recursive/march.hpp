@@ -88,8 +88,8 @@ struct March {
         for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
         for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
-        set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
         if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
+        set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
     }
     int n() const { return system.n; }
     int m() const { return system.m; }

@@ -56,6 +56,7 @@ struct Walk {
     double per_unit;       // metres that an error of one unit of the parameter counts as
     Vector<double> ahead;  // x'(τ) of the motion before: which way is on
     double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
+    int side = 0;          // sign of the determinant where the way began, by arc length of that bordered by x'
     Vector<double> x;      // where on the polynomial
     Path path;
 
@@ -243,9 +244,14 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
     return judge(w.s, w.s.q, analysis.pivot_ratio);
 }
 
+// The sign of the determinant here. By arc length it is multiplied by that of a', so that it stays what it is
+// at limit points, where both turn over.
+int side(const Walk& w, double slope) { return w.by_arc() && slope < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation; }
+
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
+    w.side = side(w, w.to);
     while (static_cast<int>(w.path.expansions.size()) < w.options.expansions) {
         const State<double> from = s.q;
         expand(s, w.e, w.c, w.to, w.by_arc(), w.ahead);
@@ -254,6 +260,9 @@ Outcome walk(Walk& w) {
         Certificate judged;
         if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
+        // A polynomial goes straight on where the path divides, and a branch goes on unstable: the determinant
+        // has gone through zero between here and there.
+        if (side(w, slope(w.c.load, end.tau)) != w.side) return Outcome::singular;
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
         if (end.last) return Outcome::converged;
@@ -277,6 +286,8 @@ std::string words(const Walk& w, Outcome outcome) {
                                          branch, w.path.limits.back());
         case Outcome::iteration_limit:
             return at + fmt::format(": {} expansions were not enough", w.options.expansions);
+        case Outcome::singular:
+            return at + ": the matrix is singular here or was on the way: the branch divides, or loses its stability";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         default: return at;
     }
@@ -304,10 +315,13 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium, the
     // way to one begins there; where it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
+        s.Phi_d = analysis.Phi_d;  // to the last digit: the series is exact, from an equilibrium that is
         Walk settling(s, options, Drive::start);
         if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
-        if (const Outcome o = walk(settling); o != Outcome::converged) return finish(settling, o);
+        const Outcome walked = walk(settling);
+        if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+        if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged) return finish(settling, o);
         Walk w(s, options, Drive::rate);
         w.go_to(0);
         return finish(w, walk(w));

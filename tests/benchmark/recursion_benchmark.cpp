@@ -10,6 +10,9 @@
 //
 //   branches: both branches by `series`, as polynomials; the ratio to the published sweep.
 //
+//   analysis: what is told of the model once (analysis.hpp); the ratio to the published sweep. All of the above
+//   that the recursive leg does has it given.
+//
 // The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
 // both.
 #include <benchmark/benchmark.h>
@@ -20,6 +23,7 @@
 #include <functional>
 
 #include "models/compile.hpp"
+#include "recursive/series/path.hpp"
 #include "recursive/solve.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
@@ -33,6 +37,12 @@ using Clock = std::chrono::steady_clock;
 const Model& mcpherson() {
     static const Model model = compile(support::scene("mcpherson"));
     return model;
+}
+
+// Told once for the model, as the sweeps, the branches and the points all use it.
+const recursive::Analysis& analysis() {
+    static const recursive::Analysis analysis = recursive::analyse(mcpherson());
+    return analysis;
 }
 
 void bare() {
@@ -50,7 +60,7 @@ void bare() {
 void sweep(const recursive::Method& method) {
     for (const auto& branch : mcpherson().branches)
         benchmark::DoNotOptimize(
-            recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1}));
+            recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1}, analysis()));
 }
 
 template <class Solve>
@@ -73,18 +83,20 @@ void energy() {
 void adaptive() {  // 0.01 mm, 0.001 deg
     points([](const Branch& b, const auto&) {
         return recursive::solve(mcpherson(), b,
-                                {.method = *recursive::find_method("adaptive"), .steps = 300});
+                                {.method = *recursive::find_method("adaptive"), .steps = 300}, analysis());
     });
 }
 
 void series() {  // 1e-12 m
     points([](const Branch& b, const auto&) {
-        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("series"), .steps = 300});
+        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("series"), .steps = 300},
+                                analysis());
     });
 }
 void branches(int order) {  // 1e-12 m, nothing evaluated
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(recursive::series::follow(mcpherson(), branch, {.order = order}));
+        benchmark::DoNotOptimize(
+            recursive::series::follow(mcpherson(), branch, {.order = order}, analysis()));
 }
 void published() { sweep(recursive::Method{}); }
 
@@ -127,6 +139,8 @@ int main(int argc, char** argv) {
     for (const int order : {8, 12, 16, 20, 24})
         add(
             "branches/series order " + std::to_string(order), [order] { branches(order); }, published);
+    add(
+        "analysis", [] { benchmark::DoNotOptimize(recursive::analyse(mcpherson())); }, published);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

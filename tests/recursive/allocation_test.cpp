@@ -51,8 +51,7 @@ TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
-        const Diagnosis diagnosis = diagnose(model);
-        March<double> s(model, branch, diagnosis);
+        March<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied.setZero();
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);

@@ -9,6 +9,7 @@
 
 #include "models/branch.hpp"
 #include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
 #include "recursive/analysis.hpp"
 #include "recursive/assembly.hpp"
 #include "recursive/pattern.hpp"
@@ -305,6 +306,48 @@ TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
         for (const auto& point : sampled.points) {
             EXPECT_LE(apart(w.model, point, newton(w, point.load, point.poses)), 1e-12) << longer;
             EXPECT_LE(point.constraint_error, 1e-12);
+        }
+    }
+}
+
+// ---- Scenes that broke something: right, or an honest outcome.
+
+Model found(const std::string& name) {
+    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+}
+
+TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
+    for (const char* name : {"straight-column-one-body", "straight-column-two-bodies"}) {
+        const Model model = found(name);
+        const Path path = follow(model, model.branches[0]);
+        EXPECT_EQ(path.outcome, Outcome::singular) << name << " " << path.detail;
+        EXPECT_NE(path.detail.find("the branch divides, or loses its stability"), std::string::npos) << path.detail;
+        // Below it nothing is said of it.
+        Branch below = model.branches[0];
+        below.to /= 10;
+        EXPECT_EQ(follow(model, below).outcome, Outcome::converged) << name;
+    }
+}
+
+TEST(SeriesFound, TheArchEndsAtItsLimitPoint) {
+    const Model model = found("arch-past-its-limit");
+    const Path path = follow(model, model.branches[0]);
+    EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
+}
+
+TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
+    for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links"}) {
+        const Model model = found(name);
+        for (const auto& branch : model.branches) {
+            const Path path = follow(model, branch);
+            EXPECT_FALSE(path.outcome != Outcome::converged && path.detail.empty());
+            const Walked w{model, branch};
+            const auto sampled = sample(model, path, branch, 20);
+            for (const auto& point : sampled.points)
+                EXPECT_LE(apart(model, point, newton(w, point.load, point.poses)), 1e-11) << name << " " << point.load;
+            EXPECT_TRUE(path.outcome == Outcome::converged || path.outcome == Outcome::limit_point ||
+                        path.outcome == Outcome::singular)
+                << name << " " << path.detail;
         }
     }
 }
