@@ -52,7 +52,7 @@ Real share_of_reactions(const March<Real>& s, const Going<Real>& going, const Ve
     return allowed > 0 ? change / allowed : Real(0);
 }
 
-// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: settled.
+// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: just settled.
 template <class Real>
 Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath& path,
               std::size_t& reached) {
@@ -73,8 +73,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
                  lambda_curvature = Vector<Real>::Zero(s.m());
     State<Real> q = s.q;
     Real size = 0;
-    if (const Outcome o = correct(s, going, node.q, node.lambda, Real(0), size); o != Outcome::converged)
-        return o;
+    // The factors are still those that settling ended with.
     differentiate(s, going, node);
     Real log_here = log_determinant(s.system.lu);
     keep(node.q, node.lambda, 0);
