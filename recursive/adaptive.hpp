@@ -38,7 +38,21 @@ void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& 
     }
 }
 
-// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: settled.
+// What the correction in s.x changes of the reactions, as a share of what it may: of the larger of those at
+// the two nodes as much as the tolerance is of L. The motion does not tell: a driven mechanism has none that
+// is not given, and all its forces in λ.
+template <class Real>
+Real share_of_reactions(const March<Real>& s, const Going<Real>& going, const Vector<Real>& one,
+                        const Vector<Real>& other) {
+    const auto Phi_q_transposed = s.system.M.topRightCorner(s.n(), s.m());
+    const auto force = [&](const auto& lambda) { return size_of_force<Real>(s, Phi_q_transposed * lambda); };
+    const Real largest = std::max(force(one), force(other)), change = force(s.x.tail(s.m()));
+    const Real allowed = largest * going.length_tolerance / static_cast<Real>(s.length) +
+                         Real(guard::rounding) * std::numeric_limits<Real>::epsilon() * largest;
+    return allowed > 0 ? change / allowed : Real(0);
+}
+
+// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: just settled.
 template <class Real>
 Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath& path,
               std::size_t& reached) {
@@ -59,8 +73,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
                  lambda_curvature = Vector<Real>::Zero(s.m());
     State<Real> q = s.q;
     Real size = 0;
-    if (const Outcome o = correct(s, going, node.q, node.lambda, Real(0), size); o != Outcome::converged)
-        return o;
+    // The factors are still those that settling ended with.
     differentiate(s, going, node);
     Real log_here = log_determinant(s.system.lu);
     keep(node.q, node.lambda, 0);
@@ -76,7 +89,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
             between(node, next, Real(0.5), q, lambda);
             trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
             if (trial.outcome == Outcome::converged) {
-                error = std::max(trial.left, size);
+                error = std::max({trial.left, size, share_of_reactions(s, going, node.lambda, next.lambda)});
                 const bool dips = s.system.lu.orientation != node.orientation ||
                                   log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
                 if (dips) trial.verdict = Verdict::turned_over;

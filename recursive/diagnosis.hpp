@@ -39,8 +39,8 @@ struct Diagnosis {
     double imbalance =
         0;  // largest force [N] (or moment/L) that is left at load factor 0 at the design position
     std::vector<Redundancy> redundant;
-    // Per joint: whether its reaction follows from the loads. It does not where one of its rows has a part in a
-    // dependency yᵀ Φ_q = 0; then only the total over the joints that share one does, which are a set each.
+    // Per joint: whether its reaction follows from the loads. It does not where one of its rows has a part in
+    // a dependency yᵀ Φ_q = 0; then only the total over the joints that share one does, which are a set each.
     std::vector<bool> determined;
     std::vector<std::vector<int>> redundant_sets;  // positions in Model::joints, ascending
     std::vector<IdleMode> idle;

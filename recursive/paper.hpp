@@ -1,5 +1,5 @@
-// The paper's loop as it is printed, for reading beside eq. (29) and for checking the sweep (sweep.hpp), which
-// does the same with factors that know where the zeros are, and does more besides.
+// The paper's loop as it is printed, for reading beside eq. (29) and for checking the sweep (sweep.hpp),
+// which does the same with factors that know where the zeros are, and does more besides.
 #pragma once
 
 #include <vector>

@@ -12,7 +12,7 @@
 //
 // Newton's method knows nothing of branches: past a limit point it is glad to land on whatever equilibrium
 // there is. So a step is believed only where the determinant of the matrix has not changed its sign, and
-// where the chord between the nodes agrees with the derivatives at both ends.
+// where all corrections together are less than half of what was forecast.
 #pragma once
 
 #include "recursive/march.hpp"
@@ -79,7 +79,7 @@ Outcome correct(March<Real>& s, const Going<Real>& going, State<Real>& q, Vector
 enum class Verdict {
     believed,
     unsolved,        // the corrections do not fall, or leave too much
-    another_branch,  // an equilibrium, but the chord and the derivatives disagree
+    another_branch,  // an equilibrium, but not the one that was forecast
     turned_over      // on this path, but past a point where the matrix is singular
 };
 

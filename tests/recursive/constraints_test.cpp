@@ -54,7 +54,8 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
                     advance(plus, dq);
                     advance(minus, (-dq).eval());
                     const Vector<double> difference =
-                        (constraint_values<double>(model, inputs_as_drawn<double>(model), plus) - constraint_values<double>(model, inputs_as_drawn<double>(model), minus)) /
+                        (constraint_values<double>(model, inputs_as_drawn<double>(model), plus) -
+                         constraint_values<double>(model, inputs_as_drawn<double>(model), minus)) /
                         (2 * h);
                     worst = std::max(worst, (difference - Phi_q.col(c)).cwiseAbs().maxCoeff());
                 }
@@ -77,10 +78,12 @@ TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
         for (const auto& joint : every_joint(0, 1, random)) {
             const Model model = model_of(joint, 2);
             std::vector<Pose> poses{random.pose(), random.pose()};
-            const Vector<double> before = constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
+            const Vector<double> before =
+                constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
             const Pose move = random.pose();
             for (auto& pose : poses) pose = {move.r + move.p * pose.r, move.p * pose.p};
-            const Vector<double> after = constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
+            const Vector<double> after =
+                constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
             // Coincidence is written in ground axes: its three rows turn, their length stays.
             if (std::holds_alternative<CoincidentPoints>(model.constraints.front().kind))
                 EXPECT_NEAR(before.head<3>().norm(), after.head<3>().norm(), 1e-13);

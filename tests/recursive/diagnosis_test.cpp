@@ -45,7 +45,7 @@ TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
         Scene scene = support::scene("mcpherson");
         for (auto& elastic : scene.elastics) {
             if (elastic.name != "K3_arm_front") continue;  // one stiff or soft element among ordinary ones
-            std::get<Bushing>(elastic.kind).K *= factor;
+            std::get<LinearStiffness>(std::get<Bushing>(elastic.kind).law).K *= factor;
         }
         const auto d = diagnose(compile(scene));
         EXPECT_EQ(d.idle.size(), 1u) << factor;
@@ -87,6 +87,49 @@ TEST(Diagnosis, RedundantConstraintsAreCountedAndNamedByJoint) {
     EXPECT_FALSE(d.redundant[0].contradicts);
 }
 
+TEST(Diagnosis, OnlyJointsThatShareADependencyAreUndetermined) {
+    // Two bars on one ground: the first on two hinges of one line, the second on one.
+    Scene scene =
+        bar("joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
+            "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
+            "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+            "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n");
+    scene.bodies.push_back({"other", {{0, 1, 0}, Eigen::Quaterniond::Identity()}});
+    const Direction x{ground, Eigen::Vector3d::UnitX()}, own_x{1, Eigen::Vector3d::UnitX()};
+    scene.joints.push_back(
+        {"hinge_3", Revolute{{1, Eigen::Vector3d::Zero()}, {ground, {0, 1, 0}}, own_x, x}});
+    scene.joints.push_back({"rod", Distance{{1, {0, 0, 1}}, {0, {0, 0, 1}}, 1}});
+    scene.probes.push_back({"other", {1, Eigen::Vector3d::Zero()}});
+    const Model model = compile(scene);
+    const auto d = diagnose(model);
+    EXPECT_EQ(d.determined, (std::vector<bool>{false, false, true, true}));
+    EXPECT_EQ(d.redundant_sets, (std::vector<std::vector<int>>{{0, 1}}));
+    EXPECT_EQ(diagnose(compile(support::scene("mcpherson"))).redundant_sets.size(), 0u);
+}
+
+TEST(Diagnosis, ASoftDirectionIsNotIdleInATurnedFrame) {
+    // Rates of 1e12 beside 100, at an angle to the ground and to the body, as a diagonal of the turned frame
+    // and as a full matrix of the straight one.
+    const Eigen::Matrix3d R(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()));
+    for (const bool full : {false, true}) {
+        Scene scene;
+        scene.bodies = {{"block", {{1, 2, 3}, Eigen::Quaterniond::Identity()}}};
+        LinearStiffness law;
+        law.K.diagonal() << 1e12, 100, 100, 1e12, 100, 100;
+        Bushing mount{{0, Eigen::Vector3d::Zero()}, {ground, {1, 2, 3}}, {}, elastocheck::Vector6::Zero()};
+        if (full) {
+            for (int k : {0, 3})
+                law.K.block<3, 3>(k, k) = (R * law.K.block<3, 3>(k, k) * R.transpose()).eval();
+        } else {
+            mount.i.A_local = mount.j.A_local = Eigen::Quaterniond(R);
+        }
+        mount.law = law;
+        scene.elastics = {{"mount", mount}};
+        scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
+        EXPECT_TRUE(diagnose(compile(scene)).idle.empty()) << full;
+    }
+}
+
 TEST(Diagnosis, EquilibratedConditionDoesNotDependOnTheUnitsOfTheStiffness) {
     Scene scene = support::scene("pinned_bar");
     const auto equilibrated = [](const Scene& told) {
@@ -94,7 +137,7 @@ TEST(Diagnosis, EquilibratedConditionDoesNotDependOnTheUnitsOfTheStiffness) {
         return conditioning(model, diagnose(model)).equilibrated;
     };
     const double plain = equilibrated(scene);
-    std::get<Bushing>(scene.elastics[0].kind).K *= 1e12;
+    std::get<LinearStiffness>(std::get<Bushing>(scene.elastics[0].kind).law).K *= 1e12;
     EXPECT_NEAR(equilibrated(scene) / plain, 1, 1);
     EXPECT_LT(plain, 100);
 }

@@ -78,15 +78,24 @@ TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
     const Driven1 d = slider_crank(360);
     EXPECT_LE(worst_slider(run(d, adaptive(1e-12), 36)), 1e-12 * 0.4);
     // Each rung's error at a point is that of its last step: the order of one step.
-    for (const auto& [name, order] : {std::pair{"closed", 2.0}, {"tangent", 2.0}, {"chord", 3.0}, {"midpoint", 3.0}}) {
-        const double coarse = worst_slider(run(d, rung(name), 360, 36)), fine = worst_slider(run(d, rung(name), 720, 36));
-        if (fine > 1e-13) EXPECT_GE(std::log2(coarse / fine), order - 0.2) << name << " " << coarse << " " << fine;
+    for (const auto& [name, order] :
+         {std::pair{"closed", 2.0}, {"tangent", 2.0}, {"chord", 3.0}, {"midpoint", 3.0}}) {
+        const double coarse = worst_slider(run(d, rung(name), 360, 36)),
+                     fine = worst_slider(run(d, rung(name), 720, 36));
+        if (fine > 1e-13)
+            EXPECT_GE(std::log2(coarse / fine), order - 0.2) << name << " " << coarse << " " << fine;
     }
 }
 
 TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
     const Driven1 d = slider_crank(360);
-    const auto error = [&](int steps) { return run(d, rung("published"), steps, 4).points.back().constraint_error; };
+    // Over a whole turn the leading term comes back to zero: the worst of the way counts.
+    const auto error = [&](int steps) {
+        double worst = 0;
+        for (const auto& point : run(d, rung("published"), steps, 8).points)
+            worst = std::max(worst, point.constraint_error);
+        return worst;
+    };
     const double coarse = error(720), fine = error(1440);
     EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1) << coarse << " " << fine;
 }
@@ -115,7 +124,9 @@ TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
     const Driven1 d = driven(scene, {Motion{4}, 0, 1}, full_turn, 360);
     double worst = 0;
     for (const auto& point : run(d, adaptive(1e-12), 36).points)
-        worst = std::max(worst, (point.poses[2].r + point.poses[2].p * (end - pivot) - meet(crank_pin(point.load))).norm());
+        worst = std::max(
+            worst,
+            (point.poses[2].r + point.poses[2].p * (end - pivot) - meet(crank_pin(point.load))).norm());
     EXPECT_LE(worst, 1e-12 * base);
 }
 
@@ -133,8 +144,9 @@ TEST(Driver, TravelAndLoadLeadTheMcPhersonToTheSameStates) {
     for (const auto& branch : loaded.branches) {
         const auto by_load = run({loaded, branch}, adaptive(1e-9), 4);
         const Wheel& wheel = scene.wheels[0];
-        const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
-                               scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+        const Vector3d drawn =
+            scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+            scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
         const auto centre = [&](const Equilibrium& state) -> Vector3d {
             const Pose& pose = state.poses[static_cast<std::size_t>(loaded.wheels[0].body)];
             return pose.r + pose.p * wheel.centre_local;
@@ -143,7 +155,8 @@ TEST(Driver, TravelAndLoadLeadTheMcPhersonToTheSameStates) {
         const Driven1 d = jacked(scene, {wheel.body, wheel.centre_local}, drawn, travel, 300);
         const auto by_travel = run(d, adaptive(1e-9), 4);
         EXPECT_LE((centre(by_travel.points.back()) - centre(by_load.points.back())).norm(), 1e-9);
-        EXPECT_NEAR(by_travel.points.back().reactions.back().force.z(), branch.to, 1e-9 * std::abs(branch.to) + 1e-3);
+        EXPECT_NEAR(by_travel.points.back().reactions.back().force.z(), branch.to,
+                    1e-9 * std::abs(branch.to) + 1e-3);
         const auto left = residuals(d.model, d.branch, by_travel.points.back());
         EXPECT_LE(std::max(left.force, left.moment), 1e-2);
     }
@@ -153,23 +166,31 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
     const Scene scene = support::scene("two_spring_arch");
     constexpr double k = 1e5, half_span = 0.3, height = 0.08;
     const double free = std::hypot(half_span, height);
-    const auto force = [&](double z) { return 2 * k * (std::hypot(half_span, z) - free) * z / std::hypot(half_span, z); };
+    const auto force = [&](double z) {
+        return 2 * k * (std::hypot(half_span, z) - free) * z / std::hypot(half_span, z);
+    };
+    // What the published sum converges to: ∫ 2k ζ²/(b² + ζ²) dζ, the springs' axes of their time.
+    const auto turned_nothing = [&](double z) {
+        return 2 * k * (z - height - half_span * (std::atan(z / half_span) - std::atan(height / half_span)));
+    };
     const Driven1 d = jacked(scene, scene.probes[0].at, {0, 0, height}, -2 * height - 0.02, 400);
-    for (const auto& method : methods) {
+    for (Method method : methods) {
         if (!steps_or_adapts(method)) continue;
+        if (method.name == "adaptive") method = adaptive(1e-9);
         const auto path = run(d, method, 400);
-        const bool truth = method.formal_order > 0;
         double work = 0, worst = 0;
         for (std::size_t n = 0; n < path.points.size(); ++n) {
             const double jack = path.points[n].reactions.back().force.z(), z = height + path.points[n].load;
-            worst = std::max(worst, std::abs(jack - force(z)));
+            worst =
+                std::max(worst, std::abs(jack - (method.formal_order > 0 ? force(z) : turned_nothing(z))));
             work += jack * (n == 0 || n + 1 == path.points.size() ? 1 : n % 2 == 1 ? 4 : 2);
         }
         work *= d.branch.to / 400 / 3;
         const double stretch = std::hypot(half_span, height + d.branch.to) - free;
-        if (!truth) continue;
-        EXPECT_LE(worst, method.formal_order > 1 ? 1e-6 : 1) << method.name;
-        if (method.formal_order > 1) EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-7) << method.name;
+        // In newtons of 2.6 kN; what a method's λ lags behind by is its order.
+        const bool exact = method.name == "chord" || method.name == "adaptive";
+        EXPECT_LE(worst, exact ? 1e-5 : method.formal_order > 1 ? 0.1 : 10) << method.name;
+        if (exact) EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-8) << method.name;
     }
 }
 
@@ -203,8 +224,10 @@ TEST(Driver, PreloadPullsABushingBackByItsRate) {
     Scene scene = carriage();
     LinearStiffness law;
     law.K.diagonal() << 2e5, 1e5, 1e5, 10, 10, 10;
-    scene.elastics = {{"mount", Bushing{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, law, Vector6::Zero()}}};
-    Vector6 direction = Vector6::Zero();
+    scene.elastics = {
+        {"mount",
+         Bushing{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, law, elastocheck::Vector6::Zero()}}};
+    elastocheck::Vector6 direction = elastocheck::Vector6::Zero();
     direction[0] = 1;
     for (const double start : {0.0, -400.0}) {
         const Driven1 d = driven(scene, {Preload{0, direction}, start, 1}, 1000, 10);
@@ -232,7 +255,8 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
         const Equilibrium& first = path.points.front();
         const Pose& pose = first.poses[static_cast<std::size_t>(d.model.wheels[0].body)];
         const bool follows = method.formal_order > 0, closes = method.name != "published";
-        EXPECT_NEAR((pose.r + pose.p * wheel.centre_local).z(), drawn.z() + 0.03, closes ? 1e-6 : 1e-3) << method.name;
+        EXPECT_NEAR((pose.r + pose.p * wheel.centre_local).z(), drawn.z() + 0.03, closes ? 1e-6 : 1e-3)
+            << method.name;
         const auto left = residuals(d.model, d.branch, first);
         EXPECT_LE(left.length, closes ? 1e-6 : 1e-3) << method.name;
         if (follows) EXPECT_LE(std::max(left.force, left.moment), 1e-5) << method.name;
@@ -242,7 +266,8 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
 // ---- Scenes that broke something.
 
 Model found(const std::string& name) {
-    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+    return compile(
+        read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
 }
 
 TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {

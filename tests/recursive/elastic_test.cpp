@@ -144,8 +144,7 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
                 State<double> plus = q, minus = q;
                 advance(plus, dq);
                 advance(minus, (-dq).eval());
-                const Vector<double> difference =
-                    (force_of(model, plus) - force_of(model, minus)) / (2 * h);
+                const Vector<double> difference = (force_of(model, plus) - force_of(model, minus)) / (2 * h);
                 EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(), 1e-7 * K.cwiseAbs().maxCoeff());
             }
         }

@@ -100,8 +100,8 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
         for (const auto& branch : model.branches) {
             const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
             for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
-                const auto path = solve(model, branch,
-                                        {.method = {"adaptive", 3, Adaptive{tolerance, tolerance}}, .steps = 150});
+                const auto path = solve(
+                    model, branch, {.method = {"adaptive", 3, Adaptive{tolerance, tolerance}}, .steps = 150});
                 ASSERT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
                 EXPECT_LE(apart(model, path, exact), tolerance + 1e-9)
                     << name << " " << branch.name << " " << tolerance;

@@ -133,7 +133,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
         Matrix<double> M(n + m, n + m);
         Vector<double> Phi(m);
         assemble<double>(model, drawn, q, M, Phi);
-        external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q, f);
+        external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q,
+                               f);
         Vector<double> rhs = Vector<double>::Zero(n + m);
         rhs.head(n) = f - stored;
         const Vector<double> x = M.fullPivLu().solve(rhs);
@@ -291,6 +292,22 @@ TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
     EXPECT_EQ(path.points.size(), 1u);
 }
 
+TEST(Outcome, APreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
+    // The bushing has no rate about the guide, but a moment.
+    Model model =
+        bar("bodies: {bar: {origin: a}}\n"
+            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
+            "bushings: {k: {bodies: [bar, ground], at: a, rates: [1000, 1000, 1000], "
+            "rotational_rates: [0, 10, 10]}}\n"
+            "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n");
+    std::get<Bushing>(model.elastics.at(0).kind).preload[3] = 5;
+    ASSERT_EQ(diagnose(model).idle.size(), 1u);
+    for (const auto& method : methods) {
+        const auto path = solve(model, model.branches[0], {.method = method});
+        EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << method.name << ": " << path.detail;
+    }
+}
+
 TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
     const std::string rest =
         "bodies: {bar: {origin: a}}\n"
@@ -365,7 +382,8 @@ TEST(Outcome, TheModelMustStandOnTheBranch) {
     branch.from = -100;
     EXPECT_THROW(solve(model, branch), std::invalid_argument);
     branch.from = 0;
-    for (const Driven& what : {Driven{Motion{0}}, Driven{FreeLength{99}}, Driven{FreeLength{1}}, Driven{Preload{0}}}) {
+    for (const Driven& what :
+         {Driven{Motion{0}}, Driven{FreeLength{99}}, Driven{FreeLength{1}}, Driven{Preload{0}}}) {
         branch.drivers = {{what, 0, 1}};
         EXPECT_THROW(solve(model, branch), std::invalid_argument);
     }

@@ -77,8 +77,7 @@ template <class Real>
 Matrix<Real> tangent(const Case& c) {
     Matrix<Real> T = Matrix<Real>::Zero(6 * bodies, 6 * bodies);
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    add_consistent_tangent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses), lambda,
-                                 T);
+    add_consistent_tangent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses), lambda, T);
     return T;
 }
 
@@ -121,7 +120,8 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
             c.model.elastics.push_back(
-                {"spring", AxialSpring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)}});
+                {"spring",
+                 AxialSpring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)}});
             // The fifth derivative of a direction grows as ℓ⁻⁵ when the random ends come close.
             const auto& e = std::get<AxialSpring>(c.model.elastics[0].kind);
             const State<double> q = state_of<double>(c.poses);
@@ -187,7 +187,8 @@ Case everything_at_once(Random& random) {
         c.model.elastics.push_back({"bushing", bushing(i, j, random)});
         c.model.elastics.push_back(
             {"spring",
-             AxialSpring{{i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, LinearRate{3e4}, 0.3}});
+             AxialSpring{
+                 {i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, LinearRate{3e4}, 0.3}});
         const Point at_i{i, random.vector()}, at_j{j, random.vector()};
         add(c, CoincidentPoints{at_i, at_j}, random);
         add(c, PointInPlane{at_i, at_j, {j, random.unit()}}, random);
