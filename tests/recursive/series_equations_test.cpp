@@ -193,8 +193,10 @@ TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
             if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r - c.q[j].lever(spring.j.s_local)).norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", spring});
-            c.model.elastics.push_back(
-                {"bushing", Bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}}});
+            Bushing bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};
+            bushing.j.A_local = c.q[j].p.conjugate() * c.q[i].p * bushing.i.A_local *
+                                exponential<double>(random(0, 1.5) * random.unit());
+            c.model.elastics.push_back({"bushing", bushing});
             c.branch.drivers.push_back({FreeLength{0}, random(), random()});
             Preload preload{1, Vector6<double>::Zero()};
             for (auto& value : preload.direction) value = random(-500, 500);
