@@ -114,7 +114,7 @@ Measured taken(std::size_t branch, double off, bool by_travel, bool named) {
     Measured measured;
     const Curve& truth = compared().branches[branch].runs[1].curve;
     measured.columns.push_back({channel("toe"), false, {}});
-    for (const std::size_t k : {30u, 120u, 299u}) {
+    for (const std::size_t k : {30u, 120u, 240u}) {
         (by_travel ? measured.at : measured.a)
             .push_back(by_travel ? truth.values[k][channel("travel")] : truth.a[k]);
         measured.columns[0].values.push_back(truth.values[k][channel("toe")] - off);

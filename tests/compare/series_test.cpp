@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "compare/legs.hpp"
 #include "compare/order_study.hpp"
 #include "compare/rates.hpp"
 #include "models/compile.hpp"
@@ -19,15 +20,18 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
-        for (const auto& branch : model.branches) {
-            const auto path = follow(model, branch);
+        for (const auto& whole : model.branches) {
+            const Way way = ways_of(model, whole).back();
+            const Branch& branch = way.branch;
+            const auto path = follow(way.model, branch);
+            ASSERT_EQ(path.outcome, Outcome::converged) << name << " " << way.name << " " << path.detail;
             for (const double share : {0.1, 0.45, 0.8}) {
                 const double a = share * branch.to, h = 1e-3 * branch.to;
                 std::vector<Equilibrium> points;
                 for (const double at : {a - 2 * h, a - h, a + h, a + 2 * h})
-                    points.push_back(evaluate(model, branch, path, *find(path, at)));
-                const Curve c = curve(model, all, branch, points);
-                const auto rates = channel_rates(model, all, branch, path, *find(path, a));
+                    points.push_back(evaluate(way.model, branch, path, *find(path, at)));
+                const Curve c = curve(way.model, all, branch, points);
+                const auto rates = channel_rates(way.model, all, branch, path, *find(path, a));
                 ASSERT_EQ(rates.size(), all.size());
                 const auto slope = [&](std::size_t k) {
                     const auto v = c.channel(k);
