@@ -101,7 +101,7 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
 
 Reading at_equal_travel(const Curve& a, const Curve& b) {
     if (a.travel.empty() || b.travel.empty())
-        return nothing("the branch has no travel: its loads are moments");
+        return nothing("the branch has no travel: its loads have no resultant force");
     if (!strictly_monotone(a.travel) || !strictly_monotone(b.travel))
         return nothing("travel is not monotone in the load");
     const auto [low, high] = std::minmax(b.travel.front(), b.travel.back());

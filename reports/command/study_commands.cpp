@@ -39,7 +39,7 @@ void write_results(const std::string& folder, const std::string& command, json p
     result["scenes"].push_back(std::move(part));
     std::string written;
     if (result["scenes"][0].contains("branches"))
-        tables.insert(tables.begin(), {"curves.csv", curves_csv(json::parse(result.dump()), "result.json")});
+        tables.insert(tables.begin(), {"curves.csv", curves_csv(result, "result.json")});
     tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
     write_folder(folder, tables);
     for (const auto& file : tables)
@@ -49,7 +49,7 @@ void write_results(const std::string& folder, const std::string& command, json p
 
 // The rates of a polynomial branch beside its curve: travel and main channels per unit of the load factor.
 std::string rates_csv(const Model& model, const recursive::Options& how) {
-    std::string csv = "branch,load factor,travel [mm per unit]";
+    std::string csv = fmt::format("branch,load factor [{}],travel [mm per unit]", load_units(model));
     for (const auto& channel : compare::channels(model))
         if (channel.main)
             csv += fmt::format(",{}",
@@ -94,7 +94,7 @@ int solve(const std::string& file, compare::Leg leg, const recursive::Options& h
     if (!rates.empty()) check_may_write(rates, rates_file);
     const Model model = compile(read_scene(file));
     check_memory(model, how.steps, 1, false);
-    std::string csv = curves_header(compare::channels(model));
+    std::string csv = curves_header(model);
     int code = fine;
     for (const auto& branch : model.branches) {
         progress(branch.name);

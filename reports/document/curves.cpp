@@ -8,11 +8,12 @@
 namespace elastocheck::reports {
 
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file) {
-    std::string csv = "scene,branch,leg,load factor,travel [mm],output,unit,value\n";
+    std::string csv = "scene,branch,leg,load factor,its unit,travel [mm],output,unit,value\n";
     for (const auto& scene : Field{&result, "", &file}["scenes"].items()) {
         if (!scene.find("branches")) continue;
         for (const auto& branch : scene["branches"].items())
             for (const auto& leg : branch["legs"].items()) {
+                const std::string load_unit = for_csv(branch["load_unit"].text());
                 const Field curve = leg["curve"], columns = curve["values"];
                 const auto load = curve["load"].numbers(), travel = curve["travel_mm"].numbers();
                 const std::string whose = for_csv(scene["name"].text()) + "," +
@@ -23,7 +24,7 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
                     const auto values = columns[name].numbers();
                     if (values.size() != load.size()) columns[name].fail("not as many numbers as loads");
                     for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format("{},{:.17g},{},{},{:.17g}\n", whose, load[k],
+                        csv += fmt::format("{},{:.17g},{},{},{},{:.17g}\n", whose, load[k], load_unit,
                                            k < travel.size() ? fmt::format("{:.17g}", travel[k]) : "", what,
                                            values[k]);
                 }

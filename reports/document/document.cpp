@@ -1,5 +1,6 @@
 #include "reports/document/document.hpp"
 
+#include "reports/document/definitions.hpp"
 #include "reports/document/drawing.hpp"
 
 namespace elastocheck::reports {
@@ -92,12 +93,6 @@ json reading_json(const compare::Reading& reading, const compare::Comparison& al
     return result;
 }
 
-const char* load_unit(const Branch& branch) {
-    for (const auto& load : branch.loads)
-        if (std::holds_alternative<DeadForce>(load.kind)) return "N";
-    return "N·m";
-}
-
 json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
     return {{"of", name(pair.b)},
             {"from", name(pair.a)},
@@ -106,6 +101,12 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all) {
 }
 
 }  // namespace
+
+const char* load_unit(const Branch& branch) {
+    for (const auto& load : branch.loads)
+        if (std::holds_alternative<DeadForce>(load.kind)) return "N";
+    return "N·m";
+}
 
 json provenance_json(const Provenance& p) {
     json libraries = json::object();
@@ -137,6 +138,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         const auto& channel = comparison.channels[c];
         channels.push_back({{"name", channel.name},
                             {"unit", symbol(channel.unit)},
+                            {"definition", definition(channel)},
                             {"main", channel.main},
                             {"unique", static_cast<bool>(comparison.unique[c])}});
     }

@@ -96,6 +96,9 @@ Points read(std::string_view csv, const std::string& file, const Model& model,
     }
     for (const auto& output : outputs) known.push_back(output.name);
 
+    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // the byte-order mark that spreadsheets write
+    if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
+        fail(file, 0, "is UTF-16; save it as CSV in UTF-8");
     int number_of_line = 0, branch_column = -1;
     for (std::string_view rest = csv; !rest.empty();) {
         ++number_of_line;
@@ -153,18 +156,62 @@ Points read(std::string_view csv, const std::string& file, const Model& model,
     return points;
 }
 
-// The leg's value at x, from the branch that reaches it; NaN where none does.
-double value_at(const compare::Comparison& all, Leg leg, std::size_t channel, bool by_travel, double x,
-                const std::string& branch_name) {
-    for (const auto& branch : all.branches) {
-        if (!branch_name.empty() && branch.branch != branch_name) continue;
-        const compare::Curve& curve = branch.runs[static_cast<std::size_t>(leg)].curve;
-        const auto& at = by_travel ? curve.travel : curve.load;
-        if (at.size() < 2 || at.size() != curve.values.size()) continue;
+// How far a leg has settled along the branch before its load is applied [mm]: curves count travel from there,
+// measurements from the design position.
+double settled(const Branch& branch, const compare::Curve& curve, const std::vector<double>& design) {
+    const auto direction = compare::travel_direction(branch);
+    if (!direction || curve.values.empty() || design.size() < 3) return 0;
+    double along = 0;  // the first three channels are the position that travels
+    for (int k = 0; k < 3; ++k)
+        along += (*direction)[k] *
+                 (curve.values.front()[static_cast<std::size_t>(k)] - design[static_cast<std::size_t>(k)]);
+    return along;
+}
+
+// The outputs at the design position, as drawn.
+std::vector<double> at_design(const Model& model) {
+    Equilibrium state;
+    for (const auto& body : model.bodies) state.poses.push_back(body.design);
+    state.reactions.resize(model.joints.size());
+    return compare::evaluate(model, state);
+}
+
+// The branch of each point: as its column says, or the one that goes its way.
+std::vector<std::string> branches_of(const Points& points, const Model& model,
+                                     const compare::Comparison& all) {
+    if (!points.branch.empty()) return points.branch;
+    const auto* travel = points.find("travel_mm");
+    const auto* load = points.find(load_column(model));
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < points.columns.front().values.size(); ++k) {
+        std::string found;
+        for (std::size_t b = 0; b < all.branches.size() && found.empty(); ++b) {
+            const auto& curve = all.branches[b].runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+            const double end = curve.travel.empty() ? nan : curve.travel.back();
+            const bool by_travel = travel != nullptr && (*travel)[k] * end >= 0;
+            const bool by_load = load != nullptr && (*load)[k] * model.branches[b].to >= 0;
+            if (by_travel || by_load) found = all.branches[b].branch;
+        }
+        names.push_back(found.empty() ? all.branches.front().branch : found);
+    }
+    return names;
+}
+
+// The leg's value at x on the branch it was measured on; NaN where that does not reach it.
+double value_at(const Model& model, const compare::Comparison& all, const std::vector<double>& design,
+                Leg leg, std::size_t channel, bool by_travel, double x, const std::string& branch_name) {
+    for (std::size_t b = 0; b < all.branches.size(); ++b) {
+        if (all.branches[b].branch != branch_name) continue;
+        const compare::Curve& curve = all.branches[b].runs[static_cast<std::size_t>(leg)].curve;
+        auto at = by_travel ? curve.travel : curve.load;
+        if (at.size() < 2 || at.size() != curve.values.size()) return nan;
+        if (by_travel)
+            for (const double rest = settled(model.branches[b], curve, design); double& travel : at)
+                travel += rest;
         const auto [low, high] = std::minmax(at.front(), at.back());
         const bool monotone =
             std::ranges::is_sorted(at, std::less_equal{}) || std::ranges::is_sorted(at, std::greater_equal{});
-        if (!monotone || !(x >= low && x <= high)) continue;
+        if (!monotone || !(x >= low && x <= high)) return nan;
         std::vector<double> y;
         for (const auto& point : curve.values) y.push_back(point[channel]);
         return compare::interpolate(at, y, x, 6);
@@ -187,12 +234,14 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
                                      "say which one a point belongs to",
                                      model.branches[b].name, model.branches[a].name));
     }
-    json design = json::object();
-    std::vector<double> start;
-    for (const auto& branch : all.branches)
-        if (const auto& values = branch.runs[1].curve.values; start.empty() && !values.empty())
-            start = values.front();
-    if (start.empty()) fail(file, 0, "nothing to compare with: the equilibrium leg has no point");
+    if (all.branches.empty() || all.branches.front().runs[1].curve.values.empty())
+        fail(file, 0, "nothing to compare with: the equilibrium leg has no point");
+    const std::vector<double> start = at_design(model);
+    const std::vector<std::string> branches = branches_of(points, model, all);
+    json design = json::object(), rest = json::object();
+    for (std::size_t b = 0; b < all.branches.size(); ++b)
+        rest[all.branches[b].branch] = settled(
+            model.branches[b], all.branches[b].runs[static_cast<std::size_t>(Leg::equilibrium)].curve, start);
     json columns = json::object();
     for (auto& column : points.columns) {
         if (column.name == "branch") continue;
@@ -221,9 +270,9 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
                 double signed_max = nan, squares = 0;
                 int count = 0;
                 for (std::size_t k = 0; k < column.values.size(); ++k) {
-                    const double off = value_at(all, leg, c, by_travel, abscissa.values[k],
-                                                points.branch.empty() ? "" : points.branch[k]) -
-                                       column.values[k];
+                    const double off =
+                        value_at(model, all, start, leg, c, by_travel, abscissa.values[k], branches[k]) -
+                        column.values[k];
                     if (!std::isfinite(off)) continue;
                     ++count;
                     squares += off * off;
@@ -241,7 +290,15 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     }
     scene_document["measured"] = {
         {"file", file},       {"hash", input_hash(csv)}, {"points", points.columns.front().values.size()},
-        {"columns", columns}, {"design", design},        {"readings", readings}};
+        {"columns", columns}, {"branch", branches},      {"branch_given", !points.branch.empty()},
+        {"design", design},   {"settled_mm", rest},      {"readings", readings}};
+}
+
+int compared_with_measurement(const json& scene_document) {
+    int compared = 0;
+    for (const auto& reading : scene_document.at("measured").at("readings"))
+        for (const auto& channel : reading.at("channels")) compared += channel.at("compared").get<int>();
+    return compared;
 }
 
 }  // namespace elastocheck::reports

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "reports/document/document.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -52,7 +54,7 @@ std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Re
 }
 
 void deviation_table(const compare::Comparison& all, const compare::BranchComparison& branch,
-                     const char* load_unit, std::string& text) {
+                     const char* unit, std::string& text) {
     const auto out = std::back_inserter(text);
     const auto& load = branch.deviation.equal_load;
     const auto& travel = branch.deviation.equal_travel;
@@ -65,8 +67,8 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
     fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal load",
                    "at equal travel", "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
-                   "deviation", "range", "max", fmt::format("at {}", load_unit), "rms", "share", "max",
-                   "at mm", "rms", "share", "uncertainty");
+                   "deviation", "range", "max", fmt::format("at {}", unit), "rms", "share", "max", "at mm",
+                   "rms", "share", "uncertainty");
     for (const std::size_t c : shown(all, load)) {
         const auto& d = load.channels[c];
         fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
@@ -111,32 +113,36 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     }
 }
 
+// What stands behind "the recursion" in these tables.
+std::string recursion_of(const compare::Comparison& comparison) {
+    const std::string method =
+        comparison.branches.empty() ? "" : comparison.branches.front().runs.front().method;
+    return method.empty() || method == "published" ? "eq. (29)" : fmt::format("the method '{}'", method);
+}
+
 }  // namespace
 
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out,
-                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is eq. (29), read against "
+                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
                    "the equilibrium leg;\n"
                    "share: of the channel's range over the branch; uncertainty: the energy leg against the "
                    "equilibrium leg.\n",
                    model.name, coordinates(model), constraint_rows(model),
-                   coordinates(model) + constraint_rows(model));
+                   coordinates(model) + constraint_rows(model), recursion_of(comparison));
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
         const auto& definition = model.branches[k];
-        bool force = false;
-        for (const auto& load : definition.loads)
-            force = force || std::holds_alternative<DeadForce>(load.kind);
-        const char* load_unit = force ? "N" : "N·m";
+        const char* unit = load_unit(definition);
         const auto& steps = branch.runs.front().curve.load;
-        fmt::format_to(out, "\nbranch '{}': 0 to {:g} {}", branch.branch, definition.to, load_unit);
+        fmt::format_to(out, "\nbranch '{}': 0 to {:g} {}", branch.branch, definition.to, unit);
         if (!steps.empty()) fmt::format_to(out, " in {} steps", steps.size() - 1);
         const auto& travel = branch.runs[1].curve.travel;
         if (!travel.empty()) fmt::format_to(out, ", travel {:.2f} mm", travel.back());
         fmt::format_to(out, "\n\n");
-        deviation_table(comparison, branch, load_unit, text);
+        deviation_table(comparison, branch, unit, text);
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         for (const auto& reason : branch.inconclusive) fmt::format_to(out, "  inconclusive: {}\n", reason);

@@ -2,12 +2,22 @@
 
 #include <fmt/format.h>
 
+#include "reports/document/document.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
-std::string curves_header(const std::vector<compare::Channel>& channels) {
-    std::string line = "branch,leg,load factor,travel [mm]";
-    for (const auto& channel : channels)
+std::string load_units(const Model& model) {
+    std::string units;
+    for (const auto& branch : model.branches)
+        if (const std::string unit = load_unit(branch); units.find(unit + ";") == units.npos)
+            units += unit + ";";
+    if (!units.empty()) units.pop_back();
+    return units;
+}
+
+std::string curves_header(const Model& model) {
+    std::string line = fmt::format("branch,leg,load factor [{}],travel [mm]", load_units(model));
+    for (const auto& channel : compare::channels(model))
         line += fmt::format(",{}", for_csv(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
     return line + "\n";
 }

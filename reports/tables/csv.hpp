@@ -8,9 +8,12 @@
 
 namespace elastocheck::reports {
 
-// Header and rows: branch, leg, load factor, travel [mm], then every channel with its unit; 17 significant
-// digits.
-std::string curves_header(const std::vector<compare::Channel>& channels);
+// Of the load factors of all branches: "N", "N·m", or "N;N·m".
+std::string load_units(const Model& model);
+
+// Header and rows: branch, leg, load factor [N], travel [mm], then every channel with its unit; 17
+// significant digits.
+std::string curves_header(const Model& model);
 std::string curves_rows(const std::string& branch, const compare::LegRun& run);
 
 }  // namespace elastocheck::reports

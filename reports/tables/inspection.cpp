@@ -4,6 +4,9 @@
 
 #include <iterator>
 
+#include "compare/channels.hpp"
+#include "reports/document/definitions.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -65,6 +68,18 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
         for (const auto& load : branch.loads) loads += (loads.empty() ? "" : " + ") + load.name;
         line("  {:<20} {} to {:g} in {} steps", branch.name, loads, branch.to, branch.steps);
     }
+    line("\noutputs");
+    for (const auto& channel : compare::channels(model))
+        if (channel.main)
+            line("  {:<20} {}", fmt::format("{} [{}]", channel.name, symbol(channel.unit)),
+                 definition(channel));
+    for (const auto unit : {compare::Unit::newton, compare::Unit::newton_metre})
+        if (!model.joints.empty())
+            line("  {:<20} {}",
+                 fmt::format("JOINT.{}_x, _y, _z [{}]", unit == compare::Unit::newton ? "force" : "moment",
+                             symbol(unit)),
+                 definition({.name = "", .unit = unit, .main = false, .joint = 0}));
+    line("  {:<20} {}", "travel [mm]", travel_definition);
     line("\nredundant constraints");
     for (const auto& r : d.redundant)
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",

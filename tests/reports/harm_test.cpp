@@ -2,6 +2,9 @@
 // told to say, work for nothing, or look as if all were well.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -192,6 +195,15 @@ TEST(Harm, AFullDiskBehindStandardOutputIsNoSuccess) {
     }
 }
 
+TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
+    const Folder folder;
+    folder.write("far.csv", "travel_mm,tip_x_mm\n1e4,0\n");
+    const Said said = in(folder, "report " + scene + " --measured far.csv -o out");
+    EXPECT_EQ(said.code, 3) << said.err;
+    EXPECT_TRUE(contains(said.err, "no point of far.csv lies where the legs could be compared with it"))
+        << said.err;
+}
+
 TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
     const Folder folder;
     fs::create_directory(folder.path / "baselines");
@@ -224,11 +236,14 @@ TEST(Harm, ComparesFilesAreOfOneRun) {
     const auto of_few = rows();
     ASSERT_EQ(in(folder, "compare " + scene + " --steps 4 -o out").code, 0);
     const auto of_many = rows();
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(in(folder, "compare " + scene + " --steps 4 -o out").code, 0);
+    const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
     ASSERT_NE(of_few, of_many);
     int changed = 0, killed = 0;
     for (int round = 0; round < 40; ++round) {
         const bool few = round % 2 == 0;
-        const std::string delay = std::to_string(0.005 * (round % 20));
+        const std::string delay = std::to_string(whole.count() * (0.3 + 0.05 * (round % 20)));
         const Said said = support::says(
             "cd " + folder.path.string() + "; " + ELASTOCHECK_COMMAND + " compare " + scene + " --steps " +
             (few ? "2" : "4") + " -o out >/dev/null & sleep " + delay + "; kill -9 $! 2>/dev/null; wait $!");

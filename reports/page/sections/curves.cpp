@@ -23,7 +23,8 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     std::vector<Output> outputs;
     const auto channels = main_channels_of(scene);
     const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.name == "toe"; });
-    const bool travel = !curve_of(sweep.branches.front(), "equilibrium").travel.empty();
+    const bool travel =
+        !curve_of(sweep.branches.front(), "equilibrium").travel.empty() && !measured_over_load(scene);
     if (wheel) {
         outputs.push_back({"toe", "Toe angle", "toe angle [deg]", "toe"});
         outputs.push_back({"camber", "Camber angle", "camber angle [deg]", "camber"});
@@ -59,8 +60,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     Table table;
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
-    const auto measured = measured_series(scene, output.load ? "load" : output.channel, output.change);
+    const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
     const bool fourth = measured && !output.load;  // a column of its own
+    const bool over_load = measured_over_load(scene);
     bool travel = false;
     double most = 0;
     for (const auto& branch : sweep.branches) {
@@ -70,7 +72,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                                                    : "recursive";
             const LegCurve curve = curve_of(branch, leg);
             const auto values = values_of(curve, output);
-            const auto& x = curve.travel.empty() ? curve.load : curve.travel;
+            const auto& x = curve.travel.empty() || over_load ? curve.load : curve.travel;
             if (!series->rows.empty() && series != &energy) series->rows.emplace_back();
             for (const auto k : thinned(values.size(), series == &energy ? 6 : 41))
                 series->rows.push_back({x[k], values[k]});
@@ -78,7 +80,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         }
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
-        travel = travel || !a.travel.empty();
+        travel = travel || (!a.travel.empty() && !over_load);
+        const auto points =
+            fourth ? measured_for(scene, sweep, branch, output.channel, output.change) : std::nullopt;
         const auto va = values_of(a, output), vb = values_of(b, output), ve = values_of(e, output);
         for (const auto k : thinned(a.load.size(), 6)) {
             if (k == 0 && !rows.empty()) continue;
@@ -89,8 +93,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
             } else {
                 if (!a.travel.empty()) row.push_back(number(a.travel[k], 4));
                 for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
-                if (fourth)
-                    row.push_back(a.travel.empty() ? "–" : value(value_between(*measured, a.travel[k])));
+                const auto& x = over_load ? a.load : a.travel;
+                if (fourth) row.push_back(!points || x.empty() ? "–" : value(value_between(*points, x[k])));
             }
             rows.emplace_back(a.load[k], row);
         }
