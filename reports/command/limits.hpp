@@ -5,7 +5,7 @@
 
 namespace elastocheck::reports {
 
-// Of a branch, as in a scene. A million points of the paper's McPherson strut are 0.9 GB a leg and branch.
+// Of a branch, as in a scene. A million points of the paper's McPherson strut are 1.7 GB a leg and branch.
 inline constexpr int most_steps = 1'000'000;
 // What the points of a run may take together [bytes]: what an ordinary desk or CI machine has to spare.
 inline constexpr double most_memory = 4e9;

@@ -66,8 +66,12 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     const auto comparison = compare::compare(model, options);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
-    if (!request.measured.empty())
+    if (!request.measured.empty()) {
         add_measurement(document, read_whole(request.measured), request.measured, model, comparison);
+        if (compared_with_measurement(document) == 0)
+            reasons.push_back(fmt::format("no point of {} lies where the legs could be compared with it",
+                                          request.measured));
+    }
 
     compare::StudyOptions study_options;
     study_options.methods.clear();
@@ -177,8 +181,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as a reader of the file will see it: NaN is null
     }
-    write_report(result, file, request.folder,
-                 {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
+    const auto answers =
+        write_report(result, file, request.folder,
+                     {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
     for (const auto& scene : result["scenes"])
@@ -189,9 +194,11 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
                          reason.get<std::string>());
         }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    print("{0}/{1}: {2} scene{3}, {4:.1f} s\n", request.folder, request.archive ? "README.md" : "report.html",
-
-          result["scenes"].size(), result["scenes"].size() == 1 ? "" : "s", elapsed.count());
+    for (std::size_t k = 0; k < answers.size(); ++k)
+        print("{}: {}\n\n", result["scenes"][k]["name"].get<std::string>(), answers[k]);
+    print("The page: {}/{} ({} scene{}, {:.1f} s)\n", request.folder,
+          request.archive ? "README.md" : "report.html", result["scenes"].size(),
+          result["scenes"].size() == 1 ? "" : "s", elapsed.count());
     return code;
 }
 

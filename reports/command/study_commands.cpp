@@ -39,7 +39,7 @@ void write_results(const std::string& folder, const std::string& command, json p
     result["scenes"].push_back(std::move(part));
     std::string written;
     if (result["scenes"][0].contains("branches"))
-        tables.insert(tables.begin(), {"curves.csv", curves_csv(json::parse(result.dump()), "result.json")});
+        tables.insert(tables.begin(), {"curves.csv", curves_csv(result, "result.json")});
     tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
     write_folder(folder, tables);
     for (const auto& file : tables)

@@ -7,8 +7,8 @@
 namespace elastocheck::reports {
 
 // Every point of every leg, one number a row, since scenes differ in their outputs:
-// scene,branch,leg,load factor,travel [mm],output,unit,value. Throws ResultError; `file` is where it was
-// read.
+// scene,branch,leg,load factor,its unit,travel [mm],output,unit,value. Throws ResultError; `file` is where it
+// was read.
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file);
 
 }  // namespace elastocheck::reports

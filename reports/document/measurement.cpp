@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/deviation.hpp"
+#include "compare/measured.hpp"
 #include "models/reader/words.hpp"
 #include "reports/document/provenance.hpp"
 
@@ -26,8 +26,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Column {
     std::string name;
-    int channel = -1;     // position in Comparison::channels; -1: travel, load or branch
+    int channel = -1;     // position in Comparison::channels; -1: parameter or branch
     bool change = false;  // counted from the design position
+    bool travel = false;  // says where the point is
     std::vector<double> values;
 };
 
@@ -73,29 +74,55 @@ double number(std::string_view cell, const std::string& file, int line, const st
 
 std::string unit_suffix(compare::Unit unit) { return unit == compare::Unit::mm ? "mm" : "deg"; }
 
-std::string load_column(const Model& model) {
-    for (const auto& branch : model.branches)
-        for (const auto& load : branch.loads)
-            if (std::holds_alternative<DeadForce>(load.kind)) return "load_N";
-    return "load_Nm";
+// The column that gives a branch's parameter.
+std::string parameter_column(compare::Unit unit) {
+    switch (unit) {
+        case compare::Unit::newton: return "load_N";
+        case compare::Unit::newton_metre: return "load_Nm";
+        case compare::Unit::mm: return "parameter_mm";
+        case compare::Unit::deg: return "parameter_deg";
+        case compare::Unit::none: return "parameter";
+    }
+    return {};
 }
 
-Points read(std::string_view csv, const std::string& file, const Model& model,
-            const compare::Comparison& all) {
+// Of all branches, each once.
+std::vector<std::string> parameter_columns(const compare::Comparison& all) {
+    std::vector<std::string> names;
+    for (const auto& branch : all.branches)
+        if (const auto name = parameter_column(branch.unit); std::ranges::find(names, name) == names.end())
+            names.push_back(name);
+    return names;
+}
+
+// The channels that may say where a point is: the travel of each wheel.
+bool is_travel(const compare::Channel& channel) {
+    return channel.kinematic() && !channel.main;
+}
+
+Points read(std::string_view csv, const std::string& file, const compare::Comparison& all) {
     Points points;
-    std::vector<std::string> known{"travel_mm", load_column(model), "branch"};
+    std::vector<std::string> known{"branch"};
+    std::ranges::copy(parameter_columns(all), std::back_inserter(known));
     std::vector<Column> outputs;
     for (std::size_t c = 0; c < all.channels.size(); ++c) {
-        if (!all.channels[c].main) continue;
         const std::string unit = unit_suffix(all.channels[c].unit);
+        if (is_travel(all.channels[c]))
+            outputs.push_back(
+                {fmt::format("{}_{}", all.channels[c].name, unit), static_cast<int>(c), false, true, {}});
+        if (!all.channels[c].main || !all.channels[c].kinematic()) continue;
         for (const bool change : {false, true})
             outputs.push_back({fmt::format("{}{}_{}", all.channels[c].name, change ? "_change" : "", unit),
                                static_cast<int>(c),
                                change,
+                               false,
                                {}});
     }
     for (const auto& output : outputs) known.push_back(output.name);
 
+    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // the byte-order mark that spreadsheets write
+    if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
+        fail(file, 0, "is UTF-16; save it as CSV in UTF-8");
     int number_of_line = 0, branch_column = -1;
     for (std::string_view rest = csv; !rest.empty();) {
         ++number_of_line;
@@ -114,7 +141,7 @@ Points read(std::string_view csv, const std::string& file, const Model& model,
                     fail(file, number_of_line,
                          fmt::format("unknown column {}{}", reader::quote(name),
                                      reader::did_you_mean(name, known, "allowed")));
-                Column column{name, -1, false, {}};
+                Column column{name, -1, false, false, {}};
                 for (const auto& output : outputs)
                     if (output.name == name) column = output;
                 if (name == "branch") branch_column = static_cast<int>(points.columns.size());
@@ -145,103 +172,84 @@ Points read(std::string_view csv, const std::string& file, const Model& model,
     }
     if (points.columns.empty()) fail(file, 0, "empty; the first line names the columns");
     if (points.columns.front().values.empty()) fail(file, 0, "no point in it");
-    if (points.find("travel_mm") == nullptr && points.find(known[1]) == nullptr)
-        fail(file, 1,
-             fmt::format("neither 'travel_mm' nor '{}'; one of them says where a point is", known[1]));
-    if (std::ranges::none_of(points.columns, [](const Column& c) { return c.channel >= 0; }))
+    const auto is_place = [](const Column& c) { return c.travel || (c.channel < 0 && c.name != "branch"); };
+    const auto places = std::ranges::count_if(points.columns, is_place);
+    if (places == 0) {
+        std::vector<std::string> allowed = parameter_columns(all);
+        for (const auto& output : outputs)
+            if (output.travel) allowed.push_back(output.name);
+        fail(file, 1, "no column says where a point is" + reader::did_you_mean("", allowed, "allowed"));
+    }
+    if (std::ranges::count_if(points.columns, [](const Column& c) { return c.travel; }) > 1 ||
+        std::ranges::count_if(points.columns,
+                              [](const Column& c) { return c.channel < 0 && c.name != "branch"; }) > 1)
+        fail(file, 1, "two columns of one kind say where a point is; one parameter and one travel at most");
+    if (std::ranges::none_of(points.columns, [](const Column& c) { return c.channel >= 0 && !c.travel; }))
         fail(file, 1, "no output among the columns; " + reader::did_you_mean("", known, "allowed").substr(2));
     return points;
-}
-
-// The leg's value at x, from the branch that reaches it; NaN where none does.
-double value_at(const compare::Comparison& all, Leg leg, std::size_t channel, bool by_travel, double x,
-                const std::string& branch_name) {
-    for (const auto& branch : all.branches) {
-        if (!branch_name.empty() && branch.branch != branch_name) continue;
-        const compare::Curve& curve = branch.runs[static_cast<std::size_t>(leg)].curve;
-        const auto& at = by_travel ? curve.travel : curve.load;
-        if (at.size() < 2 || at.size() != curve.values.size()) continue;
-        const auto [low, high] = std::minmax(at.front(), at.back());
-        const bool monotone =
-            std::ranges::is_sorted(at, std::less_equal{}) || std::ranges::is_sorted(at, std::greater_equal{});
-        if (!monotone || !(x >= low && x <= high)) continue;
-        std::vector<double> y;
-        for (const auto& point : curve.values) y.push_back(point[channel]);
-        return compare::interpolate(at, y, x, 6);
-    }
-    return nan;
 }
 
 }  // namespace
 
 void add_measurement(json& scene_document, std::string_view csv, const std::string& file, const Model& model,
                      const compare::Comparison& all) {
-    Points points = read(csv, file, model, all);
-    if (points.branch.empty() && all.branches.size() > 1) {
-        // Without names, no two branches may lie on the same side.
-        for (std::size_t a = 0; a < model.branches.size(); ++a)
-            for (std::size_t b = 0; b < a; ++b)
-                if (!(model.branches[a].to * model.branches[b].to < 0))
-                    fail(file, 1,
-                         fmt::format("branches '{}' and '{}' lie on the same side; a column 'branch' has to "
-                                     "say which one a point belongs to",
-                                     model.branches[b].name, model.branches[a].name));
-    }
-    json design = json::object();
-    std::vector<double> start;
-    for (const auto& branch : all.branches)
-        if (const auto& values = branch.runs[1].curve.values; start.empty() && !values.empty())
-            start = values.front();
-    if (start.empty()) fail(file, 0, "nothing to compare with: the equilibrium leg has no point");
-    json columns = json::object();
-    for (auto& column : points.columns) {
+    const Points points = read(csv, file, all);
+    compare::Measured measured;
+    measured.branch = points.branch;
+    for (const auto& column : points.columns) {
         if (column.name == "branch") continue;
         if (column.channel < 0) {
-            columns[column.name] = column.values;
-            continue;
+            measured.a = column.values;
+        } else if (column.travel) {
+            measured.abscissa = static_cast<std::size_t>(column.channel);
+            measured.at = column.values;
+        } else {
+            measured.columns.push_back(
+                {static_cast<std::size_t>(column.channel), column.change, column.values});
         }
-        const auto c = static_cast<std::size_t>(column.channel);
-        if (column.change)
-            for (double& value : column.values) value += start[c];
-        columns[all.channels[c].name] = column.values;
-        design[all.channels[c].name] = start[c];
     }
+    compare::MeasuredComparison found;
+    try {
+        found = compare::compare_measured(model, all, measured);
+    } catch (const std::invalid_argument& error) {
+        fail(file, 1, error.what());
+    }
+    json columns = json::object();
+    if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
+    for (const auto& column : found.columns) columns[all.channels[column.channel].name] = column.values;
     json readings = json::array();
-    for (const auto& abscissa : points.columns) {
-        if (abscissa.channel >= 0 || abscissa.name == "branch") continue;
-        const bool by_travel = abscissa.name == "travel_mm";
+    for (const auto& reading : found.readings) {
         json rows = json::array();
-        for (const auto& column : points.columns) {
-            if (column.channel < 0) continue;
-            const auto c = static_cast<std::size_t>(column.channel);
+        for (const auto& of : reading.rows) {
+            const auto& channel = all.channels[of.channel];
             json row = {
-                {"channel", all.channels[c].name}, {"unit", symbol(all.channels[c].unit)}, {"compared", 0}};
-            int compared = std::numeric_limits<int>::max();
+                {"channel", channel.name}, {"unit", symbol(channel.unit)}, {"compared", of.compared}};
             for (const Leg leg : compare::legs) {
-                double signed_max = nan, squares = 0;
-                int count = 0;
-                for (std::size_t k = 0; k < column.values.size(); ++k) {
-                    const double off = value_at(all, leg, c, by_travel, abscissa.values[k],
-                                                points.branch.empty() ? "" : points.branch[k]) -
-                                       column.values[k];
-                    if (!std::isfinite(off)) continue;
-                    ++count;
-                    squares += off * off;
-                    if (!(std::abs(off) <= std::abs(signed_max))) signed_max = off;
-                }
-                row[name(leg)] = {{"signed_max", signed_max},
-                                  {"rms", count > 0 ? std::sqrt(squares / count) : nan}};
-                compared = std::min(compared, count);
+                const auto& off = of.off[static_cast<std::size_t>(leg)];
+                row[name(leg)] = {{"signed_max", off.signed_max}, {"rms", off.rms}};
             }
-            row["compared"] = compared;
             rows.push_back(row);
         }
-        readings.push_back(
-            {{"reading", by_travel ? "at equal travel" : "at equal load"}, {"channels", rows}});
+        const std::string by = reading.by_parameter ? "parameter" : all.channels[*measured.abscissa].name;
+        readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
     }
-    scene_document["measured"] = {
-        {"file", file},       {"hash", input_hash(csv)}, {"points", points.columns.front().values.size()},
-        {"columns", columns}, {"design", design},        {"readings", readings}};
+    scene_document["measured"] = {{"file", file},
+                                  {"hash", input_hash(csv)},
+                                  {"points", points.columns.front().values.size()},
+                                  {"columns", columns},
+                                  {"branch", found.branch},
+                                  {"branch_given", !points.branch.empty()},
+                                  {"readings", readings}};
+    if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
+    if (measured.abscissa)
+        scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
+}
+
+int compared_with_measurement(const json& scene_document) {
+    int compared = 0;
+    for (const auto& reading : scene_document.at("measured").at("readings"))
+        for (const auto& channel : reading.at("channels")) compared += channel.at("compared").get<int>();
+    return compared;
 }
 
 }  // namespace elastocheck::reports

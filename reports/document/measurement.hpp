@@ -19,12 +19,17 @@ struct MeasurementError : std::runtime_error {
 // Adds "measured" to a scene document: the points, and how far every leg is from them.
 //
 // The first line names the columns, every further one is a point; an empty cell was not measured. Columns:
-//   travel_mm and/or load_N (load_Nm)   where the point is, as `elastocheck compare` counts them
+//   travel_mm (NAME.travel_mm), load_N, load_Nm, parameter_mm, parameter_deg
+//                                       where the point is, by travel from the design position, by the
+//                                       branch's parameter or both
 //   OUTPUT_UNIT                         toe_deg, camber_deg, wheel_centre_y_mm, ...: as it stands
 //   OUTPUT_change_UNIT                  ...: since the design position
-//   branch                              its branch; needed only where several branches have the same travel
-// Throws MeasurementError.
+//   branch                              its branch; needed only where several branches go the same way
+// A point is compared with the branch it was measured on, and with no other. Throws MeasurementError.
 void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv, const std::string& file,
                      const Model& model, const compare::Comparison& comparison);
+
+// How many numbers of it could be compared, over all readings and outputs.
+int compared_with_measurement(const nlohmann::ordered_json& scene_document);
 
 }  // namespace elastocheck::reports

@@ -140,6 +140,8 @@ fs::path resolved(const fs::path& folder) {
     if (!target.has_filename()) target = target.parent_path();
     if (!target.has_filename()) fail(folder, "is the root of a file system; choose a folder below it");
     const auto status = fs::status(target, failed);
+    if (fs::is_symlink(fs::symlink_status(target, failed)) && status.type() == fs::file_type::not_found)
+        fail(folder, "is a symbolic link that leads nowhere");
     if (status.type() == fs::file_type::not_found) return target;
     if (status.type() == fs::file_type::none) fail(folder, failed.message());
     if (status.type() != fs::file_type::directory)

@@ -251,8 +251,8 @@ json parse_result(std::string_view text, const std::string& file) {
     return result;
 }
 
-void write_report(const json& result, const std::string& file, const fs::path& folder,
-                  const ReportOptions& options) {
+std::vector<std::string> write_report(const json& result, const std::string& file, const fs::path& folder,
+                                      const ReportOptions& options) {
     Staging staging(folder);
     const Field root{&result, "", &file};
     Page page;
@@ -289,6 +289,11 @@ void write_report(const json& result, const std::string& file, const fs::path& f
         fill(staging.path() / "curves.csv", curves_csv(result, file));
     }
     staging.publish();
+    std::vector<std::string> answers;
+    for (const auto& scene : scenes)
+        for (const auto& section : scene["sections"])
+            if (section["verdict"]) answers.push_back(section["lead"]);
+    return answers;
 }
 
 }  // namespace elastocheck::reports

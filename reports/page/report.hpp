@@ -20,8 +20,9 @@ struct ReportOptions {
 // Replaces `folder` by report.html, report.md, result.json, curves.csv and figures/, in one step. `result` is
 // what parse_result gave, `file` its name for messages. Throws ResultError, PlotError, FileError; an older
 // report is then untouched.
-void write_report(const nlohmann::ordered_json& result, const std::string& file,
-                  const std::filesystem::path& folder, const ReportOptions& options = {});
+// Returns the answer of each scene: the first paragraph of its verdict.
+std::vector<std::string> write_report(const nlohmann::ordered_json& result, const std::string& file,
+                                      const std::filesystem::path& folder, const ReportOptions& options = {});
 
 // scene,branch,output,unit,quantity,value,tolerance: the numbers by which a later run is told from this one,
 // and how far each may move with the compiler.

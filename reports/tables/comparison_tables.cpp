@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "reports/document/document.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -118,18 +120,25 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     }
 }
 
+// What stands behind "the recursion" in these tables.
+std::string recursion_of(const compare::Comparison& comparison) {
+    const std::string method =
+        comparison.branches.empty() ? "" : comparison.branches.front().runs.front().method;
+    return method.empty() || method == "published" ? "eq. (29)" : fmt::format("the method '{}'", method);
+}
+
 }  // namespace
 
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out,
-                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is eq. (29), read against "
+                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
                    "the equilibrium leg;\n"
                    "share: of the channel's range over the branch; uncertainty: the energy leg against the "
                    "equilibrium leg.\n",
                    model.name, coordinates(model), constraint_rows(model),
-                   coordinates(model) + constraint_rows(model));
+                   coordinates(model) + constraint_rows(model), recursion_of(comparison));
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
         const auto& definition = model.branches[k];

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "reports/document/document.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {

@@ -82,6 +82,20 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
         const std::string under = held.empty() ? "" : ", held: " + held;
         line("  {:<20} {}, {} in {} steps{}", branch.name, moved, range, branch.steps, under);
     }
+    line("\noutputs");
+    const auto channels = compare::channels(model);
+    bool force = false, moment = false;
+    for (const auto& channel : channels) {
+        std::string name = channel.name;
+        if (const bool reaction = std::holds_alternative<compare::Reaction>(channel.reads); reaction) {
+            bool& said = channel.unit == compare::Unit::newton ? force : moment;
+            if (said) continue;  // the same for every joint and axis
+            said = true;
+            name = channel.unit == compare::Unit::newton ? "JOINT.force_x, _y, _z" : "JOINT.moment_x, _y, _z";
+        }
+        const std::string head = fmt::format("{} [{}]", name, symbol(channel.unit));
+        line("  {:<30} {}", head, channel.definition);
+    }
     line("\nredundant constraints");
     for (const auto& r : d.redundant)
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
@@ -94,14 +108,6 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
     line("\nleft out, because no output depends on it");
     for (const auto& o : model.left_out) line("  {}: {}", o.what, o.why);
     if (model.left_out.empty()) line("  nothing");
-    line("\noutputs");
-    const auto channels = compare::channels(model);
-    for (const auto& channel : channels)
-        if (channel.main || channel.kinematic()) {
-            const char* unit = symbol(channel.unit);
-            line("  {:<20} [{}] {}", channel.name, unit, channel.definition);
-        }
-    line("  JOINT.force_x ... moment_z of every joint: its wrench on its first body about its point, ground axes");
     line("\nbalance at the design position, parameter 0");
     if (d.imbalance <= 1e-6)
         line("  in equilibrium");

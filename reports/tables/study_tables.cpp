@@ -62,7 +62,7 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
                            fmt::format("{:.0e}", s.uncertainty));
         }
     }
-    fmt::format_to(out, "  {:<22}", "|Φ|, eq. (31)");
+    fmt::format_to(out, "  {:<22}", "|Φ|, eq. (31) [m; rad]");
     for (const double error : method.constraint_error)
         fmt::format_to(out, "{:>10}", fmt::format("{:.2e}", error));
     fmt::format_to(out, "  {:>14}\n",
@@ -153,7 +153,7 @@ std::string study_tables(const Model& model, const compare::Study& study,
 std::string study_csv(const compare::Study& study) {
     std::string csv =
         "branch,method,reading,channel,unit,steps,step error end,step error max,step error rms,constraint "
-        "error (31),"
+        "error (31) [m; rad],"
         "behaviour,order,order error,limit,band,gap,gap max,gap rms,gap exponent,reference "
         "uncertainty,range\n";
     const auto out = std::back_inserter(csv);

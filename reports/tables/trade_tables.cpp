@@ -208,7 +208,8 @@ std::string precision_table(const compare::PrecisionStudy& study) {
         for (std::size_t k = s; k < s + 3; ++k)
             fmt::format_to(out, "   {:<22}", compare::name(study.series[k].precision));
         fmt::format_to(out, "\n  {:>10}", "steps");
-        for (std::size_t k = s; k < s + 3; ++k) fmt::format_to(out, "   {:>10}{:>12}", "|Φ|", "error mm");
+        for (std::size_t k = s; k < s + 3; ++k)
+            fmt::format_to(out, "   {:>10}{:>12}", "|Φ| m;rad", "error mm");
         fmt::format_to(out, "\n");
         for (std::size_t l = 0; l < study.series[s].levels.size(); ++l) {
             fmt::format_to(out, "  {:>10}", study.series[s].levels[l].steps);

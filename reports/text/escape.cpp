@@ -103,7 +103,7 @@ std::string for_markdown(std::string_view text) {
 std::string for_gnuplot(std::string_view text) {
     return translated(text, [](const Character& c) -> std::string {
         if (!c.plain()) return " ";
-        return c.code == '\'' ? "''" : std::string(c.bytes);
+        return c.code == '\'' ? "’" : std::string(c.bytes);
     });
 }
 

@@ -22,7 +22,8 @@ std::string for_html(std::string_view text);
 // Markdown, also in a cell of a table: nothing in it is markup, nothing ends the line.
 std::string for_markdown(std::string_view text);
 
-// A gnuplot script: between single quotes, or in a comment.
+// A gnuplot script: between single quotes, or in a comment. An apostrophe becomes a typographic one:
+// gnuplot 5.4 takes a doubled one for the end of the text where it begins the text or follows another.
 std::string for_gnuplot(std::string_view text);
 
 // A field of a CSV file (RFC 4180), quoted where it has to be; on one line.

@@ -30,6 +30,20 @@ TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
           "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'",
           "ball_joint           arm - wheel: coincident points", "left out", "in equilibrium"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    // One source for what an output means: the README quotes it, result.json carries it.
+    const std::string readme = text_of(scenes + "/../../reports/README.md");
+    for (const char* output : {"toe [deg]", "camber [deg]", "wheel_centre_x [mm]", "travel [mm]",
+                               "JOINT.force_x", "JOINT.moment_x"}) {
+        const auto at = said.out.find(output);
+        ASSERT_NE(at, said.out.npos) << output;
+        const std::string row = said.out.substr(at, said.out.find('\n', at) - at);
+        const std::string means = row.substr(row.find_first_not_of(' ', row.find("] ") + 1));
+        EXPECT_TRUE(contains(readme, means))
+            << "reports/README.md does not say of " << output << ": " << means;
+    }
+    EXPECT_TRUE(contains(elastocheck_says("inspect " + scenes + "/pinned_bar.yaml").out,
+                         "position of the probe, ground axes"));
+    EXPECT_TRUE(contains(readme, "position of the probe, ground axes"));
 }
 
 TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
@@ -60,12 +74,14 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     EXPECT_EQ(solved.code, 0) << solved.err;
     EXPECT_EQ(std::ranges::count(solved.out, '\n'), 1 + 2 * 11);
     EXPECT_TRUE(
-        contains(text_of(rates), "branch,load factor,travel [mm per unit],wheel_centre_x [mm per unit]"));
+        contains(text_of(rates), "branch,load factor [N],travel [mm per unit],wheel_centre_x [mm per unit]"));
 
     const Said compared = elastocheck_says("compare " + scene + " --method series --steps 10 -o " +
                                            (folder.path / "compared").string());
     EXPECT_EQ(compared.code, 0) << compared.err;
     EXPECT_TRUE(contains(compared.out, "series       converged")) << compared.out;
+    EXPECT_TRUE(contains(compared.out, "The recursion is the method 'series'")) << compared.out;
+    EXPECT_FALSE(contains(compared.out, "eq. (29)")) << compared.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "compared/result.json"));
     const auto& leg = result["scenes"][0]["branches"][0]["legs"][0];
     EXPECT_EQ(leg["method"], "series");
@@ -124,8 +140,8 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (Kang 2004, section 3)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
-    EXPECT_TRUE(curves.starts_with("scene,branch,leg,load factor,travel [mm],output,unit,value\n"));
-    EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,")) << curves.substr(0, 300);
+    EXPECT_TRUE(curves.starts_with("scene,branch,leg,load factor,its unit,travel [mm],output,unit,value\n"));
+    EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,N,")) << curves.substr(0, 300);
 }
 
 TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {

@@ -91,12 +91,12 @@ TEST(Document, InputHashIsFnv1a) {
 
 TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const Made made;
-    std::string csv = curves_header(made.comparison.channels);
+    std::string csv = curves_header(made.model);
     for (const auto& branch : made.comparison.branches)
         for (const auto& run : branch.runs) csv += curves_rows(branch.branch, run);
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
     const std::string header = csv.substr(0, csv.find('\n'));
-    EXPECT_TRUE(header.starts_with("branch,leg,load factor,travel [mm],wheel_centre_x [mm],")) << header;
+    EXPECT_TRUE(header.starts_with("branch,leg,load factor [N],travel [mm],wheel_centre_x [mm],")) << header;
     EXPECT_NE(header.find(",toe [deg],camber [deg],"), std::string::npos);
     const auto columns = std::ranges::count(header, ',');
     for (std::size_t at = 0; at < csv.size();) {

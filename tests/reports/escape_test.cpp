@@ -38,7 +38,7 @@ TEST(Escape, EachLanguagesOwnSignsAreText) {
     EXPECT_EQ(for_terminal("a\x1b]0;x\x07\u009b\u202e\x85\n"), "a\\x1b]0;x\\x07\\x9b\\x{202e}\\x85\\n");
     EXPECT_EQ(for_html("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&apos;");
     EXPECT_EQ(for_markdown("a|b*_`[x](y)\n# <i>"), "a\\|b\\*\\_\\`\\[x\\](y) \\# \\<i\\>");
-    EXPECT_EQ(for_gnuplot("it's\nsystem 'x'"), "it''s system ''x''");
+    EXPECT_EQ(for_gnuplot("it's\nsystem 'x'"), "it’s system ’x’");
     EXPECT_EQ(for_csv("plain"), "plain");
     EXPECT_EQ(for_csv("a,b"), "\"a,b\"");
     EXPECT_EQ(for_csv("a\"\nb"), "\"a\"\" b\"");

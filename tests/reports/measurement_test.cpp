@@ -1,9 +1,15 @@
 // Measured curves: read, refused, compared.
 #include "reports/document/measurement.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "models/compile.hpp"
+#include "reports/document/provenance.hpp"
+#include "reports/page/sections/common.hpp"
+#include "reports/page/sections/measured.hpp"
 #include "reports/page/sections/sections.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/scenes.hpp"
@@ -113,9 +119,97 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
         EXPECT_TRUE(refusal(csv).starts_with(why)) << refusal(csv) << "\nexpected: " << why;
 }
 
+TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
+    EXPECT_EQ(measured("\xEF\xBB\xBFtravel_mm,toe_deg\r\n50,-1.8\r\n"), [] {
+        json same = measured("travel_mm,toe_deg\n50,-1.8\n");
+        same["hash"] = input_hash("\xEF\xBB\xBFtravel_mm,toe_deg\r\n50,-1.8\r\n");
+        return same;
+    }());
+    EXPECT_EQ(refusal("\xFF\xFEt"), "kc.csv: is UTF-16; save it as CSV in UTF-8");
+}
+
+Sweep first_sweep(const json& result, const std::string& file) {
+    return sweeps_of(Field{&result["scenes"][0], "scenes[0]", &file}).front();
+}
+
+// A point of one branch is neither compared with another nor drawn or tabulated on it.
+TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
+    // Said to be of rebound, though they lie where jounce goes: nothing to compare.
+    const json misplaced = measured("branch,travel_mm,toe_deg\nrebound,50,-1.8\n");
+    EXPECT_EQ(misplaced["readings"][0]["channels"][0]["compared"], 0);
+    json result = sample_result();
+    result["scenes"][0]["measured"] = json::parse(
+        measured("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n").dump());
+    const std::string file = "result.json";
+    const Field scene{&result["scenes"][0], "scenes[0]", &file};
+    Sweep sweep = first_sweep(result, file);
+    ASSERT_EQ(sweep.branches.size(), 2u);
+    EXPECT_EQ(measured_series(scene, sweep, "toe", false)->rows.size(), 3u);
+    const auto jounce = measured_for(scene, sweep, sweep.branches[0], "toe", false);
+    ASSERT_TRUE(jounce);
+    EXPECT_EQ(jounce->rows.size(), 2u);
+    EXPECT_TRUE(std::isnan(value_between(*jounce, 0)));  // not from jounce's 20 mm to rebound's -60 mm
+    EXPECT_NEAR(value_between(*jounce, 40), -1.35, 1e-12);
+}
+
+// Without travel the figures go over the load, and the points are in them.
+TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
+    json result = sample_result();
+    result["scenes"][0]["measured"] =
+        json::parse(measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
+    const std::string file = "result.json";
+    int figures = 0, drawn = 0;
+    for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
+        if (s.id != "curves") continue;
+        for (const auto& group : s.figures)
+            for (const auto& figure : group.figures) {
+                ++figures;
+                EXPECT_EQ(figure.x, "load [N]") << figure.title;
+                for (const auto& series : figure.series) {
+                    if (series.title != "measured") continue;
+                    ++drawn;
+                    EXPECT_EQ(series.rows.size(), 2u);
+                    EXPECT_EQ(std::abs(series.rows[0][0]), 1500);
+                }
+            }
+    }
+    EXPECT_GE(figures, 3);
+    EXPECT_EQ(drawn, 2);  // toe and lateral movement
+}
+
+// A scene out of balance settles before it travels; a measurement counts from where it is drawn.
+TEST(Measurement, TravelCountsFromTheDesignPosition) {
+    Scene heavy = support::scene("pinned_bar");
+    heavy.static_loads = heavy.branches[0].loads;
+    std::get<DeadForce>(heavy.static_loads.at(0).kind).f *= 500;
+    const Model model = compile(heavy);
+    compare::Options options;
+    options.recursion.method = recursive::find_method("series").value();
+    options.recursion.steps = 20;
+    const auto comparison = compare::compare(model, options);
+    const auto& curve = comparison.branches[0].runs[1].curve;
+    Equilibrium design;
+    for (const auto& body : model.bodies) design.poses.push_back(body.design);
+    design.reactions.resize(model.joints.size());
+    const auto drawn = compare::evaluate(model, design);
+    const double rest = curve.values[0][2] - drawn[2];  // tip_z
+    ASSERT_GT(std::abs(rest), 1);                       // [mm]: it does settle
+    json scene = json::object();
+    add_measurement(
+        scene,
+        fmt::format("travel_mm,tip_x_mm\n{:.17g},{:.17g}\n", curve.travel[10] + rest, curve.values[10][0]),
+        "kc.csv", model, comparison);
+    const json& row = scene["measured"]["readings"][0]["channels"][0];
+    EXPECT_EQ(row["compared"], 1);
+    EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 1e-9);
+    EXPECT_NEAR(scene["measured"]["settled_mm"]["up"].get<double>(), rest, 1e-12);
+}
+
 TEST(Measurement, PointsOutsideTheRangeAreNotCompared) {
     const json m = measured("travel_mm,toe_deg\n1e4,0\n50,\n");
     EXPECT_EQ(m["readings"][0]["channels"][0]["compared"], 0);
+    json scene = {{"measured", m}};
+    EXPECT_EQ(compared_with_measurement(scene), 0);
     EXPECT_TRUE(json::parse(m.dump())["readings"][0]["channels"][0]["energy"]["signed_max"].is_null());
 }
 

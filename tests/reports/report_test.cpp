@@ -375,6 +375,9 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
     const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
     const auto said = support::says(command + " report " + scene + " -o " + (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.out, ": The published recursion with ")) << said.out;  // the answer
+    EXPECT_TRUE(contains(said.out, "The page: " + (folder.path / "out" / "report.html").string()))
+        << said.out;
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
     for (const char* part :
          {"model", "branches", "drawing", "convergence", "trade", "recommended", "precision", "verdict"})

@@ -40,7 +40,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
         outputs.push_back(
             {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
-    if (!sweep.abscissa.empty()) {
+    if (!sweep.abscissa.empty() && !measured_over_parameter(scene)) {
         const bool load = parameter_word(sweep.unit) == "load";
         outputs.push_back({"load", load ? "Load" : "Parameter", sweep.parameter(), "", false, true});
     }
@@ -67,7 +67,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     std::vector<std::pair<double, std::vector<std::string>>> rows;
     const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
     const bool fourth = measured && !output.load;  // a column of its own
-    const bool travel = !sweep.abscissa.empty();
+    const bool travel = !sweep.abscissa.empty() && !measured_over_parameter(scene);
     double most = 0;
     for (const auto& branch : sweep.branches) {
         for (auto* series : {&reference, &energy, &published}) {
@@ -84,6 +84,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         }
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
+        const auto points =
+            fourth ? measured_for(scene, sweep, branch, output.channel, output.change) : std::nullopt;
         const auto va = values_of(a, output), vb = values_of(b, output), ve = values_of(e, output);
         for (const auto k : thinned(a.a.size(), 6)) {
             if (k == 0 && !rows.empty()) continue;
@@ -95,7 +97,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                 if (travel) row.push_back(k < a.x.size() ? number(a.x[k], 4) : "–");
                 for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
                 if (fourth)
-                    row.push_back(value(value_between(*measured, travel && k < a.x.size() ? a.x[k] : a.a[k])));
+                    row.push_back(points ? value(value_between(*points, travel && k < a.x.size() ? a.x[k] : a.a[k]))
+                                         : "–");
             }
             rows.emplace_back(a.a[k], row);
         }

@@ -11,22 +11,43 @@
 
 namespace elastocheck::reports {
 
-std::optional<Series> measured_series(const Field& scene, const std::string& channel, bool change) {
+bool measured_over_parameter(const Field& scene) {
+    const auto measured = scene.find("measured");
+    return measured && !measured->find("abscissa");
+}
+
+std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, const std::string& channel,
+                                      bool change) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
-    const auto travel = (*measured)["columns"].find("travel_mm");
-    const auto column = (*measured)["columns"].find(channel == "load" ? "load_N" : channel);
-    if (!travel || !column) return std::nullopt;
-    const auto x = travel->numbers(), y = column->numbers();
-    if (x.size() != y.size()) column->fail("not as many numbers as travel_mm");
-    double first = 0;
-    if (change) {
-        const auto start = (*measured)["design"].find(channel);
-        if (start) first = start->number();
-    }
+    const Field columns = (*measured)["columns"];
+    const auto abscissa = measured->find("abscissa");
+    const auto across = abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
+    const auto column = channel.empty() ? measured->find("parameter") : columns.find(channel);
+    if (!across || !column) return std::nullopt;
+    const auto x = across->numbers(), y = column->numbers();
+    const auto of = (*measured)["branch"].texts();
+    if (x.size() != y.size() || of.size() != x.size()) column->fail("not as many numbers as points");
     Series series{"measured", Series::Style::rings, purple, 5};
-    for (std::size_t k = 0; k < x.size(); ++k) series.rows.push_back({x[k], y[k] - first});
+    for (const auto& branch : sweep.branches) {
+        const std::string name = branch["name"].text();
+        const LegCurve curve = curve_of(branch, "equilibrium");
+        double first = 0;
+        if (change)
+            if (const auto values = curve.channel(channel); !values.empty()) first = values[curve.start()];
+        for (std::size_t k = 0; k < x.size(); ++k)
+            if (of[k] == name) series.rows.push_back({x[k], y[k] - first});
+    }
+    if (series.rows.empty()) return std::nullopt;
     return series;
+}
+
+std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
+                                   const std::string& channel, bool change) {
+    const auto measured = scene.find("measured");
+    if (!measured || !(*measured)["branch_given"].truth())
+        return measured_series(scene, sweep, channel, change);
+    return measured_series(scene, {sweep.name, sweep.unit, sweep.abscissa, {branch}}, channel, change);
 }
 
 double value_between(const Series& measured, double x) {
@@ -44,7 +65,8 @@ std::optional<Section> measured_section(const Field& scene) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
     Section section{.id = "measured", .title = "Against the measurement"};
-    section.words = {{"file", (*measured)["file"].text()},
+    section.words = {{"over_load", measured_over_parameter(scene)},
+                     {"file", (*measured)["file"].text()},
                      {"hash", (*measured)["hash"].text()},
                      {"points", (*measured)["points"].whole()}};
     for (const auto& reading : (*measured)["readings"].items()) {

@@ -33,6 +33,14 @@ std::optional<Section> model_section(const Field& scene) {
         fmt::format("{} ({})", number(model["condition_equilibrated"].number(), 2),
                     number(model["condition_raw"].number(), 2)));
     section.tables.push_back(std::move(table));
+    if (scene.find("channels")) {
+        Table outputs{.caption = "Outputs, and what they mean",
+                      .columns = {{"output", true}, {"unit", true}, {"definition", true}}};
+        for (const auto& channel : scene["channels"].items())
+            if (const auto text = channel.find("definition"); text && channel["main"].truth())
+                outputs.rows.push_back({channel["name"].text(), channel["unit"].text(), text->text()});
+        if (!outputs.rows.empty()) section.tables.push_back(std::move(outputs));
+    }
     return section;
 }
 
