@@ -13,7 +13,6 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
         if (!scene.find("branches")) continue;
         for (const auto& branch : scene["branches"].items())
             for (const auto& leg : branch["legs"].items()) {
-                const std::string load_unit = for_csv(branch["load_unit"].text());
                 const Field curve = leg["curve"], columns = curve["values"];
                 const auto a = curve["a"].numbers();
                 const std::string unit = for_csv(branch["unit"].text());
