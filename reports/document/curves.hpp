@@ -7,7 +7,7 @@
 namespace elastocheck::reports {
 
 // Every point of every leg, one number a row, since scenes differ in their outputs:
-// scene,branch,leg,load factor,its unit,travel [mm],output,unit,value. Throws ResultError; `file` is where it
+// scene,branch,leg,parameter,parameter unit,output,unit,value. Throws ResultError; `file` is where it
 // was read.
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file);
 

@@ -11,7 +11,6 @@
 
 namespace elastocheck::reports {
 
-// Of a branch's load factor: "N", or "N·m" where its loads are moments alone.
 
 // Raised when a field changes its meaning or vanishes; new fields may appear without.
 inline constexpr const char* result_schema = "elastocheck/result/3";

@@ -140,7 +140,7 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (Kang 2004, section 3)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
-    EXPECT_TRUE(curves.starts_with("scene,branch,leg,load factor,its unit,travel [mm],output,unit,value\n"));
+    EXPECT_TRUE(curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
     EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,N,")) << curves.substr(0, 300);
 }
 
