@@ -18,8 +18,8 @@ struct FileError : std::runtime_error {
 struct FileKind {
     std::string_view name, beginning;
 };
-inline constexpr FileKind curves_file{"curves", "branch,leg,load factor ["};
-inline constexpr FileKind rates_file{"rates", "branch,load factor ["};
+inline constexpr FileKind curves_file{"curves", "branch,leg,parameter,unit,"};
+inline constexpr FileKind rates_file{"rates", "branch,parameter,parameter unit,"};
 inline constexpr FileKind baseline_file{"baseline", R"({"schema": "elastocheck/baseline/)"};
 inline constexpr FileKind junit_file{
     "JUnit report", R"(<?xml version="1.0" encoding="UTF-8"?><testsuites name="elastocheck gate")"};
