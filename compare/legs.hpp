@@ -38,8 +38,8 @@ struct Gait {
 
 EquilibriumPath walk(const Way& way, const Gait& gait);
 
-// Both ways in one path with a increasing; one way as it was walked. It ends with the outcome of the first
-// way that failed, and its points are those reached on either side of a = 0.
+// Both ways in one path, a going from `from` to `to`; one way as it was walked. It ends with the outcome of
+// the first way that failed, and its points are those reached on either side of a = 0.
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait);
 
 // What the state leaves in the equations of a leg.

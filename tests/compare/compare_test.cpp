@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compare/gate.hpp"
 #include "models/compile.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/solve.hpp"
@@ -379,6 +380,14 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     const auto why = comparison.branches[0].inconclusive.texts();
     ASSERT_FALSE(why.empty());
     EXPECT_EQ(why[0], "nothing drives branch 'up': load 'pull': its body is left out (branch 'up')");
+    // Nor is it one for the gate, though every number is as it was.
+    Baseline baseline;
+    baseline.accepted = measure(compile(scene), comparison);
+    baseline.reason = "all zeros";
+    for (const auto kind : tolerance_classes) baseline.tolerances[kind] = default_tolerances(kind);
+    const auto verdict = judge(baseline, baseline.accepted, ToleranceClass::same_build);
+    EXPECT_GT(verdict.compared, 0);
+    EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);
 }
 
 TEST(Judgement, ABranchOnWhichNoOutputMovesIsNoPass) {
