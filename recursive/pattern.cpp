@@ -108,8 +108,7 @@ Pattern pattern(const Model& model) {
     const int n = coordinates(model), size = n + constraint_rows(model);
     Touched t{n, size, std::vector<char>(static_cast<std::size_t>(size * size), 0)};
     for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a dead force on the body
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { touch(t, e); }, elastic.kind);
+    for (const auto& elastic : model.elastics) std::visit([&](const auto& e) { touch(t, e); }, elastic.kind);
     int row = 0;
     for (const auto& constraint : model.constraints) {
         std::visit([&](const auto& c) { touch(t, c, row); }, constraint.kind);

@@ -31,8 +31,8 @@ struct SaddlePoint {
     Matrix<Real> held;    // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
     Vector<Real> weight;  // W: 1 for Δr [m], L for Δπ, 1 for λ
     Matrix<Real> moves;   // 1 where an entry of `held` may be other than zero
-    // M̂ with its border, entry by entry of the pattern; where an entry of M lies (column by column), -1 for one
-    // of the border; what it is multiplied by.
+    // M̂ with its border, entry by entry of the pattern; where an entry of M lies (column by column), -1 for
+    // one of the border; what it is multiplied by.
     std::vector<Real> values, scaling;
     std::vector<int> source;
     Matrix<Real> border;  // b in scaled coordinates, of unit length [(n+m) × d]
@@ -144,14 +144,14 @@ void analyse(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
     system.source.clear();
     system.scaling.clear();
     for (int j = 0; j < pattern.size; ++j)
-        for (int e = pattern.first[static_cast<std::size_t>(j)]; e < pattern.first[static_cast<std::size_t>(j) + 1];
-             ++e) {
+        for (int e = pattern.first[static_cast<std::size_t>(j)];
+             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
             const bool inside = i < N && j < N;
             const auto flat = [&](int row, int column) { return static_cast<int>(column * N) + row; };
-            system.source.push_back(inside ? flat(i, j)
-                                           : -1 - (i < N ? flat(i, j - static_cast<int>(N))
-                                                         : flat(j, i - static_cast<int>(N))));
+            system.source.push_back(
+                inside ? flat(i, j)
+                       : -1 - (i < N ? flat(i, j - static_cast<int>(N)) : flat(j, i - static_cast<int>(N))));
             system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : Real(1));
         }
     system.values.assign(pattern.entries(), 0);

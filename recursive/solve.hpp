@@ -26,11 +26,12 @@ struct Options {
 // λ⁻¹. `adaptive` takes steps of its own and evaluates the recorded points between them,
 // as does `series`, in double precision only: std::invalid_argument for another.
 //
-// What is told of the model alone (analysis.hpp) can be given, and then serves any number of branches and, being
-// constant, threads; std::invalid_argument where it is of another model.
+// What is told of the model alone (analysis.hpp) can be given, and then serves any number of branches and,
+// being constant, threads; std::invalid_argument where it is of another model.
 //
 // Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+                      const Analysis& analysis);
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
 
 // How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances

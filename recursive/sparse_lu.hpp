@@ -166,9 +166,7 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
         for (std::size_t c = k + 1; c < n; ++c)
             if (lu.filled[k * n + c]) measure_column(c, k + 1);
     }
-    for (auto* list :
-         {&order.below, &order.right, &order.first_below, &order.first_right})
-        list->clear();
+    for (auto* list : {&order.below, &order.right, &order.first_below, &order.first_right}) list->clear();
     std::vector<long>&row_of = lu.in_row, &column_of = lu.in_column;  // of W, by row and column of A
     for (std::size_t k = 0; k < n; ++k) {
         order.first_below.push_back(static_cast<int>(order.below.size()));
@@ -186,9 +184,8 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     for (std::size_t j = 0; j < n; ++j)
         for (auto e = static_cast<std::size_t>(pattern.first[j]);
              e < static_cast<std::size_t>(pattern.first[j + 1]); ++e)
-            order.to[e] = static_cast<int>(row_of[static_cast<std::size_t>(pattern.row[e])] *
-                                               static_cast<long>(n) +
-                                           column_of[j]);
+            order.to[e] = static_cast<int>(
+                row_of[static_cast<std::size_t>(pattern.row[e])] * static_cast<long>(n) + column_of[j]);
     order.parity = parity(order.row) * parity(order.col);
 }
 

@@ -25,8 +25,8 @@ Term between(Room& room, const Kind& kind, Members... members) {
 
 ElasticSeries term(Room& room, const AxialSpring& e) {
     using T = SpringSeries;
-    T t = between<T>(room, e, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse, &T::stretch, &T::force,
-                     &T::tension);
+    T t = between<T>(room, e, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse, &T::stretch,
+                     &T::force, &T::tension);
     t.free_length.start = e.free_length;
     return t;
 }
@@ -34,8 +34,8 @@ ElasticSeries term(Room& room, const Bushing& e) {
     using T = BushingSeries;
     T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta, &T::relative,
                      &T::e, &T::gradient, &T::stress, &T::moment_local, &T::u_M, &T::u_u_M, &T::spread_1,
-                     &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M, &T::dot_g, &T::W, &T::inverse, &T::s,
-                     &T::phi, &T::psi);
+                     &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M, &T::dot_g, &T::W, &T::inverse,
+                     &T::s, &T::phi, &T::psi);
     t.preload.start = e.preload;
     t.rotational = rotational(e.law) || !e.preload.tail<3>().isZero(0);
     return t;
@@ -96,7 +96,9 @@ void add(Driven<T>& driven, Drive drive, const Driver& driver, const T& what) {
     if (drive == Drive::rate) driven.start += driver.start * what;
     driven.rate += speed<double>(driver, drive) * what;
 }
-void move(CoincidentSeries&, Drive, const Driver&) { throw std::invalid_argument("coincident points have no offset"); }
+void move(CoincidentSeries&, Drive, const Driver&) {
+    throw std::invalid_argument("coincident points have no offset");
+}
 void move(PerpendicularSeries&, Drive, const Driver&) {
     throw std::invalid_argument("perpendicular directions have no offset");
 }
@@ -113,8 +115,8 @@ void drive(Equations& e, const Model& model, const Driver& driver, const Motion&
     std::visit([&](auto& t) { move(t, e.drive, driver); }, e.constraints[constraint_of(model, what)]);
 }
 void drive(Equations& e, const Model&, const Driver& driver, const FreeLength& what) {
-    add(std::get<SpringSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]).free_length, e.drive, driver,
-        1.0);
+    add(std::get<SpringSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]).free_length, e.drive,
+        driver, 1.0);
 }
 void drive(Equations& e, const Model&, const Driver& driver, const Preload& what) {
     auto& t = std::get<BushingSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]);
@@ -437,7 +439,8 @@ Equations equations(const Model& model, const Branch& branch, int order, Drive d
     for (const auto& elastic : model.elastics)
         e.elastics.push_back(std::visit([&](const auto& kind) { return term(room, kind); }, elastic.kind));
     for (const auto& constraint : model.constraints)
-        e.constraints.push_back(std::visit([&](const auto& kind) { return term(room, kind); }, constraint.kind));
+        e.constraints.push_back(
+            std::visit([&](const auto& kind) { return term(room, kind); }, constraint.kind));
     for (const auto& each : model.static_loads) e.loads.push_back(load(room, each, {1, 0}));
     for (const auto& driver : branch.drivers)
         std::visit([&](const auto& what) { drive(e, model, driver, what); }, driver.what);

@@ -10,10 +10,10 @@
 // that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
 // all.
 //
-// What a branch drives (loads, offsets, free lengths, preloads) is linear in the parameter: coefficient k of it
-// is a rate times a_k. While what is held settles, the parameter is t, and the starts of the drivers take the
-// place of their rates (inputs.hpp). A term keeps the kind that it is the series of, so that one visit of the
-// terms is all there is.
+// What a branch drives (loads, offsets, free lengths, preloads) is linear in the parameter: coefficient k of
+// it is a rate times a_k. While what is held settles, the parameter is t, and the starts of the drivers take
+// the place of their rates (inputs.hpp). A term keeps the kind that it is the series of, so that one visit of
+// the terms is all there is.
 #pragma once
 
 #include <variant>

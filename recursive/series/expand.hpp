@@ -27,9 +27,10 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
 double parameter(const March<double>& s, Drive drive);
 
 // Up to which τ the orders left out are worth less than `tolerance` [m]: (ε / |x_p|)^(1/p), |x| = √(|Δr|² +
-// L²|Δπ|² + |λ|²/k² + (per_load a_k)²) with k the stiffest of (24) and `per_load` metres for a unit of a; nearer where the radius of
-// convergence R is less than twice that, since they fall as (τ/R)^k and sum to |x_p| τ^p (τ/R) / (1 - τ/R).
-// An x_p that vanishes by symmetry is taken for |x_{p-1}| / R. NaN if a coefficient is not finite.
+// L²|Δπ|² + |λ|²/k² + (per_load a_k)²) with k the stiffest of (24) and `per_load` metres for a unit of a;
+// nearer where the radius of convergence R is less than twice that, since they fall as (τ/R)^k and sum to
+// |x_p| τ^p (τ/R) / (1 - τ/R). An x_p that vanishes by symmetry is taken for |x_{p-1}| / R. NaN if a
+// coefficient is not finite.
 double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load, double radius);
 
 // The singularity nearest to τ = 0. Near a limit point, as near most branch points,

@@ -56,8 +56,8 @@ struct Walk {
     double per_unit;       // metres that an error of one unit of the parameter counts as
     Vector<double> ahead;  // x'(τ) of the motion before: which way is on
     double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
-    int side = 0;          // sign of the determinant where the way began, by arc length of that bordered by x'
-    Vector<double> x;      // where on the polynomial
+    int side = 0;      // sign of the determinant where the way began, by arc length of that bordered by x'
+    Vector<double> x;  // where on the polynomial
     Path path;
 
     Walk(March<double>& s_, const Options& options_, Drive drive)
@@ -108,7 +108,8 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
         apply_all(w);
-        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
+        if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
+            return outcome;
         double slid = 0;
         const bool slide = w.by_arc() && !w.ahead.isZero(0);
         if (slide) {
@@ -246,7 +247,9 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
 
 // The sign of the determinant here. By arc length it is multiplied by that of a', so that it stays what it is
 // at limit points, where both turn over.
-int side(const Walk& w, double slope) { return w.by_arc() && slope < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation; }
+int side(const Walk& w, double slope) {
+    return w.by_arc() && slope < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
+}
 
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
@@ -260,8 +263,8 @@ Outcome walk(Walk& w) {
         Certificate judged;
         if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
-        // A polynomial goes straight on where the path divides, and a branch goes on unstable: the determinant
-        // has gone through zero between here and there.
+        // A polynomial goes straight on where the path divides, and a branch goes on unstable: the
+        // determinant has gone through zero between here and there.
         if (side(w, slope(w.c.load, end.tau)) != w.side) return Outcome::singular;
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
@@ -274,20 +277,23 @@ Outcome walk(Walk& w) {
 std::string words(const Walk& w, Outcome outcome) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
-    const std::string at =
-        settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
-                : fmt::format("{}: at {:.6g}", branch, w.at());
+    const std::string at = settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
+                                   : fmt::format("{}: at {:.6g}", branch, w.at());
     switch (outcome) {
         case Outcome::limit_point:
-            return settles ? fmt::format("{}: settling what is held, limit point at {:.9g} of it: from the drawing "
-                                         "no equilibrium leads further",
-                                         branch, w.path.limits.back())
-                           : fmt::format("{}: limit point near {:.9g}, past it no equilibrium continues the branch",
-                                         branch, w.path.limits.back());
+            return settles ? fmt::format(
+                                 "{}: settling what is held, limit point at {:.9g} of it: from the drawing "
+                                 "no equilibrium leads further",
+                                 branch, w.path.limits.back())
+                           : fmt::format(
+                                 "{}: limit point near {:.9g}, past it no equilibrium continues the branch",
+                                 branch, w.path.limits.back());
         case Outcome::iteration_limit:
             return at + fmt::format(": {} expansions were not enough", w.options.expansions);
         case Outcome::singular:
-            return at + ": the matrix is singular here or was on the way: the branch divides, or loses its stability";
+            return at +
+                   ": the matrix is singular here or was on the way: the branch divides, or loses its "
+                   "stability";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         default: return at;
     }
@@ -312,8 +318,8 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
         if (w.e.drive == Drive::start) w.path.expansions.clear();
         return std::move(w.path);
     };
-    // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium, the
-    // way to one begins there; where it is, the branch does.
+    // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium,
+    // the way to one begins there; where it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
         s.Phi_d = analysis.Phi_d;  // to the last digit: the series is exact, from an equilibrium that is
         Walk settling(s, options, Drive::start);

@@ -14,8 +14,8 @@
 //
 //   branches: both branches by `series`, as polynomials; the ratio to the published sweep.
 //
-//   analysis: what is told of the model once (analysis.hpp); the ratio to the published sweep. All of the above
-//   that the recursive leg does has it given.
+//   analysis: what is told of the model once (analysis.hpp); the ratio to the published sweep. All of the
+//   above that the recursive leg does has it given.
 //
 // The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
 // both.
@@ -86,8 +86,8 @@ void energy() {
 }
 void adaptive() {  // 0.01 mm, 0.001 deg
     points([](const Branch& b, const auto&) {
-        return recursive::solve(mcpherson(), b,
-                                {.method = *recursive::find_method("adaptive"), .steps = 300}, analysis());
+        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("adaptive"), .steps = 300},
+                                analysis());
     });
 }
 

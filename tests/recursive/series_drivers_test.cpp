@@ -33,7 +33,8 @@ Walked walked(const Scene& scene, const Branch& branch) {
     return {on_branch(model, model.branches[0]), model.branches[0]};
 }
 
-// Newton's method with dense factors of its own, the step of minimum norm where a motion is idle; from `start`.
+// Newton's method with dense factors of its own, the step of minimum norm where a motion is idle; from
+// `start`.
 Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     const int n = coordinates(w.model), m = constraint_rows(w.model);
     const Inputs<double> inputs = inputs_at<double>(w.model, w.branch, a);
@@ -65,7 +66,8 @@ Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     return point;
 }
 
-// How far origins, and points 0.1 m beside them, are apart [m]; bodies that turn idly are left to their origins.
+// How far origins, and points 0.1 m beside them, are apart [m]; bodies that turn idly are left to their
+// origins.
 double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
     std::vector<bool> idle(model.bodies.size(), false);
     for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
@@ -79,10 +81,12 @@ double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
 Scene mcpherson_on_a_jack(Branch& branch) {
     Scene scene = support::scene("mcpherson");
     const Wheel& wheel = scene.wheels[0];
-    const Eigen::Vector3d centre = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
-                                   scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+    const Eigen::Vector3d centre =
+        scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+        scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
     scene.joints.push_back(
-        {"jack", InPlane{{wheel.body, wheel.centre_local}, {ground, centre}, {ground, Eigen::Vector3d::UnitZ()}, 0},
+        {"jack",
+         InPlane{{wheel.body, wheel.centre_local}, {ground, centre}, {ground, Eigen::Vector3d::UnitZ()}, 0},
          true});
     branch.name = "travel";
     branch.unit = ParameterUnit::metre;
@@ -141,7 +145,8 @@ TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
         before = point.load;
         const auto place = find(by_load, force);
         if (!place) continue;  // to rounding below zero
-        EXPECT_LE(apart(loaded, point, evaluate(loaded, loaded.branches[0], by_load, *place)), 1e-9) << point.load;
+        EXPECT_LE(apart(loaded, point, evaluate(loaded, loaded.branches[0], by_load, *place)), 1e-9)
+            << point.load;
     }
     EXPECT_GT(force, 500);
     EXPECT_GT(work, 0);
@@ -154,7 +159,8 @@ Direction z_of(BodyId body) { return {body, Eigen::Vector3d::UnitZ()}; }
 Body bar(const std::string& name, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     return {name, {from, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), to - from)}};
 }
-Joint hinge(const std::string& name, BodyId i, const Eigen::Vector3d& on_i, BodyId j, const Eigen::Vector3d& on_j) {
+Joint hinge(const std::string& name, BodyId i, const Eigen::Vector3d& on_i, BodyId j,
+            const Eigen::Vector3d& on_j) {
     return {name, Revolute{{i, on_i}, {j, on_j}, z_of(i), z_of(j)}};
 }
 Joint crank_drive(BodyId crank) {
@@ -178,7 +184,8 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
     Scene scene;
     const Eigen::Vector3d O(0, 0, 0), A(r, 0, 0), B(r + l, 0, 0);
     scene.bodies = {bar("crank", O, A), bar("rod", A, B)};
-    scene.joints = {hinge("main", 0, O, ground, O), hinge("pin", 0, A, 1, O),
+    scene.joints = {hinge("main", 0, O, ground, O),
+                    hinge("pin", 0, A, 1, O),
                     {"slide", InPlane{{1, {l, 0, 0}}, {ground, O}, {ground, Eigen::Vector3d::UnitY()}, 0}},
                     crank_drive(0)};
     scene.probes = {{"slider", {1, {l, 0, 0}}}};
@@ -211,8 +218,11 @@ TEST(SeriesDrivers, FourBarGoesAFullTurn) {
     const Eigen::Vector3d O(0, 0, 0), A(crank, 0, 0), C = joint(0), D(base, 0, 0);
     Scene scene;
     scene.bodies = {bar("crank", O, A), bar("coupler", A, C), bar("rocker", D, C)};
-    scene.joints = {hinge("O", 0, O, ground, O), hinge("A", 0, A, 1, O), hinge("D", 2, O, ground, D),
-                    {"C", InLine{{1, {coupler, 0, 0}}, {2, {rocker, 0, 0}}, z_of(2)}}, crank_drive(0)};
+    scene.joints = {hinge("O", 0, O, ground, O),
+                    hinge("A", 0, A, 1, O),
+                    hinge("D", 2, O, ground, D),
+                    {"C", InLine{{1, {coupler, 0, 0}}, {2, {rocker, 0, 0}}, z_of(2)}},
+                    crank_drive(0)};
     scene.probes = {{"C", {1, {coupler, 0, 0}}}};
     const Walked w = walked(scene, full_turn(4));
     ASSERT_EQ(w.model.bodies.size(), 3u);
@@ -232,11 +242,9 @@ TEST(SeriesDrivers, TheArchIsPushedThroughBothOfItsLimitPoints) {
     Scene scene = support::scene("two_spring_arch");
     const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h);
     const Eigen::Vector3d apex = scene.bodies[0].design.r;
-    scene.joints.push_back({"jack", InPlane{{0, Eigen::Vector3d::Zero()},
-                                            {ground, apex},
-                                            {ground, Eigen::Vector3d::UnitZ()},
-                                            0},
-                            true});
+    scene.joints.push_back(
+        {"jack", InPlane{{0, Eigen::Vector3d::Zero()}, {ground, apex}, {ground, Eigen::Vector3d::UnitZ()}, 0},
+         true});
     Branch branch;
     branch.name = "push";
     branch.to = -2.2 * h;
@@ -313,7 +321,8 @@ TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
 // ---- Scenes that broke something: right, or an honest outcome.
 
 Model found(const std::string& name) {
-    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+    return compile(
+        read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
 }
 
 TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
@@ -321,7 +330,8 @@ TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
         const Model model = found(name);
         const Path path = follow(model, model.branches[0]);
         EXPECT_EQ(path.outcome, Outcome::singular) << name << " " << path.detail;
-        EXPECT_NE(path.detail.find("the branch divides, or loses its stability"), std::string::npos) << path.detail;
+        EXPECT_NE(path.detail.find("the branch divides, or loses its stability"), std::string::npos)
+            << path.detail;
         // Below it nothing is said of it.
         Branch below = model.branches[0];
         below.to /= 10;
@@ -344,7 +354,8 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
             const Walked w{model, branch};
             const auto sampled = sample(model, path, branch, 20);
             for (const auto& point : sampled.points)
-                EXPECT_LE(apart(model, point, newton(w, point.load, point.poses)), 1e-11) << name << " " << point.load;
+                EXPECT_LE(apart(model, point, newton(w, point.load, point.poses)), 1e-11)
+                    << name << " " << point.load;
             EXPECT_TRUE(path.outcome == Outcome::converged || path.outcome == Outcome::limit_point ||
                         path.outcome == Outcome::singular)
                 << name << " " << path.detail;
@@ -386,7 +397,8 @@ Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     advance(q, dq);
     Matrix<double> M(dq.size() + lambda.size(), dq.size() + lambda.size());
     const Branch& branch = model.branches[0];
-    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q, lambda, M, Phi);
+    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q, lambda, M,
+                                Phi);
     pattern = recursive::pattern(model);
     return M;
 }

@@ -142,7 +142,8 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
         Case c = anywhere(random);
         Matrix6<double> K = Matrix6<double>::Zero();
         K.topLeftCorner<3, 3>() = random.stiffness().topLeftCorner<3, 3>();
-        c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K}, {}}});
+        c.model.elastics.push_back(
+            {"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K}, {}}});
         expect_same(c, random, fmt::format("mount between {} and {}", i, j));
         // Until something brings a moment about.
         Preload preload{0, Vector6<double>::Zero()};
@@ -159,7 +160,8 @@ TEST(SeriesEquations, HoldForStaticLoadsAndForWhatABranchDrives) {
         const Load force{"force", DeadForce{{body, random.vector()}, random.vector(1e3)}},
             moment{"moment", DeadMoment{body, random.vector(1e3)}};
         c.model.static_loads = {force, moment};
-        for (const auto& load : {force, moment, force}) c.branch.drivers.push_back({load, random(), random()});
+        for (const auto& load : {force, moment, force})
+            c.branch.drivers.push_back({load, random(), random()});
         expect_same(c, random, fmt::format("loads on {}", body));
     }
 }
@@ -178,7 +180,8 @@ TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
                 c.model.joints.push_back({.name = "joint", .driven = 0});
                 c.model.constraints.push_back({0, kind});
                 // Two drivers of one joint: what they move adds up.
-                for (int k = 0; k < 2; ++k) c.branch.drivers.push_back({Motion{0}, random(0, 0.3), random(0, 0.3)});
+                for (int k = 0; k < 2; ++k)
+                    c.branch.drivers.push_back({Motion{0}, random(0, 0.3), random(0, 0.3)});
                 expect_same(c, random, fmt::format("offset {} between {} and {}", kind.index(), i, j));
             }
         }
@@ -189,8 +192,10 @@ TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 10; ++trial) {
             Case c = anywhere(random);
-            const AxialSpring spring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
-            if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r - c.q[j].lever(spring.j.s_local)).norm() < 1)
+            const AxialSpring spring{
+                {i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
+            if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r - c.q[j].lever(spring.j.s_local))
+                    .norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", spring});
             Bushing bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};

@@ -8,8 +8,8 @@
 #include "recursive/diagnosis.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/solve.hpp"
 #include "recursive/settle.hpp"
+#include "recursive/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -173,7 +173,8 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
         const Path path = follow(model, branch, {.order = p, .tolerance = 1e-4, .expansions = 2000});
         ASSERT_FALSE(path.expansions.empty());
         const auto error = [&](double tau) {
-            return apart(model, evaluate(model, branch, path, {0, tau}), evaluate(model, branch, exact, {0, tau}));
+            return apart(model, evaluate(model, branch, path, {0, tau}),
+                         evaluate(model, branch, exact, {0, tau}));
         };
         const double tau = path.expansions.front().reach;
         const double order = std::log2(error(tau) / error(tau / 2));
@@ -245,8 +246,7 @@ TEST(Series, FindsWhereThePathEnds) {
             EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
             ASSERT_EQ(path.limits.size(), 1u);
             EXPECT_NEAR(path.limits[0] / limit_of_the_arch(), 1, 1e-6) << to << " " << order;
-            EXPECT_NE(path.detail.find("limit point near -211.5165"), std::string::npos)
-                << path.detail;
+            EXPECT_NE(path.detail.find("limit point near -211.5165"), std::string::npos) << path.detail;
             EXPECT_FALSE(find(path, -212));
         }
 }

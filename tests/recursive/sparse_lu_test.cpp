@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <random>
 
-
 namespace elastocheck::recursive {
 namespace {
 
