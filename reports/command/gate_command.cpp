@@ -164,7 +164,8 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
                     scene.verdict.reasons.push_back(
                         fmt::format("nobody can have reviewed {}: {}", task.baseline.string(), why));
         } else {
-            compile(read_scene(task.scene, options.settings));  // a bad scene is to be told apart from a missing baseline
+            compile(read_scene(task.scene,
+                               options.settings));  // a bad scene is to be told apart from a missing baseline
         }
     } catch (const std::invalid_argument& error) {  // more than there is memory for
         scene.bad_input = true;

@@ -46,7 +46,8 @@ recursive::Options recursion(const RecursionRequest& request) {
     const compare::Tolerance tolerance = compare::parse_tolerance(request.tolerance);
     if (series && std::isfinite(tolerance.deg))
         throw std::invalid_argument(
-            "--tolerance: the series is told one length, such as 1e-9mm, which bounds positions and, times the "
+            "--tolerance: the series is told one length, such as 1e-9mm, which bounds positions and, times "
+            "the "
             "model's size, angles");
     if (series) series->tolerance = 1e-3 * tolerance.mm;
     if (adaptive && std::isfinite(tolerance.mm)) adaptive->length_tolerance = 1e-3 * tolerance.mm;

@@ -45,8 +45,7 @@ json recommended(const Model& model, const compare::Trade& trade) {
         const auto profile = compare::profile(model, branch, point).profile;
         json mm = json::array(), deg = json::array();
         for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-        branches.push_back(
-            {{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
+        branches.push_back({{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
     }
     json result = {{"method", point.method}};
     if (point.steps > 0) result["steps"] = point.steps;
@@ -79,6 +78,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
     study_options.progress = tell;
     const auto study = compare::study(model, study_options);
+    add_gap(document, comparison, study);
     document["convergence"] = study_json(study, compare::attribute_gap(model, tell));
     for (const auto& reason : study.inconclusive)
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
@@ -163,7 +163,8 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance);
     for (const auto& scene : request.scenes)
-        check_memory(compile(read_scene(scene, request.settings)), 0, static_cast<int>(compare::legs.size()), true);
+        check_memory(compile(read_scene(scene, request.settings)), 0, static_cast<int>(compare::legs.size()),
+                     true);
     if (!request.measured.empty()) (void)read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");

@@ -92,8 +92,8 @@ int inspect(const std::string& file, const Settings& settings) {
     return fine;
 }
 
-int solve(const std::string& file, const Settings& settings, compare::Leg leg, const recursive::Options& how, const std::string& rates,
-          const std::string& output) {
+int solve(const std::string& file, const Settings& settings, compare::Leg leg, const recursive::Options& how,
+          const std::string& rates, const std::string& output) {
     if (!output.empty()) check_may_write(output, curves_file);
     if (!rates.empty()) check_may_write(rates, rates_file);
     const Model model = compile(read_scene(file, settings));
@@ -119,8 +119,8 @@ int solve(const std::string& file, const Settings& settings, compare::Leg leg, c
     return code;
 }
 
-int compare_legs(const std::string& file, const Settings& settings, const recursive::Options& how, const std::string& folder,
-                 const std::string& command) {
+int compare_legs(const std::string& file, const Settings& settings, const recursive::Options& how,
+                 const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
     const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);
@@ -140,8 +140,8 @@ int compare_legs(const std::string& file, const Settings& settings, const recurs
     return comparison.conclusive() ? fine : could_not_judge;
 }
 
-int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names, const std::vector<int>& steps,
-             const std::string& folder, const std::string& command) {
+int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names,
+             const std::vector<int>& steps, const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
     const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);
@@ -184,8 +184,8 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     return conclusive ? fine : could_not_judge;
 }
 
-int trade(const std::string& file, const Settings& settings, const std::string& tolerance, const std::string& folder,
-          const std::string& command) {
+int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
+          const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
     const Scene scene = read_scene(file, settings);
     const Model model = compile(scene);

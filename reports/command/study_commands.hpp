@@ -14,15 +14,15 @@ namespace elastocheck::reports {
 int inspect(const std::string& scene, const Settings& settings);
 
 // CSV of the curves to `output`, or to standard output where that is empty; of their derivatives to `rates`.
-int solve(const std::string& scene, const Settings& settings, compare::Leg leg, const recursive::Options& how, const std::string& rates,
-          const std::string& output);
+int solve(const std::string& scene, const Settings& settings, compare::Leg leg, const recursive::Options& how,
+          const std::string& rates, const std::string& output);
 
 // Where `folder` is empty nothing is written; else result.json with `command` in it, and CSV files.
-int compare_legs(const std::string& scene, const Settings& settings, const recursive::Options& how, const std::string& folder,
-                 const std::string& command);
-int converge(const std::string& scene, const Settings& settings, const std::vector<std::string>& methods, const std::vector<int>& steps,
-             const std::string& folder, const std::string& command);
-int trade(const std::string& scene, const Settings& settings, const std::string& tolerance, const std::string& folder,
-          const std::string& command);
+int compare_legs(const std::string& scene, const Settings& settings, const recursive::Options& how,
+                 const std::string& folder, const std::string& command);
+int converge(const std::string& scene, const Settings& settings, const std::vector<std::string>& methods,
+             const std::vector<int>& steps, const std::string& folder, const std::string& command);
+int trade(const std::string& scene, const Settings& settings, const std::string& tolerance,
+          const std::string& folder, const std::string& command);
 
 }  // namespace elastocheck::reports

@@ -22,8 +22,7 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
                     const std::string name = channel["name"].text();
                     const std::string what = for_csv(name) + "," + for_csv(channel["unit"].text());
                     const auto values = columns[name].numbers();
-                    if (values.size() != a.size())
-                        columns[name].fail("not as many numbers as parameters");
+                    if (values.size() != a.size()) columns[name].fail("not as many numbers as parameters");
                     for (std::size_t k = 0; k < values.size(); ++k)
                         csv += fmt::format("{},{:.17g},{},{},{:.17g}\n", whose, a[k], unit, what, values[k]);
                 }

@@ -67,10 +67,7 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
               {"evaluations", run.path.counts.evaluations}}},
             {"seconds", run.seconds},
             {"residuals_by", judged},
-            {"curve",
-             {{"a", run.curve.a},
-              {"constraint_error", constraint_error},
-              {"values", values}}}};
+            {"curve", {{"a", run.curve.a}, {"constraint_error", constraint_error}, {"values", values}}}};
 }
 
 json reading_json(const compare::Reading& reading, const compare::Comparison& all,
@@ -108,6 +105,62 @@ json drivers_json(const Model& model, const Branch& branch) {
     for (const auto& driver : branch.drivers)
         (driver.rate != 0 ? moved : held).push_back(driven_name(model, driver.what));
     return {{"moved", moved}, {"held", held}};
+}
+
+// The worst of the main channels, point by point of the equilibrium leg.
+json profile_json(const compare::Profile& profile) {
+    json mm = json::array(), deg = json::array();
+    for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
+    return {{"mm", mm}, {"deg", deg}};
+}
+
+json profiles_json(const compare::Comparison& all, const compare::BranchComparison& branch) {
+    const auto curve = [&](Leg leg) -> const compare::Curve& {
+        return branch.runs[static_cast<std::size_t>(leg)].curve;
+    };
+    const compare::Curve &truth = curve(Leg::equilibrium), &recursion = curve(Leg::recursive);
+    const auto by = compare::abscissa(all.channels, branch.abscissa, truth, recursion);
+    return {{"at_equal_parameter",
+             profile_json(compare::profile_at_equal_parameter(all.channels, truth, recursion))},
+            {"at_equal_abscissa",
+             profile_json(compare::profile_at_equal_abscissa(all.channels, truth, recursion, by))},
+            {"references",
+             profile_json(compare::profile_at_equal_parameter(all.channels, truth, curve(Leg::energy)))}};
+}
+
+json worst_json(const std::optional<compare::Worst>& worst) {
+    if (!worst) return nullptr;
+    return {{"branch", worst->branch},
+            {"channel", worst->channel},
+            {"max", worst->max},
+            {"end", worst->end},
+            {"range", worst->range}};
+}
+
+json findings_json(const compare::Comparison& all) {
+    using compare::ReadingKind;
+    json findings;
+    for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
+        const char* name = symbol(unit);
+        findings["worst_at_equal_parameter"][name] =
+            worst_json(compare::worst_deviation(all, ReadingKind::equal_parameter, unit));
+        findings["worst_at_equal_abscissa"][name] =
+            worst_json(compare::worst_deviation(all, ReadingKind::equal_abscissa, unit));
+        findings["references_apart"][name] = worst_json(compare::worst_disagreement(all, unit));
+    }
+    return findings;
+}
+
+const char* name_of(compare::GapRole role) {
+    switch (role) {
+        case compare::GapRole::none: return "none";
+        case compare::GapRole::nearly_all: return "nearly_all";
+        case compare::GapRole::part: return "part";
+        case compare::GapRole::hardly_any: return "hardly_any";
+        case compare::GapRole::hidden: return "hidden";
+        case compare::GapRole::opposite: return "opposite";
+    }
+    return "";
 }
 
 json rate_errors_json(const std::vector<compare::RateError>& rates) {
@@ -188,19 +241,30 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"deviation", pair(branch.deviation)},
              {"cross_check", pair(branch.cross_check)},
              {"reference_uncertainty", pair(branch.uncertainty)},
+             {"profiles", profiles_json(comparison, branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()}});
     }
     scene_document["channels"] = channels;
     scene_document["branches"] = branches;
+    scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
+}
+
+void add_gap(json& scene_document, const compare::Comparison& comparison, const compare::Study& study) {
+    const auto part = compare::gap_part(comparison, study, "published");
+    if (!part) return;
+    scene_document["findings"]["gap"] = {{"branch", part->branch},       {"channel", part->channel},
+                                         {"deviation", part->deviation}, {"gap", part->gap},
+                                         {"band", part->band},           {"role", name_of(part->role)}};
 }
 
 std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
     std::vector<std::string> reasons;
     for (const auto& branch : comparison.branches)
-        for (const auto& reason : branch.inconclusive.texts()) reasons.push_back(branch.branch + ": " + reason);
+        for (const auto& reason : branch.inconclusive.texts())
+            reasons.push_back(branch.branch + ": " + reason);
     if (comparison.compared == 0) reasons.emplace_back("nothing was compared");
     return reasons;
 }

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "compare/compare.hpp"
+#include "compare/study.hpp"
 #include "models/scene.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reports/document/provenance.hpp"
 
 namespace elastocheck::reports {
-
 
 // Raised when a field changes its meaning or vanishes; new fields may appear without.
 inline constexpr const char* result_schema = "elastocheck/result/3";
@@ -31,10 +31,15 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input, const Model& model,
                                       const recursive::Diagnosis& diagnosis);
 
-// "channels" and "branches": every point of every leg, deviations, certificates; "drawing": where the
+// "channels" and "branches": every point of every leg, deviations, certificates; "findings", "rate_errors":
+// what they come to; "drawing": where the
 // hardpoints are at the design position and along the branches.
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);
+
+// "findings.gap": what part of the published deviation is the formulation's, once both are there.
+void add_gap(nlohmann::ordered_json& scene_document, const compare::Comparison& comparison,
+             const compare::Study& study);
 
 // "verdict": whether all that was computed could be judged, on how many numbers, and why not.
 void add_verdict(nlohmann::ordered_json& scene_document, int numbers_compared,

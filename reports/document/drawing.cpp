@@ -107,15 +107,16 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     json bushings = json::array();
     for (const auto& constraint : model.constraints) {
         const std::string& name = model.joints[static_cast<std::size_t>(constraint.joint)].name;
-        std::visit(overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, name), sketch.add(c.j, name); },
-                              [&](const PointInPlane& c) { sketch.add(c.i, name); },
-                              [](const PerpendicularDirections&) {},
-                              [&](const DistanceBetween& c) {
-                                  const auto i = sketch.add(c.i, name);
-                                  sketch.link("rod", name, i, sketch.add(c.j, name));
-                              },
-                              [](const DirectionAtAngle&) {}},
-                   constraint.kind);
+        std::visit(
+            overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, name), sketch.add(c.j, name); },
+                       [&](const PointInPlane& c) { sketch.add(c.i, name); },
+                       [](const PerpendicularDirections&) {},
+                       [&](const DistanceBetween& c) {
+                           const auto i = sketch.add(c.i, name);
+                           sketch.link("rod", name, i, sketch.add(c.j, name));
+                       },
+                       [](const DirectionAtAngle&) {}},
+            constraint.kind);
     }
     for (const auto& elastic : model.elastics)
         std::visit(overloaded{[&](const AxialSpring& e) {

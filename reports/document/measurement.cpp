@@ -96,9 +96,7 @@ std::vector<std::string> parameter_columns(const compare::Comparison& all) {
 }
 
 // The channels that may say where a point is: the travel of each wheel.
-bool is_travel(const compare::Channel& channel) {
-    return channel.kinematic() && !channel.main;
-}
+bool is_travel(const compare::Channel& channel) { return channel.kinematic() && !channel.main; }
 
 Points read(std::string_view csv, const std::string& file, const compare::Comparison& all) {
     Points points;
@@ -222,8 +220,7 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
         json rows = json::array();
         for (const auto& of : reading.rows) {
             const auto& channel = all.channels[of.channel];
-            json row = {
-                {"channel", channel.name}, {"unit", symbol(channel.unit)}, {"compared", of.compared}};
+            json row = {{"channel", channel.name}, {"unit", symbol(channel.unit)}, {"compared", of.compared}};
             for (const Leg leg : compare::legs) {
                 const auto& off = of.off[static_cast<std::size_t>(leg)];
                 row[name(leg)] = {{"signed_max", off.signed_max}, {"rms", off.rms}};
@@ -233,16 +230,12 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
         const std::string by = reading.by_parameter ? "parameter" : all.channels[*measured.abscissa].name;
         readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
     }
-    scene_document["measured"] = {{"file", file},
-                                  {"hash", input_hash(csv)},
-                                  {"points", points.columns.front().values.size()},
-                                  {"columns", columns},
-                                  {"branch", found.branch},
-                                  {"branch_given", !points.branch.empty()},
-                                  {"readings", readings}};
+    scene_document["measured"] = {
+        {"file", file},        {"hash", input_hash(csv)}, {"points", points.columns.front().values.size()},
+        {"columns", columns},  {"branch", found.branch},  {"branch_given", !points.branch.empty()},
+        {"readings", readings}};
     if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
-    if (measured.abscissa)
-        scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
+    if (measured.abscissa) scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
 }
 
 int compared_with_measurement(const json& scene_document) {

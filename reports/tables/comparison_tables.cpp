@@ -71,11 +71,12 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
                        load.channels.empty() ? load.not_compared : doubt.not_compared);
         return;
     }
-    fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "", "at equal " + parameter,
-                   "at equal " + abscissa, "the references'");
+    fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "",
+                   "at equal " + parameter, "at equal " + abscissa, "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
-                   "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
-                   fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share", "uncertainty");
+                   "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share",
+                   "max", fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share",
+                   "uncertainty");
     for (const std::size_t c : shown(all, branch, load)) {
         const auto& d = load.channels[c];
         fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
@@ -159,7 +160,8 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
-        for (const auto& reason : branch.inconclusive.texts()) fmt::format_to(out, "  inconclusive: {}\n", reason);
+        for (const auto& reason : branch.inconclusive.texts())
+            fmt::format_to(out, "  inconclusive: {}\n", reason);
     }
     fmt::format_to(out, "\n{}: {} numbers compared.\n",
                    comparison.conclusive() ? "conclusive" : "INCONCLUSIVE", comparison.compared);

@@ -17,13 +17,12 @@ std::string body_name(const Model& model, BodyId body) {
 }
 
 std::string constraint_name(const ConstraintKind& kind) {
-    return std::visit(
-        overloaded{[](const CoincidentPoints&) { return "coincident points"; },
-                   [](const PointInPlane&) { return "point in plane"; },
-                   [](const PerpendicularDirections&) { return "perpendicular directions"; },
-                   [](const DistanceBetween&) { return "distance between points"; },
-                   [](const DirectionAtAngle&) { return "direction at an angle"; }},
-        kind);
+    return std::visit(overloaded{[](const CoincidentPoints&) { return "coincident points"; },
+                                 [](const PointInPlane&) { return "point in plane"; },
+                                 [](const PerpendicularDirections&) { return "perpendicular directions"; },
+                                 [](const DistanceBetween&) { return "distance between points"; },
+                                 [](const DirectionAtAngle&) { return "direction at an angle"; }},
+                      kind);
 }
 
 }  // namespace
@@ -67,8 +66,7 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
         const char* kind = std::visit(overloaded{[](const AxialSpring&) { return "axial spring"; },
                                                  [](const Bushing&) { return "bushing"; }},
                                       elastic.kind);
-        line("  {:<20} {} - {}: {}", elastic.name, body_name(model, i), body_name(model, j),
-             kind);
+        line("  {:<20} {} - {}: {}", elastic.name, body_name(model, i), body_name(model, j), kind);
     }
     line("\nbranches");
     for (const auto& branch : model.branches) {

@@ -93,16 +93,17 @@ void recommendation(const compare::Trade& trade, std::string& text) {
 std::string trade_table(const Model& model, const compare::Trade& trade) {
     std::string text;
     const auto out = std::back_inserter(text);
-    fmt::format_to(out,
-                   "{}\nEvery row produces the same {} output points on each of {} branches. Error: the "
-                   "worst over branches, points\n"
-                   "and main channels, at equal parameter, from the equilibrium leg. Reference uncertainty: {}.\n"
-                   "Time: of the whole solve call as a ratio to the equilibrium leg, median of {} "
-                   "interleaved rounds; noise {:.1f} %.\n"
-                   "Front: no other row is as good for fewer (s) solves, (f) factorisations + evaluations, "
-                   "(t) less time.\n\n",
-                   model.name, trade.points_per_branch, model.branches.size(),
-                   size(trade.uncertainty, trade.angles), trade.rounds, 100 * trade.noise);
+    fmt::format_to(
+        out,
+        "{}\nEvery row produces the same {} output points on each of {} branches. Error: the "
+        "worst over branches, points\n"
+        "and main channels, at equal parameter, from the equilibrium leg. Reference uncertainty: {}.\n"
+        "Time: of the whole solve call as a ratio to the equilibrium leg, median of {} "
+        "interleaved rounds; noise {:.1f} %.\n"
+        "Front: no other row is as good for fewer (s) solves, (f) factorisations + evaluations, "
+        "(t) less time.\n\n",
+        model.name, trade.points_per_branch, model.branches.size(), size(trade.uncertainty, trade.angles),
+        trade.rounds, 100 * trade.noise);
     fmt::format_to(out, "  {:<12}{:>9}{:>11}", "method", "steps", "error mm");
     if (trade.angles) fmt::format_to(out, "{:>11}", "error deg");
     fmt::format_to(out, "{:>9}{:>9}{:>9}{:>10}{:>9}  {:<6}{}\n", "solves", "factor.", "eval.", "ms", "ratio",

@@ -21,7 +21,8 @@ std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label()
 std::vector<ChannelInfo> channels_of(const Field& scene) {
     std::vector<ChannelInfo> all;
     for (const auto& c : scene["channels"].items())
-        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(), c["kinematic"].truth(), c["definition"].text()});
+        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(), c["kinematic"].truth(),
+                       c["definition"].text()});
     return all;
 }
 

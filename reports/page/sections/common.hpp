@@ -41,12 +41,12 @@ std::string abscissa_of(const Field& scene, const Field& branch);
 
 // Branches that are one sweep out from the design position both ways share a plot.
 struct Sweep {
-    std::string name;  // "jounce and rebound"
-    std::string unit;  // of the parameter, "N"
+    std::string name;      // "jounce and rebound"
+    std::string unit;      // of the parameter, "N"
     std::string abscissa;  // what else they are read over, "travel [mm]"; empty where there is nothing
     std::vector<Field> branches;
 
-    std::string parameter() const;  // "load [N]", "parameter [mm]"
+    std::string parameter() const;           // "load [N]", "parameter [mm]"
     std::string at_equal_parameter() const;  // "at equal load"
     std::string at_equal_abscissa() const;   // "at equal travel"
 };

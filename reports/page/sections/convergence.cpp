@@ -49,8 +49,8 @@ std::optional<FigureGroup> group(const std::string& branch, const Field& method,
     if (phi.size() != steps.size()) method["constraint_error"].fail("not as many numbers as step counts");
     for (double& value : phi) value *= 1e3;
     std::vector<Levels> both;
-    for (const auto& [key, name] :
-         {std::pair{"at_equal_parameter", "at equal load"}, std::pair{"at_equal_abscissa", "at equal travel"}}) {
+    for (const auto& [key, name] : {std::pair{"at_equal_parameter", "at equal load"},
+                                    std::pair{"at_equal_abscissa", "at equal travel"}}) {
         if (method[key].items().empty()) continue;
         const Levels levels = levels_of(method[key], steps.size());
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),

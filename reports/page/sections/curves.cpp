@@ -24,8 +24,11 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     const auto channels = main_channels_of(scene);
     const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.angle(); });
     for (const auto& c : channels) {
-        const auto names = [&](std::string_view what) { return c.name == what || c.name.ends_with("." + std::string(what)); };
-        const std::string whose = c.name.find('.') == std::string::npos ? "" : c.name.substr(0, c.name.find('.')) + ": ";
+        const auto names = [&](std::string_view what) {
+            return c.name == what || c.name.ends_with("." + std::string(what));
+        };
+        const std::string whose =
+            c.name.find('.') == std::string::npos ? "" : c.name.substr(0, c.name.find('.')) + ": ";
         if (names("toe")) {
             outputs.push_back({slug(c.name), whose + "Toe angle", "toe angle [deg]", c.name});
         } else if (names("camber")) {
@@ -91,14 +94,14 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
             if (k == 0 && !rows.empty()) continue;
             std::vector<std::string> row{number(a.a[k], 4)};
             if (output.load) {
-                for (const auto* c : {&a, &e, &b})
-                    row.push_back(k < c->x.size() ? number(c->x[k], 5) : "–");
+                for (const auto* c : {&a, &e, &b}) row.push_back(k < c->x.size() ? number(c->x[k], 5) : "–");
             } else {
                 if (travel) row.push_back(k < a.x.size() ? number(a.x[k], 4) : "–");
                 for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
                 if (fourth)
-                    row.push_back(points ? value(value_between(*points, travel && k < a.x.size() ? a.x[k] : a.a[k]))
-                                         : "–");
+                    row.push_back(
+                        points ? value(value_between(*points, travel && k < a.x.size() ? a.x[k] : a.a[k]))
+                               : "–");
             }
             rows.emplace_back(a.a[k], row);
         }
@@ -112,8 +115,10 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     for (const char* leg : {"equilibrium", "energy", "published recursion"})
         table.columns.push_back({leg + unit});
     if (fourth) table.columns.push_back({"measured"});
-    table.caption = output.load ? fmt::format("{} at equal {}, {}", sweep.abscissa, parameter_word(sweep.unit), sweep.name)
-                                : fmt::format("{}, at equal {}, {}", output.axis, parameter_word(sweep.unit), sweep.name);
+    table.caption =
+        output.load
+            ? fmt::format("{} at equal {}, {}", sweep.abscissa, parameter_word(sweep.unit), sweep.name)
+            : fmt::format("{}, at equal {}, {}", output.axis, parameter_word(sweep.unit), sweep.name);
 
     Figure figure{.id = fmt::format("{}-{}", output.id, slug(sweep.name)),
                   .title = output.title,
@@ -129,9 +134,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         "published recursion's line is drawn over it.",
         output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
         number(high->empty() ? 0 : (*high)[1], 3));
-    return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name),
-                       {figure},
-                       table};
+    return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name), {figure}, table};
 }
 
 // Every main output at the end of a branch, per leg.

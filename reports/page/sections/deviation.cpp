@@ -1,6 +1,4 @@
 // How far the recursion is off along the branches, against the tolerance and against what can be known.
-#include "compare/deviation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,39 +11,8 @@
 namespace elastocheck::reports {
 namespace {
 
-// Worst over some channels, point by point: of leg `b` from leg `a`. NaN where nothing can be compared.
+// Worst over the main channels of a unit, point by point of the equilibrium leg; NaN where nothing can be compared.
 using Profile = std::vector<double>;
-
-void raise(double& worst, double value) {
-    value = std::abs(value);
-    if (std::isnan(worst) || std::isnan(value))
-        worst = NAN;
-    else
-        worst = std::max(worst, value);
-}
-
-Profile equal_parameter(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
-    Profile profile(std::min(a.a.size(), b.a.size()), 0.0);
-    for (const auto& channel : channels) {
-        const auto u = a.channel(channel.name), v = b.channel(channel.name);
-        for (std::size_t k = 0; k < profile.size(); ++k) raise(profile[k], v[k] - u[k]);
-    }
-    return profile;
-}
-
-Profile equal_abscissa(const LegCurve& a, const LegCurve& b, const std::vector<ChannelInfo>& channels) {
-    if (a.x.empty() || b.x.empty()) return {};
-    const auto [low, high] = std::minmax(b.x.front(), b.x.back());
-    Profile profile(a.x.size(), 0.0);
-    for (const auto& channel : channels) {
-        const auto u = a.channel(channel.name), v = b.channel(channel.name);
-        for (std::size_t k = 0; k < profile.size(); ++k) {
-            const bool reached = a.x[k] >= low && a.x[k] <= high;
-            raise(profile[k], reached ? compare::interpolate(b.x, v, a.x[k], 6) - u[k] : NAN);
-        }
-    }
-    return profile;
-}
 
 // A logarithm has no place for zero and NaN: the line is broken there. Ends are kept, the rest thinned.
 void append(Series& series, const std::vector<double>& load, const Profile& profile) {
@@ -92,10 +59,12 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     bool complete = true;  // both references went all the way
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
-        const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
-                       e = curve_of(branch, "energy");
-        const Profile by_load = equal_parameter(a, b, channels), by_travel = equal_abscissa(a, b, channels),
-                      doubt = equal_parameter(a, e, channels);
+        const LegCurve a = curve_of(branch, "equilibrium");
+        const auto profile = [&](const char* reading) { return branch["profiles"][reading][unit].numbers(); };
+        const Profile by_load = profile("at_equal_parameter"), by_travel = profile("at_equal_abscissa"),
+                      doubt = profile("references");
+        for (const auto* one : {&by_load, &by_travel, &doubt})
+            if (one->size() > a.a.size()) branch["profiles"].fail("more numbers than points");
         raise_peak(load_peak, by_load);
         raise_peak(travel_peak, by_travel);
         raise_peak(apart, doubt);
@@ -120,10 +89,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
             if (recommended) {
                 std::size_t nearest = 0;
                 for (std::size_t l = 0; l < rung.size(); ++l)
-                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k]))
-                        nearest = l;
-                const bool same = !rung.empty() &&
-                                  std::abs(rung_load[nearest] - a.a[k]) <= 1e-9 * std::abs(a.a.back());
+                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k])) nearest = l;
+                const bool same =
+                    !rung.empty() && std::abs(rung_load[nearest] - a.a[k]) <= 1e-9 * std::abs(a.a.back());
                 row.push_back(same ? number(rung[nearest]) : "–");
             }
             row.push_back(k < doubt.size() ? number(doubt[k]) : "–");
@@ -177,7 +145,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
                4),
         number(sweep.branches.front()["to"].number(), 4), sweep.unit, enumerated(names), at_parameter,
         quantity(load_peak, unit),
-        curves.travel.rows.empty() ? "" : fmt::format(", {} up to {}", at_abscissa, quantity(travel_peak, unit)),
+        curves.travel.rows.empty() ? ""
+                                   : fmt::format(", {} up to {}", at_abscissa, quantity(travel_peak, unit)),
         std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
@@ -193,17 +162,18 @@ Table deviations(const Field& scene, const Field& branch) {
                     fmt::format("Deviation of the published recursion from the equilibrium leg, branch {}",
                                 branch["name"].text())};
     const Sweep alone{branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
-    table.columns = {{"output", true},
-                     {"range"},
-                     {"max " + alone.at_equal_parameter()},
-                     {fmt::format("at [{}]", alone.unit)},
-                     {"rms"},
-                     {"share"},
-                     {"max " + alone.at_equal_abscissa()},
-                     {alone.abscissa.empty() ? "at" : "at" + alone.abscissa.substr(alone.abscissa.find(" ["))},
-                     {"rms"},
-                     {"share"},
-                     {"references apart"}};
+    table.columns = {
+        {"output", true},
+        {"range"},
+        {"max " + alone.at_equal_parameter()},
+        {fmt::format("at [{}]", alone.unit)},
+        {"rms"},
+        {"share"},
+        {"max " + alone.at_equal_abscissa()},
+        {alone.abscissa.empty() ? "at" : "at" + alone.abscissa.substr(alone.abscissa.find(" ["))},
+        {"rms"},
+        {"share"},
+        {"references apart"}};
     const Field load = branch["deviation"]["at_equal_parameter"]["channels"];
     const Field travel = branch["deviation"]["at_equal_abscissa"]["channels"];
     const Field doubt = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];

@@ -110,8 +110,7 @@ std::optional<Section> drawing_section(const Field& scene) {
     const auto design_wheels = circles_of((*drawing)["design"]);
     std::vector<Snapshot> ends;
     for (const auto& at : (*drawing)["positions"].items())
-        if (at["where"].text() == "end")
-            ends.push_back({at["branch"].text(), checked(at), circles_of(at)});
+        if (at["where"].text() == "end") ends.push_back({at["branch"].text(), checked(at), circles_of(at)});
 
     FigureGroup group;
     constexpr Colour moved[] = {vermilion, blue, purple, ochre};
@@ -155,7 +154,8 @@ std::optional<Section> drawing_section(const Field& scene) {
     }
     group.caption = "Design position in full lines, positions at the ends of the branches over it, to scale.";
     Table& table = group.table;
-    table.caption = "Points at the design position, and how far the equilibrium leg moves them to the end of the branch";
+    table.caption =
+        "Points at the design position, and how far the equilibrium leg moves them to the end of the branch";
     table.columns = {{"point", true}, {"on", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}};
     for (const auto& end : ends)
         for (const char* axis : {"Δx", "Δy", "Δz"})

@@ -16,7 +16,7 @@ constexpr double nothing = 1e-9;  // mm, deg: smaller deviations are the arithme
 
 struct Worst {
     std::string branch, channel, unit;
-    double max = -1, end = 0, range = 0;
+    double max = -1, range = 0;
 
     double share() const { return max / range; }
     std::string text() const { return quantity(max, unit); }
@@ -25,21 +25,12 @@ struct Worst {
     }
 };
 
-// Over all branches, of the main channels in this unit. A deviation that is not finite is the worst.
-std::optional<Worst> worst_of(const Field& scene, const char* reading, std::string_view unit) {
-    std::optional<Worst> worst;
-    for (const auto& branch : scene["branches"].items()) {
-        const Field deviations = branch["deviation"][reading]["channels"];
-        for (const auto& channel : main_channels_of(scene)) {
-            const auto d = deviations.find(channel.name);
-            if (channel.unit != unit || !d) continue;
-            const double max = (*d)["max"].number();
-            if (worst && (std::isnan(worst->max) || max <= worst->max)) continue;
-            worst = Worst{branch["name"].text(), channel.label(),       channel.unit, max,
-                          (*d)["end"].number(),  (*d)["range"].number()};
-        }
-    }
-    return worst;
+std::optional<Worst> worst_of(const Field& scene, const char* reading, const char* unit) {
+    const auto found = scene["findings"][reading].find(unit);
+    if (!found) return std::nullopt;
+    const ChannelInfo channel{(*found)["channel"].text(), unit};
+    return Worst{(*found)["branch"].text(), channel.label(), unit, (*found)["max"].number(),
+                 (*found)["range"].number()};
 }
 
 // The recursion's wheel rate, branch by branch where something vertical moves a wheel: "2.9 % too soft".
@@ -66,47 +57,14 @@ json failures(const Field& scene) {
     return list;
 }
 
-// What part of the deviation at full load is the formulation's, of the position that is worst there.
 json gap_words(const Field& scene) {
-    const auto study = scene.find("convergence");
-    if (!study) return nullptr;
-    double worst = nothing, gap = NAN, band = NAN;
-    std::string unit, label;
-    for (const auto& branch : (*study)["branches"].items())
-        for (const auto& method : branch["methods"].items()) {
-            if (method["method"].text() != "published") continue;
-            for (const auto& entry : method["at_equal_parameter"].items()) {
-                for (const auto& compared : scene["branches"].items()) {
-                    if (compared["name"].text() != branch["name"].text()) continue;
-                    const auto d =
-                        compared["deviation"]["at_equal_parameter"]["channels"].find(entry["channel"].text());
-                    if (!d || entry["unit"].text() != "mm") continue;
-                    const double end = (*d)["end"].number();
-                    if (!(std::abs(end) > std::abs(worst))) continue;
-                    worst = end;
-                    gap = entry["gap"].number();
-                    band = entry["band"].number();
-                    unit = entry["unit"].text();
-                }
-            }
-        }
-    if (!std::isfinite(gap)) return nullptr;
-    const double share = gap / worst;
-    json words = {
-        {"value", quantity(std::abs(gap), unit)}, {"share", percent(share)}, {"share_number", share}};
-    if (std::abs(gap) <= std::max(band, nothing))
-        words["none"] = true;
-    else if (share < 0)
-        words["opposite"] = true;
-    else if (share > 1.1)
-        words["hidden"] = true;
-    else if (share > 0.9)
-        words["nearly_all"] = true;
-    else if (share < 0.1)
-        words["hardly_any"] = true;
-    else
-        words["part"] = true;
-    return words;
+    const auto part = scene["findings"].find("gap");
+    if (!part) return nullptr;
+    const double gap = (*part)["gap"].number(), share = gap / (*part)["deviation"].number();
+    return {{"value", quantity(std::abs(gap), "mm")},
+            {"share", percent(share)},
+            {"share_number", share},
+            {(*part)["role"].text(), true}};
 }
 
 // What it was off at most, on the ladder and when it was run again, and what the references leave open.
@@ -163,21 +121,6 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     return words;
 }
 
-// How far the references disagree, over all branches, where they could be compared.
-std::optional<double> disagreement(const Field& scene, std::string_view unit) {
-    std::optional<double> worst;
-    for (const auto& branch : scene["branches"].items()) {
-        const Field found = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];
-        for (const auto& channel : main_channels_of(scene)) {
-            const auto d = found.find(channel.name);
-            if (channel.unit != unit || !d) continue;
-            const double max = (*d)["max"].number();
-            if (!worst || std::isnan(max) || max > *worst) worst = max;
-        }
-    }
-    return worst;
-}
-
 }  // namespace
 
 std::optional<Section> verdict_section(const Field& scene) {
@@ -201,10 +144,10 @@ std::optional<Section> verdict_section(const Field& scene) {
                 if (c.angle()) return true;
             return false;
         }();
-        const auto load_mm = worst_of(scene, "at_equal_parameter", "mm");
-        const auto load_deg = worst_of(scene, "at_equal_parameter", "deg");
-        const auto travel_mm = worst_of(scene, "at_equal_abscissa", "mm");
-        const auto travel_deg = worst_of(scene, "at_equal_abscissa", "deg");
+        const auto load_mm = worst_of(scene, "worst_at_equal_parameter", "mm");
+        const auto load_deg = worst_of(scene, "worst_at_equal_parameter", "deg");
+        const auto travel_mm = worst_of(scene, "worst_at_equal_abscissa", "mm");
+        const auto travel_deg = worst_of(scene, "worst_at_equal_abscissa", "deg");
         if (load_mm || load_deg) {
             std::vector<std::string> counts;
             counts.reserve(steps.size());
@@ -246,7 +189,8 @@ std::optional<Section> verdict_section(const Field& scene) {
         words["published"] = published;
         std::vector<std::string> agreement;
         for (const char* unit : {"mm", "deg"})
-            if (const auto d = disagreement(scene, unit)) agreement.push_back(quantity(*d, unit));
+            if (const auto d = scene["findings"]["references_apart"].find(unit))
+                agreement.push_back(quantity((*d)["max"].number(), unit));
         if (!agreement.empty()) words["agreement"] = enumerated(agreement);
     }
     words["recommendation"] = recommendation_words(scene, tiles);
