@@ -40,7 +40,8 @@ Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
     if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
     const bool was_open = s.Phi_d.norm() > Real(0);
     if (outcome != Outcome::converged) return was_open ? Outcome::inconsistent_constraints : outcome;
-    return stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
+    // What linear steps open that was closed is their error, not the joints'.
+    return was_open && stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
 }
 
 // With the stiffness of (19): in one step where the design position is an equilibrium, which gives λ⁻¹; else

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
 #include <stdexcept>
 
 #include "recursive/series/path.hpp"
@@ -10,9 +11,22 @@
 namespace elastocheck::recursive {
 namespace {
 
-std::string words(const Diagnosis& diagnosis, const Method& method, Outcome outcome, double stopped) {
+// A value of the branch's parameter as it is spoken of: "at 1200 N", "at 35.2 mm".
+std::string at_parameter(ParameterUnit unit, double a) {
+    switch (unit) {
+        case ParameterUnit::newton: return fmt::format("at {:.6g} N", a);
+        case ParameterUnit::newton_metre: return fmt::format("at {:.6g} N·m", a);
+        case ParameterUnit::metre: return fmt::format("at {:.6g} mm", 1e3 * a);
+        case ParameterUnit::radian: return fmt::format("at {:.6g} deg", a * 180 / std::numbers::pi);
+        case ParameterUnit::none: return fmt::format("at {:.6g}", a);
+    }
+    return {};
+}
+
+std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method& method, Outcome outcome,
+                  double stopped) {
     std::string detail = std::isnan(stopped) ? std::string("while what is held at the start settles")
-                                             : fmt::format("at load factor {:.6g}", stopped);
+                                             : at_parameter(branch.unit, stopped);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
             detail += ": the load pushes what nothing resists:";
@@ -73,7 +87,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
     EquilibriumPath path = sweep(options.precision, model, branch, options, analysis, stopped);
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format("branch '{}': {}", branch.name,
-                                  words(analysis.diagnosis, options.method, path.outcome, stopped));
+                                  words(analysis.diagnosis, branch, options.method, path.outcome, stopped));
     return path;
 }
 
