@@ -92,7 +92,9 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
             name = channel.unit == compare::Unit::newton ? "JOINT.force_x, _y, _z" : "JOINT.moment_x, _y, _z";
         }
         const std::string head = fmt::format("{} [{}]", name, symbol(channel.unit));
-        line("  {:<30} {}", head, channel.definition);
+        const bool example = name.starts_with("JOINT.");
+        const std::string meaning = (example ? "such as: " : "") + channel.definition;
+        line("  {:<30} {}", head, meaning);
     }
     line("\nredundant constraints");
     for (const auto& r : d.redundant)
