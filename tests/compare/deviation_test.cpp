@@ -47,14 +47,14 @@ TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
 
 TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
     const auto shape = [](double x) { return x; };
-    const auto reading = at_equal_abscissa(made(1, shape), made(0.9, shape));
+    const auto reading = at_equal_travel(made(1, shape), made(0.9, shape));
     EXPECT_EQ(reading.outside, 4);
     EXPECT_EQ(reading.channels[1].compared, 37);
 }
 
 TEST(Deviation, FallingTravelIsReadAsWell) {
     const auto shape = [](double x) { return x * x; };
-    const auto reading = at_equal_abscissa(made(-1, shape), made(-1.1, shape));
+    const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));
     EXPECT_TRUE(reading.not_compared.empty());
     EXPECT_LE(reading.channels[1].max, 1e-12);
 }
@@ -79,7 +79,7 @@ TEST(Deviation, ANaNAnywhereIsNeverSmall) {
         const auto load = at_equal_parameter(a, b).channels[1];
         EXPECT_TRUE(std::isnan(load.max)) << where;
         EXPECT_TRUE(std::isnan(load.rms)) << where;
-        EXPECT_TRUE(std::isnan(at_equal_abscissa(a, b).channels[1].max)) << where;
+        EXPECT_TRUE(std::isnan(at_equal_travel(a, b).channels[1].max)) << where;
         b = a;
         a.values[where][1] = nan;
         EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].max)) << where;

@@ -16,7 +16,12 @@ void expect_whole(const Table& table, std::size_t rows) {
     EXPECT_EQ(table.rows.size(), rows) << table.name;
     std::set<std::string> names;
     for (const auto& column : table.columns) EXPECT_TRUE(names.insert(column.name).second) << column.name;
-    for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.name;
+    for (const auto& row : table.rows) {
+        ASSERT_EQ(row.size(), table.columns.size()) << table.name;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            EXPECT_EQ(std::holds_alternative<std::string>(row[c]), table.columns[c].words)
+                << table.name << ": " << table.columns[c].name;
+    }
 }
 
 TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
@@ -44,7 +49,9 @@ TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
     expect_whole(order_table(order_study(model, orders)), 2 * 2);
     PrecisionOptions precision;
     precision.most_steps = 40;
-    expect_whole(precision_table(precision_study(model, precision)), 3 * 3 * 2);
+    const auto arithmetic = precision_study(model, precision);
+    expect_whole(precision_table(arithmetic), 3 * 3 * 2);
+    expect_whole(floor_table(arithmetic), 3 * 3);
     TradeOptions trade_options;
     trade_options.most_steps = 20;
     trade_options.rounds = 0;

@@ -1,11 +1,10 @@
 // Tables of a trade: text, CSV and JSON say the same.
-#include "reports/trade_tables.hpp"
+#include "reports/tables/trade_tables.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compare/precision.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "tests/support/scenes.hpp"
@@ -24,7 +23,7 @@ TradeOptions quick(Tolerance tolerance, int most_steps = 160) {
 }
 
 TEST(TradeTables, TextCsvAndJsonSayTheSame) {
-    const Model model = shipped("pendulum", 2);
+    const Model model = shipped("pendulum");
     const Trade result = trade(model, quick({0.01, 0.001}, 640));
     ASSERT_TRUE(result.recommendation);
     const std::string text = reports::trade_table(model, result), csv = reports::trade_csv(result);
@@ -44,16 +43,6 @@ TEST(TradeTables, TextCsvAndJsonSayTheSame) {
     const Trade none = trade(model, quick({1e-15}, 10));
     EXPECT_NE(reports::trade_table(model, none).find("nothing here reaches it"), std::string::npos);
     EXPECT_TRUE(reports::trade_json(none)["recommendation"].is_null());
-}
-
-TEST(TradeTables, PrecisionIsOneRowALevel) {
-    PrecisionOptions options;
-    options.most_steps = 160;
-    const PrecisionStudy study = precision_study(shipped("pinned_bar"), options);
-    const std::string csv = reports::precision_csv(study);
-    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 3 * 3 * 3);
-    EXPECT_EQ(reports::precision_json(study)["series"].size(), 9u);
-    EXPECT_NE(reports::precision_table(study).find("long double"), std::string::npos);
 }
 
 }  // namespace

@@ -44,8 +44,8 @@ const TradePoint* find(const Trade& trade, std::string_view method, int steps) {
     return nullptr;
 }
 
-// The error of a recommendation solved anew at ten times as
-// many steps and output points, without any of trade.cpp.
+// The error of a recommendation solved anew at ten times as many steps and output points, without any of
+// trade.cpp.
 Accuracy solved_anew(const Model& model, const Trade& trade) {
     const TradePoint& point = trade.points[trade.recommendation->point];
     const int outputs = 10 * trade.points_per_branch;
@@ -268,8 +268,8 @@ TEST(Trade, AMethodThatDivergesAtMoreStepsIsNotRecommendedAtFew) {
 }
 
 TEST(Trade, ErrorsThatCancelAreNotRecommended) {
-    // The published method's step error makes up for half
-    // of its formulation gap at ten steps, and for none at many.
+    // The published method's step error makes up for half of its formulation gap at ten steps, and for none
+    // at many.
     const Trade result = trade(shipped("pinned_bar"), quick({4}));
     EXPECT_LT(find(result, "published", 10)->error.mm, 4);
     EXPECT_GT(find(result, "published", 160)->error.mm, 4);
