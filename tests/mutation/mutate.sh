@@ -74,9 +74,13 @@ alarms() {
         "$build/tests/$test" --gtest_list_tests | awk '/^[^ ]+\./ { sub(/\..*/, ""); print }'
     done
     for scene in "$tree"/models/scenes/*.yaml; do echo "gate:$(basename "$scene" .yaml)"; done
+    echo Performance
 }
-tests='models/test_models recursive/test_recursive recursive/test_allocation reference/test_equilibrium
-    reference/test_energy compare/test_compare compare/test_trade gate/test_gate reports/test_reports'
+tests='models/test_models recursive/test_recursive recursive/test_series recursive/test_series_and_reference
+    recursive/test_allocation reference/test_equilibrium reference/test_energy compare/test_compare
+    compare/test_trade compare/test_trade_tables gate/test_judge gate/test_gate reports/test_reports'
+# Of what is no GoogleTest, the one that looks at the build tree itself.
+of_build_tree=Performance.ValgrindIsLookedForWhenItIsNeeded
 
 # ring FOLDER [STAMP]: runs the alarms (those built since STAMP) and leaves "alarm <tab> test <tab> margin" of those
 # that rang in FOLDER/rang.
@@ -99,6 +103,8 @@ ring() {
         [ ! -f "$log" ] || awk -v run="$(basename "$test")" -f "$here/tests_that_rang.awk" "$log"
     done >"$1/rang"
     awk -f "$here/scenes_that_rang.awk" "$1/gate.log" >>"$1/rang"
+    ctest --test-dir "$build" -R "^$of_build_tree\$" --no-tests=error >"$1/build_tree.log" 2>&1 ||
+        printf '%s\t%s\t\n' "${of_build_tree%%.*}" "$of_build_tree" >>"$1/rang"
 }
 
 # shellcheck disable=SC2046 # lists of words
