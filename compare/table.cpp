@@ -10,6 +10,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double count(auto number) { return static_cast<double>(number); }
 
+Column words(const char* name, const char* description = "") { return {name, "", description, true}; }
+
 // Calls sink(words of the reading, it) for both readings of a pair-like thing.
 template <class T, class Sink>
 void both(const T& at_parameter, const T& at_abscissa, Sink&& sink) {
@@ -20,17 +22,17 @@ void both(const T& at_parameter, const T& at_abscissa, Sink&& sink) {
 }  // namespace
 
 Table channel_table(const std::vector<Channel>& channels) {
-    Table table{"channels", {{"output"}, {"unit"}, {"definition"}}, {}};
+    Table table{"channels", {words("output"), words("unit"), words("definition")}, {}};
     for (const auto& c : channels) table.rows.push_back({c.name, symbol(c.unit), c.definition});
     return table;
 }
 
 Table settled_table(const std::vector<Channel>& channels, const std::vector<Settled>& settled) {
     Table table{"settled",
-                {{"branch"},
-                 {"outcome"},
-                 {"output"},
-                 {"unit"},
+                {words("branch"),
+                 words("outcome"),
+                 words("output"),
+                 words("unit"),
                  {"displacement", "", "value at a = 0, settled under what is held, less its value as drawn"}},
                 {}};
     for (const auto& s : settled)
@@ -42,8 +44,9 @@ Table settled_table(const std::vector<Channel>& channels, const std::vector<Sett
 }
 
 Table curve_table(const Comparison& comparison) {
-    Table table{
-        "curves", {{"branch"}, {"leg"}, {"a", "", "parameter of the branch"}, {"unit", "", "of a"}}, {}};
+    Table table{"curves",
+                {words("branch"), words("leg"), {"a", "", "parameter of the branch"}, words("unit", "of a")},
+                {}};
     for (const auto& c : comparison.channels) table.columns.push_back({c.name, symbol(c.unit), c.definition});
     for (const auto& branch : comparison.branches)
         for (const auto& run : branch.runs)
@@ -57,19 +60,19 @@ Table curve_table(const Comparison& comparison) {
 
 Table deviation_table(const Comparison& comparison) {
     Table table{"deviation",
-                {{"branch"},
-                 {"reading"},
-                 {"output"},
-                 {"unit"},
+                {words("branch"),
+                 words("reading"),
+                 words("output"),
+                 words("unit"),
                  {"range", "", "of the equilibrium leg"},
                  {"deviation", "", "recursion less equilibrium leg where that is largest"},
                  {"where", "", "value of the parameter or abscissa there"},
-                 {"where unit"},
+                 words("where unit"),
                  {"end", "", "deviation at the last compared point"},
                  {"rms"},
                  {"compared", "", "numbers"},
                  {"references apart", "", "energy leg from equilibrium leg, at most"},
-                 {"not compared", "", "why"}},
+                 words("not compared", "why")},
                 {}};
     for (const auto& branch : comparison.branches)
         both(std::pair{&branch.deviation.equal_parameter, &branch.uncertainty.equal_parameter},
@@ -97,7 +100,7 @@ Table deviation_table(const Comparison& comparison) {
 
 Table agreement_table(const Comparison& comparison) {
     Table table{"agreement",
-                {{"branch"},
+                {words("branch"),
                  {"positions", "mm", "by which the references may be apart"},
                  {"angles", "deg", "likewise"},
                  {"forces", "N", "likewise"},
@@ -105,7 +108,7 @@ Table agreement_table(const Comparison& comparison) {
                  {"balance", "N", "that a reference's states may leave in the other's equations"},
                  {"constraints", "mm", "likewise"},
                  {"objections", "", "how many"},
-                 {"worst", "", "in words"}},
+                 words("worst", "in words")},
                 {}};
     for (const auto& b : comparison.branches)
         table.rows.push_back({b.branch, b.bounds.length, b.bounds.angle, b.bounds.force, b.bounds.moment,
@@ -116,10 +119,10 @@ Table agreement_table(const Comparison& comparison) {
 
 Table rate_table(const std::vector<RateError>& errors) {
     Table table{"wheel rate",
-                {{"branch"},
-                 {"wheel"},
+                {words("branch"),
+                 words("wheel"),
                  {"end", "", "of the branch"},
-                 {"unit"},
+                 words("unit"),
                  {"error", "%", "of the recursion's force over travel; positive: too stiff"},
                  {"travel", "mm", "recursion less reference at that end"},
                  {"jack force", "N", "likewise"}},
@@ -131,18 +134,18 @@ Table rate_table(const std::vector<RateError>& errors) {
 
 Table study_table(const Study& study) {
     Table table{"convergence",
-                {{"branch"},
-                 {"method"},
-                 {"reading"},
-                 {"output"},
-                 {"unit"},
-                 {"behaviour"},
+                {words("branch"),
+                 words("method"),
+                 words("reading"),
+                 words("output"),
+                 words("unit"),
+                 words("behaviour"),
                  {"order"},
                  {"gap", "", "own limit less reference at the end"},
                  {"band", "", "uncertainty of the limit"},
                  {"largest gap"},
                  {"references apart"},
-                 {"not studied", "", "why"}},
+                 words("not studied", "why")},
                 {}};
     for (const auto& branch : study.branches)
         for (const auto& method : branch.methods)
@@ -164,11 +167,11 @@ Table study_table(const Study& study) {
 
 Table step_table(const Study& study) {
     Table table{"step error",
-                {{"branch"},
-                 {"method"},
-                 {"reading"},
-                 {"output"},
-                 {"unit"},
+                {words("branch"),
+                 words("method"),
+                 words("reading"),
+                 words("output"),
+                 words("unit"),
                  {"steps"},
                  {"end", "", "value less own limit at the end"},
                  {"largest"},
@@ -190,17 +193,17 @@ Table step_table(const Study& study) {
 
 Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttribution>& attribution) {
     Table table{"gap",
-                {{"branch"},
-                 {"reading"},
-                 {"output"},
-                 {"unit"},
+                {words("branch"),
+                 words("reading"),
+                 words("output"),
+                 words("unit"),
                  {"whole", "", "gap of the recursion in which nothing follows the bodies"},
                  {"lever", "", "share of the lever of the stored force"},
                  {"axis", "", "share of its axis and law"},
                  {"load", "", "share of the lever of the load"},
                  {"rest", "", "what is left when all three follow: 0 within the band"},
                  {"band"},
-                 {"not attributed", "", "why"}},
+                 words("not attributed", "why")},
                 {}};
     for (const auto& branch : attribution)
         both(branch.equal_parameter, branch.equal_abscissa,
@@ -219,35 +222,60 @@ Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttrib
 }
 
 Table order_table(const std::vector<BranchOrders>& orders) {
-    Table table{"orders",
-                {{"branch"},
-                 {"told", "m"},
-                 {"order"},
-                 {"outcome"},
-                 {"expansions"},
-                 {"rejected"},
-                 {"solves"},
-                 {"factorisations"},
-                 {"evaluations"},
-                 {"error", "mm"},
-                 {"angle error", "deg"},
-                 {"first reach", "", "share of the branch"}},
-                {}};
+    Table table{
+        "orders",
+        {words("branch"),
+         {"told", "m"},
+         {"order"},
+         words("outcome"),
+         {"expansions"},
+         {"rejected"},
+         {"factorisations"},
+         {"solves"},
+         {"evaluations"},
+         {"error", "mm", "from the equilibrium leg, largest over all points"},
+         {"angle error", "deg", "likewise"},
+         {"residual", "N", "or N·m: most that an expansion leaves in the balance"},
+         {"error at ends", "m", "largest at the end of an expansion, as it estimates it"},
+         {"first reach", "", "of the first expansion, share of the branch"},
+         {"references apart", "mm"},
+         {"references' angles apart", "deg"},
+         {"singularity", "", "distance of the nearest, seen from the start, in lengths of the branch"},
+         {"its angle", "rad", "off the way ahead"},
+         {"its misfit", "", "how well the coefficients show it"},
+         words("not compared", "why")},
+        {}};
     for (const auto& branch : orders)
         for (const auto& l : branch.levels)
-            table.rows.push_back({branch.branch, l.tolerance, count(l.order), elastocheck::name(l.outcome),
-                                  count(l.expansions), count(l.rejected), count(l.work.solves),
-                                  count(l.work.factorisations), count(l.work.evaluations), l.error.mm,
-                                  l.error.deg, l.first_reach});
+            table.rows.push_back({branch.branch,
+                                  l.tolerance,
+                                  count(l.order),
+                                  elastocheck::name(l.outcome),
+                                  count(l.expansions),
+                                  count(l.rejected),
+                                  count(l.work.factorisations),
+                                  count(l.work.solves),
+                                  count(l.work.evaluations),
+                                  l.error.mm,
+                                  l.error.deg,
+                                  l.force,
+                                  l.error_end,
+                                  l.first_reach,
+                                  branch.uncertainty.mm,
+                                  branch.uncertainty.deg,
+                                  l.nearest.radius,
+                                  l.nearest.angle,
+                                  l.nearest.misfit,
+                                  branch.failure});
     return table;
 }
 
 Table precision_table(const PrecisionStudy& study) {
     Table table{"precision",
-                {{"method"},
-                 {"arithmetic"},
+                {words("method"),
+                 words("arithmetic"),
                  {"steps"},
-                 {"outcome"},
+                 words("outcome"),
                  {"constraint error", "m", "or rad: |Φ| at the end, eq. (31)"},
                  {"error", "mm"},
                  {"angle error", "deg"}},
@@ -255,17 +283,42 @@ Table precision_table(const PrecisionStudy& study) {
     for (const auto& series : study.series)
         for (const auto& l : series.levels)
             table.rows.push_back({series.method, name(series.precision), count(l.steps),
-                                  elastocheck::name(l.outcome), l.constraint, l.error.mm, l.error.deg});
+                                  elastocheck::name(l.outcome), l.constraint, l.error.mm,
+                                  study.angles ? l.error.deg : nan});
+    return table;
+}
+
+Table floor_table(const PrecisionStudy& study) {
+    Table table{"floors",
+                {words("method"),
+                 words("arithmetic"),
+                 {"least constraint error", "m", "or rad: |Φ| over the steps"},
+                 {"steps that lower it", "", "no finer ones bring it below a third"},
+                 words("constraint remark"),
+                 {"least error", "mm"},
+                 {"steps that lower the error", "", "likewise"},
+                 words("error remark")},
+                {}};
+    const auto steps = [](const Floor& floor) { return floor.useful_steps > 0 ? floor.useful_steps : nan; };
+    const auto remark = [](const Floor& floor, bool by_reference) {
+        return floor.useful_steps == 0           ? "no number"
+               : !floor.reached                  ? "more steps still help"
+               : by_reference && floor.reference ? "at the reference uncertainty"
+                                                 : "";
+    };
+    for (const auto& s : study.series)
+        table.rows.push_back({s.method, name(s.precision), s.constraint.least, steps(s.constraint),
+                              remark(s.constraint, false), s.mm.least, steps(s.mm), remark(s.mm, true)});
     return table;
 }
 
 Table trade_table(const Trade& trade) {
     Table table{"trade",
-                {{"leg"},
-                 {"method"},
+                {words("leg"),
+                 words("method"),
                  {"steps", "", "per branch; 0: its own"},
                  {"told", "m"},
-                 {"outcome"},
+                 words("outcome"),
                  {"solves"},
                  {"factorisations"},
                  {"evaluations"},
@@ -274,8 +327,8 @@ Table trade_table(const Trade& trade) {
                  {"error", "mm"},
                  {"angle error", "deg"},
                  {"share", "", "of the tolerance"},
-                 {"not ranked", "", "why"},
-                 {"recommended"}},
+                 words("not ranked", "why"),
+                 words("recommended")},
                 {}};
     for (std::size_t k = 0; k < trade.points.size(); ++k) {
         const TradePoint& p = trade.points[k];

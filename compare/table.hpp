@@ -21,12 +21,13 @@ struct Column {
     std::string name;
     std::string unit = {};  // "" where it differs from row to row (then a column `unit` says it) or has none
     std::string description = {};
+    bool words = false;  // its cells are texts, else numbers
 };
 
 struct Table {
     std::string name;  // "deviation", "curves", ...
     std::vector<Column> columns;
-    std::vector<std::vector<Cell>> rows;  // as many cells as columns
+    std::vector<std::vector<Cell>> rows;  // as many cells as columns, each of its column's kind
 };
 
 Table channel_table(const std::vector<Channel>& channels);  // what every output is, with its sign
@@ -40,6 +41,7 @@ Table step_table(const Study& study);                    // ... and level
 Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttribution>& attribution);
 Table order_table(const std::vector<BranchOrders>& orders);
 Table precision_table(const PrecisionStudy& study);
+Table floor_table(const PrecisionStudy& study);  // where more steps stop helping
 Table trade_table(const Trade& trade);
 
 }  // namespace elastocheck::compare

@@ -25,7 +25,8 @@
 #include "reports/files/folder.hpp"
 #include "reports/page/gnuplot.hpp"
 #include "reports/page/report.hpp"
-#include "reports/tables/order_tables.hpp"
+#include "reports/tables/precision_tables.hpp"
+#include "reports/tables/render.hpp"
 #include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
 #include "reports/text/terminal.hpp"
@@ -91,7 +92,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     document["trade"] = trade_json(trade);
     if (const json profile = recommended(model, trade); !profile.is_null()) document["recommended"] = profile;
 
-    document["orders"] = orders_json(compare::order_study(model, {.progress = tell}));
+    document["orders"] = table_json(order_table(compare::order_study(model, {.progress = tell})));
 
     // A million steps, as `elastocheck trade` takes them, show more of round-off and take half a minute.
     document["precision"] = precision_json(

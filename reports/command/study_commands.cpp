@@ -22,6 +22,7 @@
 #include "reports/tables/csv.hpp"
 #include "reports/tables/inspection.hpp"
 #include "reports/tables/order_tables.hpp"
+#include "reports/tables/precision_tables.hpp"
 #include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
 #include "reports/text/escape.hpp"
@@ -161,7 +162,7 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
         orders = compare::order_study(model, {.progress = progress});
     progress("");
     if (!options.methods.empty()) print(study_tables(model, study, attribution));
-    print(order_table(orders));
+    print(order_text(order_table(orders)));
     const bool conclusive =
         (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
     if (!folder.empty()) {
@@ -173,8 +174,8 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
             files.push_back({"attribution.csv", attribution_csv(study, attribution)});
         }
         if (!orders.empty()) {
-            part["orders"] = orders_json(orders);
-            files.push_back({"orders.csv", orders_csv(orders)});
+            part["orders"] = table_json(order_table(orders));
+            files.push_back({"orders.csv", csv(order_table(orders))});
         }
         auto reasons = study.inconclusive;
         if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
@@ -195,7 +196,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::Trade trade = compare::trade(model, options);
     const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
     progress("");
-    print("{}\n{}", trade_table(model, trade), precision_table(precision));
+    print("{}\n{}", trade_table(model, trade), precision_text(precision));
     if (!folder.empty()) {
         json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         part["trade"] = trade_json(trade);
@@ -203,7 +204,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
         write_results(folder, command, std::move(part),
-                      {{"trade.csv", trade_csv(trade)}, {"precision.csv", precision_csv(precision)}});
+                      {{"trade.csv", trade_csv(trade)}, {"precision.csv", csv(precision_table(precision))}});
     }
     return trade.recommendation ? fine : could_not_judge;
 }

@@ -1,16 +1,15 @@
-// The series over its order: as people read it, as CSV, and as JSON.
+// The series over its order, as people read it on a terminal.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "compare/order_study.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-std::string order_table(const std::vector<compare::BranchOrders>& orders);
-std::string orders_csv(const std::vector<compare::BranchOrders>& orders);
-nlohmann::ordered_json orders_json(const std::vector<compare::BranchOrders>& orders);
+extern const std::vector<Shown> order_columns;  // of compare::order_table, on the terminal and the page
+
+std::string order_text(const compare::Table& orders);
 
 }  // namespace elastocheck::reports

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/precision.hpp"
 #include "compare/trade.hpp"
 
 namespace elastocheck::reports {
@@ -12,9 +11,5 @@ namespace elastocheck::reports {
 std::string trade_table(const Model& model, const compare::Trade& trade);
 std::string trade_csv(const compare::Trade& trade);  // one row per configuration, 17 significant digits
 nlohmann::ordered_json trade_json(const compare::Trade& trade);  // a number that is not finite is null
-
-std::string precision_table(const compare::PrecisionStudy& study);
-std::string precision_csv(const compare::PrecisionStudy& study);
-nlohmann::ordered_json precision_json(const compare::PrecisionStudy& study);
 
 }  // namespace elastocheck::reports

@@ -8,7 +8,8 @@
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "reports/document/document.hpp"
-#include "reports/tables/order_tables.hpp"
+#include "reports/tables/precision_tables.hpp"
+#include "reports/tables/render.hpp"
 #include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
@@ -34,8 +35,8 @@ const json& sample_result(const std::string& name) {
     part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
-    part["orders"] = orders_json(
-        compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5}));
+    part["orders"] = table_json(order_table(
+        compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_verdict(part, comparison.compared, reasons_of(comparison));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);

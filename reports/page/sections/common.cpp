@@ -7,6 +7,7 @@
 
 #include "compare/curve.hpp"
 #include "reports/page/numbers.hpp"
+#include "reports/tables/select.hpp"
 
 namespace elastocheck::reports {
 
@@ -117,6 +118,36 @@ double largest(const std::vector<double>& values) {
         most = std::max(most, std::abs(value));
     }
     return most;
+}
+
+namespace {
+
+std::string written(double value, Digits digits) {
+    switch (digits) {
+        case Digits::whole: return std::abs(value) < 1e15 ? whole_number(std::lround(value)) : number(value);
+        case Digits::given: return number(value, 1);
+        case Digits::size: return number(value, 2);
+        case Digits::three: return number(value, 3);
+        case Digits::percent: return percent(value);
+    }
+    return {};
+}
+
+}  // namespace
+
+Table page_table(std::string caption, const compare::Table& table, const std::vector<Shown>& shown) {
+    Table page{.caption = std::move(caption),
+               .rows = std::vector<std::vector<std::string>>(table.rows.size())};
+    for (const auto& s : filled(table, shown)) {
+        const std::size_t c = column(table, s.column);
+        page.columns.push_back({heading(table, s), table.columns[c].words});
+        for (std::size_t r = 0; r < table.rows.size(); ++r) {
+            const auto* value = std::get_if<double>(&table.rows[r][c]);
+            page.rows[r].push_back(value != nullptr ? written(*value, s.digits)
+                                                    : std::get<std::string>(table.rows[r][c]));
+        }
+    }
+    return page;
 }
 
 std::string enumerated(const std::vector<std::string>& words) {

@@ -6,6 +6,7 @@
 
 #include "reports/document/field.hpp"
 #include "reports/page/page.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
@@ -56,6 +57,9 @@ std::vector<Sweep> sweeps_of(const Field& scene);
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 
 double largest(const std::vector<double>& values);  // in size; NaN where one is
+
+// Columns of a study's table as a table of the page; those in which nothing stands are left out.
+Table page_table(std::string caption, const compare::Table& table, const std::vector<Shown>& shown);
 
 // "a", "a and b", "a, b and c"
 std::string enumerated(const std::vector<std::string>& words);

@@ -8,45 +8,31 @@
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
+#include "reports/tables/order_tables.hpp"
+#include "reports/tables/select.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 constexpr Colour colours[] = {vermilion, blue, green, purple};
 
-FigureGroup group(const Field& branch) {
-    const std::string name = branch["branch"].text();
+FigureGroup group(const std::string& branch, const compare::Table& levels) {
     FigureGroup group;
-    group.caption = fmt::format("Expansions that branch {} takes over their order.", name);
-    group.table = {.caption = fmt::format("Series over branch {}; error to the equilibrium leg", name),
-                   .columns = {{"told [m]"},
-                               {"order"},
-                               {"outcome", true},
-                               {"expansions"},
-                               {"factorisations"},
-                               {"solves"},
-                               {"error [mm]"},
-                               {"error [deg]"},
-                               {"residual [N]"}},
-                   .folded = true};
-    Figure figure{.id = fmt::format("orders-{}", slug(name)),
-                  .title = name,
+    group.caption = fmt::format("Expansions that branch {} takes over their order.", branch);
+    group.table = page_table(fmt::format("Series over branch {}; error to the equilibrium leg", branch),
+                             levels, order_columns);
+    group.table.folded = true;
+    Figure figure{.id = fmt::format("orders-{}", slug(branch)),
+                  .title = branch,
                   .description = {},
                   .x = "order",
                   .y = "expansions",
                   .log_y = true};
     std::map<double, std::vector<std::vector<double>>, std::greater<>> by_tolerance;
-    for (const auto& level : branch["levels"].items()) {
-        const double told = level["told_m"].number(), order = level["order"].number(),
-                     expansions = level["expansions"].number();
-        const bool converged = level["outcome"].text() == "converged";
-        if (converged) by_tolerance[told].push_back({order, expansions});
-        group.table.rows.push_back(
-            {number(told, 1), whole_number(level["order"].whole()), level["outcome"].text(),
-             whole_number(level["expansions"].whole()), whole_number(level["factorisations"].whole()),
-             whole_number(level["solves"].whole()), number(level["error_mm"].number(), 2),
-             number(level["error_deg"].number(), 2), number(level["residual_N"].number(), 2)});
-    }
+    for (std::size_t r = 0; r < levels.rows.size(); ++r)
+        if (const double told = number(levels, r, "told");
+            std::isfinite(told) && words(levels, r, "outcome") == name(Outcome::converged))
+            by_tolerance[told].push_back({number(levels, r, "order"), number(levels, r, "expansions")});
     std::vector<std::string> told;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
@@ -71,17 +57,16 @@ std::optional<Section> orders_section(const Field& scene) {
     if (!orders) return std::nullopt;
     Section section{.id = "orders", .title = "The branch as a power series"};
     auto& nearest = section.words["nearest"] = nlohmann::ordered_json::array();
-    for (const auto& branch : orders->items()) {
-        section.figures.push_back(group(branch));
-        const auto levels = branch["levels"].items();
-        if (levels.empty()) continue;
-        const Field singularity = levels.back()["singularity"];
-        const double radius = singularity["radius"].number();
-        if (std::isfinite(radius))
+    const auto table = read_table(*orders, compare::order_table({}));
+    for (const auto& branch : distinct(table, "branch")) {
+        const auto levels = where(table, "branch", branch);
+        section.figures.push_back(group(branch, levels));
+        const std::size_t last = levels.rows.size() - 1;
+        if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
             nearest.push_back(
-                {{"branch", branch["branch"].text()},
+                {{"branch", branch},
                  {"radius", number(radius, 3)},
-                 {"degrees", number(singularity["angle_rad"].number() * 180 / std::numbers::pi, 2)}});
+                 {"degrees", number(number(levels, last, "its angle") * 180 / std::numbers::pi, 2)}});
     }
     return section;
 }

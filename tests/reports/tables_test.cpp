@@ -1,0 +1,143 @@
+// A study's table says the same in every format.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "compare/order_study.hpp"
+#include "models/compile.hpp"
+#include "reports/tables/order_tables.hpp"
+#include "reports/tables/precision_tables.hpp"
+#include "reports/tables/render.hpp"
+#include "reports/tables/select.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+const std::string file = "result.json";
+
+const compare::Table small{"small",
+                           {{"who", "", "", true}, {"how", "", "", true}, {"error", "mm"}, {"count"}},
+                           {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+void expect_same(const compare::Table& a, const compare::Table& b) {
+    ASSERT_EQ(a.columns.size(), b.columns.size());
+    ASSERT_EQ(a.rows.size(), b.rows.size());
+    for (std::size_t r = 0; r < a.rows.size(); ++r)
+        for (std::size_t c = 0; c < a.columns.size(); ++c) {
+            if (a.columns[c].words) {
+                EXPECT_EQ(std::get<std::string>(a.rows[r][c]), std::get<std::string>(b.rows[r][c]));
+                continue;
+            }
+            const double x = std::get<double>(a.rows[r][c]), y = std::get<double>(b.rows[r][c]);
+            EXPECT_TRUE(x == y || (!std::isfinite(x) && std::isnan(y))) << a.columns[c].name << ": " << x;
+        }
+}
+
+compare::Table through_json(const compare::Table& table) {
+    compare::Table like = table;
+    like.rows.clear();
+    const json read = json::parse(table_json(table).dump());
+    return read_table(Field{&read, "", &file}, like);
+}
+
+TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
+    EXPECT_EQ(csv(small), "who,how,error [mm],count\n\"a, b\",x,0.1,3\nc,x,,4\n\"a, b\",y,1e-07,3\n");
+}
+
+TEST(Tables, JsonReadsBackAsTheSameTable) {
+    expect_same(small, through_json(small));
+    const Model model = compile(support::scene("pinned_bar"));
+    const auto orders = compare::order_table(
+        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6}, .points = 5}));
+    expect_same(orders, through_json(orders));
+}
+
+TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
+    compare::Table like = small;
+    like.rows.clear();
+    const auto refused = [&](const json& damaged) -> std::string {
+        try {
+            (void)read_table(Field{&damaged, "t", &file}, like);
+        } catch (const ResultError& error) {
+            return error.what();
+        }
+        return "read";
+    };
+    json table = json::parse(table_json(small).dump());
+    EXPECT_EQ(refused(table), "read");
+    json damaged = table;
+    damaged["rows"][1][2] = "text";
+    EXPECT_EQ(refused(damaged), "result.json: t.rows[1][2]: expected a number, found string");
+    damaged = table;
+    damaged["rows"][0].erase(1);
+    EXPECT_EQ(refused(damaged), "result.json: t.rows[0]: not as many cells as columns");
+    damaged = table;
+    damaged["columns"][2]["unit"] = "m";
+    EXPECT_EQ(refused(damaged), "result.json: t.columns: column 'error' is in 'm', not in 'mm'");
+    damaged = table;
+    damaged["columns"][3]["name"] = "number";
+    EXPECT_EQ(refused(damaged), "result.json: t.columns: no column 'count'");
+    damaged = table;  // a column more, in front
+    damaged["columns"].insert(damaged["columns"].begin(), json::object({{"name", "new"}, {"unit", ""}}));
+    for (auto& row : damaged["rows"]) row.insert(row.begin(), 7);
+    EXPECT_EQ(refused(damaged), "read");
+}
+
+TEST(Tables, TextIsAsWideAsItNeedsAndLeavesOutWhatIsEmpty) {
+    EXPECT_EQ(text(small, {{"who"}, {"error", Digits::size}, {"count"}}),
+              "  who   error [mm]  count\n"
+              "  a, b     1.0e-01      3\n"
+              "  c              -      4\n"
+              "  a, b     1.0e-07      3\n");
+    EXPECT_EQ(text(where(small, "who", "c"), {{"who"}, {"error"}, {"count", Digits::whole, "n"}}),
+              "  who  n\n  c    4\n");
+    EXPECT_THROW((void)text(small, {{"whom"}}), std::logic_error);
+}
+
+TEST(Tables, SpreadPutsRowsThatAgreeBesideEachOther) {
+    const auto wide = spread(small, "how", {"error"});
+    EXPECT_EQ(csv(wide), "who,count,x: error [mm],y: error [mm]\n\"a, b\",3,0.1,1e-07\nc,4,,\n");
+    EXPECT_EQ(distinct(small, "who"), (std::vector<std::string>{"a, b", "c"}));
+}
+
+TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
+    const Model model = compile(support::scene("pinned_bar"));
+    const auto orders =
+        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6, 1e-9}, .points = 5});
+    const auto table = compare::order_table(orders);
+    ASSERT_EQ(table.rows.size(), 2 * 4u);
+    EXPECT_EQ(std::ranges::count(csv(table), '\n'), 1 + 2 * 4);
+    const std::string said = order_text(table);
+    for (const auto& branch : orders) EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
+    EXPECT_TRUE(contains(said, "told [m]  order  outcome")) << said;
+    EXPECT_TRUE(contains(said, "   1e-09      8  converged")) << said;
+
+    auto failed = orders;
+    failed.front().failure = "the energy leg diverged";
+    EXPECT_TRUE(contains(order_text(compare::order_table(failed)), "which is none: the energy leg diverged"));
+    EXPECT_EQ(order_text(compare::order_table({})), "");
+}
+
+TEST(Tables, TheArithmeticStandsSideBySide) {
+    const Model model = compile(support::scene("pinned_bar"));
+    auto study = compare::precision_study(model, {.most_steps = 160});
+    EXPECT_EQ(std::ranges::count(csv(compare::precision_table(study)), '\n'), 1 + 3 * 3 * 3);
+    EXPECT_EQ(precision_json(study)["floors"]["rows"].size(), 9u);
+    const std::string said = precision_text(study);
+    for (const char* words : {"float: |Φ| [m]", "long double: |Φ| [m]", "least |Φ| [m]"})
+        EXPECT_TRUE(contains(said, words)) << said;
+    EXPECT_FALSE(contains(said, "converged")) << said;
+    study.series[0].levels[1].outcome = Outcome::diverged;
+    EXPECT_TRUE(contains(precision_text(study), "diverged"));
+}
+
+}  // namespace
+}  // namespace elastocheck::reports
