@@ -43,6 +43,25 @@ void check_all_held(const Cursor& scene, const Scene& result) {
                 .fail("nothing holds it; a joint, spring or bushing is needed");
 }
 
+// An entry on the other side, still under its own name.
+Joint reflected(Joint joint, const Definitions& defs) {
+    joint.kind = twin(joint.kind, defs);
+    return joint;
+}
+Elastic reflected(Elastic elastic, const Definitions& defs) {
+    elastic.kind = twin(elastic.kind, defs);
+    return elastic;
+}
+Load reflected(Load load, const Definitions& defs) {
+    load.kind = twin(load.kind, defs);
+    return load;
+}
+Probe reflected(Probe probe, const Definitions& defs) {
+    probe.at = twin(probe.at, defs);
+    return probe;
+}
+Wheel reflected(const Wheel& wheel, const Definitions& defs) { return twin(wheel, defs); }
+
 // The entries of a section, and behind them their twins. Sections of what may be on one side only have no check.
 enum class Sides { both, any };
 
@@ -57,14 +76,7 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
     const std::size_t end = list.size();
     for (std::size_t k = begin; defs.mirror && k < end; ++k)
         if (const auto name = twin_name(*defs.mirror, list[k].name, *section)) {
-            T twin_entry = list[k];
-            if constexpr (requires { twin_entry.kind; }) {
-                twin_entry.kind = twin(twin_entry.kind, defs);
-            } else if constexpr (requires { twin_entry.at; }) {
-                twin_entry.at = twin(twin_entry.at, defs);
-            } else {
-                twin_entry = twin(twin_entry, defs);
-            }
+            T twin_entry = reflected(list[k], defs);
             twin_entry.name = *name;
             list.push_back(twin_entry);
         }

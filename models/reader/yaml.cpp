@@ -120,7 +120,8 @@ class TreeBuilder final : public YAML::EventHandler {
     // What the escapes of a quoted text come out as: names go into tables, scripts and terminals. Some of
     // them
     // (\N, \_) yaml-cpp turns into bytes that are not UTF-8.
-    void refuse_unprintable(const YAML::Mark& mark, std::string_view text) const {
+    void refuse_unprintable(const YAML::Mark& mark, const std::string& whole) const {
+        std::string_view text = whole;
         for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
             length = utf8_length(text);
             if (length == 0) fail_at(mark, "an escape that is no UTF-8; write the character itself");
@@ -129,7 +130,7 @@ class TreeBuilder final : public YAML::EventHandler {
                                  (c >= "\xC2\x80" && c <= "\xC2\x9F") || c == "\u2028" || c == "\u2029";
             const bool turns = c == "\u061C" || c == "\u200E" || c == "\u200F" ||
                                (c >= "\u202A" && c <= "\u202E") || (c >= "\u2066" && c <= "\u2069");
-            if (control) fail_at(mark, "a control character; a text of a scene is one line");
+            if (control) fail_at(mark, quote(whole) + " is not one line of plain text");
             if (turns) fail_at(mark, "a character that turns the direction of writing");
         }
     }

@@ -280,7 +280,7 @@ TEST(Drivers, TravelAndLoadMeetAtTheSameStates) {
                 worst_force =
                     std::max(worst_force,
                              (up.points[k].reactions[j].force - pushed.points[k].reactions[j].force).norm());
-            EXPECT_EQ(pushed.points[k].reactions[jack].force.norm(), 0);
+            EXPECT_EQ(pushed.points[k].reactions.size(), jack);  // no jack where no branch drives it
         }
         EXPECT_GT(std::abs(forces.back()), 1000);
         EXPECT_LE(worst, 1e-9);

@@ -496,7 +496,9 @@ TEST(EquilibriumDrivers, MessagesSpeakOfTheParameterInItsUnit) {
 }
 
 TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
-    const Scene s = with_jack(scene("mcpherson"));
+    Scene s = with_jack(scene("mcpherson"));
+    s.branches.push_back(branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, 0.1, 1,
+                                   ParameterUnit::metre));  // else there would be no jack in the model
     const Model model = compile(s);
     const std::vector<double> points = {0, 1};
     EXPECT_THROW(solve(model, model.branches[0], points), std::invalid_argument);  // the jack is not driven
