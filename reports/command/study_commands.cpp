@@ -169,9 +169,9 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
         json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
-            part["convergence"] = study_json(study, attribution);
-            files.push_back({"convergence.csv", study_csv(study)});
-            files.push_back({"attribution.csv", attribution_csv(study, attribution)});
+            part["convergence"] = study_json(model, study, attribution);
+            files.push_back({"convergence.csv", study_csv(model, study)});
+            files.push_back({"attribution.csv", attribution_csv(model, study, attribution)});
         }
         if (!orders.empty()) {
             part["orders"] = table_json(order_table(orders));

@@ -35,6 +35,7 @@ struct Column {
 struct Points {
     std::vector<Column> columns;
     std::vector<std::string> branch;  // per point, empty without such a column
+    std::string parameter;            // the column that gives the branch's parameter, empty without one
 
     const std::vector<double>* find(std::string_view name) const {
         for (const auto& column : columns)
@@ -93,6 +94,20 @@ std::vector<std::string> parameter_columns(const compare::Comparison& all) {
         if (const auto name = parameter_column(branch.unit); std::ranges::find(names, name) == names.end())
             names.push_back(name);
     return names;
+}
+
+// A point in newtons says nothing of a branch that goes by millimetres.
+void check_parameter(const Points& points, const std::string& file, const compare::Comparison& all) {
+    if (points.parameter.empty()) return;
+    if (points.branch.empty() && parameter_columns(all).size() > 1)
+        fail(file, 1,
+             fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
+                         points.parameter));
+    for (const auto& name : points.branch) {
+        const auto branch = std::ranges::find(all.branches, name, &compare::BranchComparison::branch);
+        if (const std::string other = parameter_column(branch->unit); other != points.parameter)
+            fail(file, 1, fmt::format("{}: branch '{}' goes by {}", points.parameter, name, other));
+    }
 }
 
 // The channels that may say where a point is: the travel of each wheel.
@@ -182,6 +197,9 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
         std::ranges::count_if(points.columns,
                               [](const Column& c) { return c.channel < 0 && c.name != "branch"; }) > 1)
         fail(file, 1, "two columns of one kind say where a point is; one parameter and one travel at most");
+    for (const auto& column : points.columns)
+        if (column.channel < 0 && column.name != "branch") points.parameter = column.name;
+    check_parameter(points, file, all);
     if (std::ranges::none_of(points.columns, [](const Column& c) { return c.channel >= 0 && !c.travel; }))
         fail(file, 1, "no output among the columns; " + reader::did_you_mean("", known, "allowed").substr(2));
     return points;
@@ -215,6 +233,7 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     json columns = json::object();
     if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
     for (const auto& column : found.columns) columns[all.channels[column.channel].name] = column.values;
+    const std::string word = points.parameter.starts_with("load") ? "load" : "parameter";
     json readings = json::array();
     for (const auto& reading : found.readings) {
         json rows = json::array();
@@ -227,7 +246,7 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
             }
             rows.push_back(row);
         }
-        const std::string by = reading.by_parameter ? "parameter" : all.channels[*measured.abscissa].name;
+        const std::string by = reading.by_parameter ? word : all.channels[*measured.abscissa].name;
         readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
     }
     scene_document["measured"] = {

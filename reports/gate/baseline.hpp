@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 
 // Raised when a field changes its meaning or vanishes.
-inline constexpr const char* baseline_schema = "elastocheck/baseline/1";
+inline constexpr const char* baseline_schema = "elastocheck/baseline/2";
 
 struct BaselineFile {
     std::string scene_file;  // relative to the folder of the baseline

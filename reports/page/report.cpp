@@ -138,9 +138,9 @@ Table summary(const std::list<ScenePart>& parts) {
         .caption = "At a glance: the published recursion against the references, and what to use instead",
         .columns = {{"scene", true},
                     {"verdict", true},
-                    {"worst at equal travel"},
-                    {"worst at equal load"},
-                    {"full load over travel, error"},
+                    {"worst at equal abscissa"},
+                    {"worst at equal parameter"},
+                    {"wheel rate, error"},
                     {"cheapest within the tolerance", true}}};
     for (const auto& part : parts) {
         std::vector<std::string> row{part.scene["name"].text(), part.scene["verdict"]["conclusive"].truth()
@@ -151,7 +151,8 @@ Table summary(const std::list<ScenePart>& parts) {
             for (const auto& section : part.sections)
                 if (section.id == "verdict")
                     for (const auto& tile : section.words["tiles"])
-                        if (tile["key"] == key) cell = tile["value"];
+                        if (tile["key"] == key)
+                            cell = (cell == "–" ? "" : cell + ", ") + tile["value"].get<std::string>();
             row.push_back(cell);
         }
         table.rows.push_back(row);
@@ -205,7 +206,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
     std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
     const Field root{&result, "", &file};
     const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
-                         const char* quantity, double value, double tolerance) {
+                         const std::string& quantity, double value, double tolerance) {
         csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
                            for_csv(fs::path(scene["source"].text()).stem().string()),
                            for_csv(branch["name"].text()), for_csv(channel.name), for_csv(channel.unit),
@@ -214,19 +215,22 @@ std::string numbers_csv(const json& result, const std::string& file) {
     for (const auto& scene : root["scenes"].items())
         for (const auto& branch : scene["branches"].items()) {
             const LegCurve truth = curve_of(branch, "equilibrium");
+            const Sweep sweep = sweep_of(scene, branch);
+            const std::string by_parameter = "published " + sweep.at_equal_parameter(),
+                              by_abscissa = "published " + sweep.at_equal_abscissa();
             for (const auto& channel : main_channels_of(scene)) {
                 const auto values = truth.channel(channel.name);
                 const auto load = branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
                 if (values.empty() || !load) continue;
                 // The references agree to far better; a deviation carries the rounding of its many steps.
                 const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
-                row(scene, branch, channel, "equilibrium at full load", values.back(), fine);
-                row(scene, branch, channel, "published at equal load: deviation at full load",
+                row(scene, branch, channel, "equilibrium at the end", values.back(), fine);
+                row(scene, branch, channel, by_parameter + ": deviation at the end",
                     (*load)["end"].number(), coarse);
-                row(scene, branch, channel, "published at equal load: largest deviation",
+                row(scene, branch, channel, by_parameter + ": largest deviation",
                     (*load)["max"].number(), coarse);
                 if (const auto travel = branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
-                    row(scene, branch, channel, "published at equal travel: largest deviation",
+                    row(scene, branch, channel, by_abscissa + ": largest deviation",
                         (*travel)["max"].number(), coarse);
             }
         }

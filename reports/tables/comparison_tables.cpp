@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/document/document.hpp"
+#include "reports/text/readings.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -58,11 +58,9 @@ std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Br
 void deviation_table(const compare::Comparison& all, const compare::BranchComparison& branch,
                      std::string& text) {
     const auto out = std::back_inserter(text);
-    const bool loaded = branch.unit == compare::Unit::newton || branch.unit == compare::Unit::newton_metre;
-    const std::string parameter = loaded ? "load" : "parameter";
     const Channel* by =
         branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
-    const std::string abscissa = by == nullptr ? "abscissa" : by->name;
+    const std::string by_abscissa = at_equal_abscissa(by == nullptr ? "" : by->name);
     const auto& load = branch.deviation.equal_parameter;
     const auto& travel = branch.deviation.equal_abscissa;
     const auto& doubt = branch.uncertainty.equal_parameter;
@@ -72,7 +70,7 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
         return;
     }
     fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "",
-                   "at equal " + parameter, "at equal " + abscissa, "the references'");
+                   at_equal_parameter(symbol(branch.unit)), by_abscissa, "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
                    "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share",
                    "max", fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share",
@@ -92,12 +90,12 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
         fmt::format_to(out, "   {:>11.1e}\n", doubt.channels[c].max);
     }
     if (!travel.not_compared.empty())
-        fmt::format_to(out, "  at equal {}: not compared, {}\n", abscissa, travel.not_compared);
+        fmt::format_to(out, "  {}: not compared, {}\n", by_abscissa, travel.not_compared);
     if (travel.outside > 0)
         fmt::format_to(out,
-                       "  at equal {}: {} points of the reference lie beyond the recursion's and are not "
+                       "  {}: {} points of the reference lie beyond the recursion's and are not "
                        "compared\n",
-                       abscissa, travel.outside);
+                       by_abscissa, travel.outside);
 }
 
 void legs_table(const compare::BranchComparison& branch, std::string& text) {
@@ -149,10 +147,11 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
                        unit * definition.to, symbol(branch.unit));
         if (!steps.empty()) fmt::format_to(out, " in {} steps", steps.size() - 1);
         const auto& reference = branch.runs[1].curve;
-        if (branch.abscissa >= 0 && !reference.values.empty()) {
+        if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
             const auto c = static_cast<std::size_t>(branch.abscissa);
+            const auto rounded = [](double value) { return std::round(100 * value) / 100 + 0.0; };
             fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name,
-                           reference.values.front()[c], reference.values.back()[c],
+                           rounded(reference.values.front()[c]), rounded(reference.values.back()[c]),
                            symbol(comparison.channels[c].unit));
         }
         fmt::format_to(out, "\n\n");

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "reports/text/escape.hpp"
+#include "reports/text/readings.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -16,8 +18,18 @@ using compare::ChannelStudy;
 using compare::GapShare;
 using json = nlohmann::ordered_json;
 
-constexpr bool readings[] = {true, false};  // at equal load, at equal travel
-const char* reading_name(bool load) { return load ? "at equal load" : "at equal travel"; }
+constexpr bool readings[] = {true, false};  // at equal parameter, at equal abscissa
+
+std::string unit_of(const Model& model, const std::string& branch) {
+    const auto found = std::ranges::find(model.branches, branch, &Branch::name);
+    return found == model.branches.end() ? "" : symbol(compare::unit_of(found->unit));
+}
+
+// "at equal load", "at equal travel"
+std::string reading_name(const Model& model, const compare::BranchStudy& branch, bool by_parameter) {
+    return by_parameter ? at_equal_parameter(unit_of(model, branch.belongs_to))
+                        : at_equal_abscissa(branch.abscissa);
+}
 
 // Below 1e-9 of a mm or deg it is the arithmetic's.
 std::string small(double value) { return std::abs(value) < 1e-9 ? "0" : fmt::format("{:.2e}", value); }
@@ -34,7 +46,8 @@ std::string order(const compare::StepConvergence& c) {
                                      : fmt::format("{:.2f} ± {:.2f}", c.order, c.order_error);
 }
 
-void method_table(const compare::Study& study, const compare::MethodStudy& method, std::string& text) {
+void method_table(const Model& model, const compare::Study& study, const compare::BranchStudy& branch,
+                  const compare::MethodStudy& method, std::string& text) {
     const auto out = std::back_inserter(text);
     if (!method.not_studied.empty()) {
         fmt::format_to(out, "\n  method '{}': not studied, {}\n", method.method, method.not_studied);
@@ -42,13 +55,16 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
     }
     for (const bool load : readings) {
         const auto& reading = load ? method.equal_parameter : method.equal_abscissa;
+        if (!load && reading.empty())
+            fmt::format_to(out, "\n  method '{}' {}: nothing, {}\n", method.method,
+                           reading_name(model, branch, load), method.no_abscissa);
         if (reading.empty()) continue;
         fmt::format_to(out,
                        "\n  method '{}' {}: step error (largest over the branch), its order, and what no "
                        "step count removes\n",
-                       method.method, reading_name(load));
+                       method.method, reading_name(model, branch, load));
         fmt::format_to(out, "  {:<22}", "steps");
-        for (const int N : study.steps) fmt::format_to(out, "{:>10}", N);
+        for (const int N : branch.steps) fmt::format_to(out, "{:>10}", N);
         fmt::format_to(out, "  {:>14}  {:>11} {:>9}  {:>7}  {:>9}\n", "order", "gap at end", "± band",
                        "growth", "reference");
         for (std::size_t c = 0; c < reading.size(); ++c) {
@@ -58,7 +74,7 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
             for (const double error : s.step_error_max) fmt::format_to(out, "{:>10}", small(error));
             fmt::format_to(out, "  {:>14}  {:>11} {:>9}  {:>7}  {:>9}\n", order(s.end), signed_small(s.gap),
                            std::isnan(s.end.band) ? "-" : small(s.end.band),
-                           std::isnan(s.gap_exponent) ? "-" : fmt::format("F^{:.1f}", s.gap_exponent),
+                           std::isnan(s.gap_exponent) ? "-" : fmt::format("a^{:.1f}", s.gap_exponent),
                            fmt::format("{:.0e}", s.uncertainty));
         }
     }
@@ -72,7 +88,8 @@ void method_table(const compare::Study& study, const compare::MethodStudy& metho
                                      method.constraint_order.order_error));
 }
 
-void attribution_table(const compare::Study& study, const BranchAttribution& attribution, std::string& text) {
+void attribution_table(const Model& model, const compare::Study& study, const compare::BranchStudy& branch,
+                       const BranchAttribution& attribution, std::string& text) {
     const auto out = std::back_inserter(text);
     if (!attribution.not_attributed.empty()) {
         fmt::format_to(out, "\n  gap attribution: none, {}\n", attribution.not_attributed);
@@ -83,7 +100,7 @@ void attribution_table(const compare::Study& study, const BranchAttribution& att
         if (shares.empty()) continue;
         fmt::format_to(
             out, "\n  what the gap of the recursion is made of, {}: whole = lever + axis + load + rest\n",
-            reading_name(load));
+            reading_name(model, branch, load));
         fmt::format_to(out, "  {:<22}{:>11}{:>23}{:>23}{:>23}{:>12}{:>10}\n", "", "whole",
                        "stored force's lever", "its axis and law", "load's lever", "rest", "± band");
         for (std::size_t c = 0; c < shares.size(); ++c) {
@@ -141,16 +158,16 @@ std::string study_tables(const Model& model, const compare::Study& study,
         model.name);
     for (std::size_t b = 0; b < study.branches.size(); ++b) {
         text += fmt::format("\nbranch '{}'\n", study.branches[b].branch);
-        for (const auto& method : study.branches[b].methods) method_table(study, method, text);
+        for (const auto& method : study.branches[b].methods) method_table(model, study, study.branches[b], method, text);
         for (const auto& a : attribution)
-            if (a.branch == study.branches[b].branch) attribution_table(study, a, text);
+            if (a.branch == study.branches[b].branch) attribution_table(model, study, study.branches[b], a, text);
     }
     for (const auto& reason : study.inconclusive) text += fmt::format("\ninconclusive: {}", reason);
     text += study.conclusive() ? "\nconclusive\n" : "\nINCONCLUSIVE\n";
     return text;
 }
 
-std::string study_csv(const compare::Study& study) {
+std::string study_csv(const Model& model, const compare::Study& study) {
     std::string csv =
         "branch,method,reading,channel,unit,steps,step error end,step error max,step error rms,constraint "
         "error (31) [m; rad],"
@@ -160,17 +177,18 @@ std::string study_csv(const compare::Study& study) {
     for (const auto& branch : study.branches)
         for (const auto& method : branch.methods)
             for (const bool load : readings) {
-                const auto& reading = load ? method.equal_parameter : method.equal_abscissa;
-                for (std::size_t c = 0; c < reading.size(); ++c)
-                    for (std::size_t l = 0; l < study.steps.size(); ++l) {
-                        const ChannelStudy& s = reading[c];
+                const auto& channels = load ? method.equal_parameter : method.equal_abscissa;
+                const std::string reading = reading_name(model, branch, load);
+                for (std::size_t c = 0; c < channels.size(); ++c)
+                    for (std::size_t l = 0; l < branch.steps.size(); ++l) {
+                        const ChannelStudy& s = channels[c];
                         fmt::format_to(out,
                                        "{},{},{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{:.17g},{:.17g},"
                                        "{:.17g},{:.17g},"
                                        "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
-                                       for_csv(branch.branch), method.method, reading_name(load),
+                                       for_csv(branch.branch), method.method, for_csv(reading),
                                        for_csv(study.channels[c].name), symbol(study.channels[c].unit),
-                                       study.steps[l], s.step_error_end[l], s.step_error_max[l],
+                                       branch.steps[l], s.step_error_end[l], s.step_error_max[l],
                                        s.step_error_rms[l], method.constraint_error[l], name(s.end.behaviour),
                                        s.end.order, s.end.order_error, s.end.limit, s.end.band, s.gap,
                                        s.gap_max, s.gap_rms, s.gap_exponent, s.uncertainty, s.range);
@@ -179,15 +197,19 @@ std::string study_csv(const compare::Study& study) {
     return csv;
 }
 
-std::string attribution_csv(const compare::Study& study, const std::vector<BranchAttribution>& attribution) {
+std::string attribution_csv(const Model& model, const compare::Study& study,
+                            const std::vector<BranchAttribution>& attribution) {
     std::string csv = "branch,reading,channel,unit,whole,lever,axis,load,rest,band\n";
     for (const auto& branch : attribution)
         for (const bool load : readings) {
             const auto& shares = load ? branch.equal_parameter : branch.equal_abscissa;
+            const auto studied = std::ranges::find(study.branches, branch.branch, &compare::BranchStudy::branch);
+            if (studied == study.branches.end()) continue;
+            const std::string reading = reading_name(model, *studied, load);
             for (std::size_t c = 0; c < shares.size(); ++c) {
                 const GapShare& s = shares[c];
                 csv += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
-                                   for_csv(branch.branch), reading_name(load), study.channels[c].name,
+                                   for_csv(branch.branch), for_csv(reading), for_csv(study.channels[c].name),
                                    symbol(study.channels[c].unit), s.whole, s.lever, s.axis, s.load, s.rest,
                                    s.band);
             }
@@ -195,7 +217,7 @@ std::string attribution_csv(const compare::Study& study, const std::vector<Branc
     return csv;
 }
 
-json study_json(const compare::Study& study, const std::vector<BranchAttribution>& attribution) {
+json study_json(const Model& model, const compare::Study& study, const std::vector<BranchAttribution>& attribution) {
     json branches = json::array();
     for (const auto& branch : study.branches) {
         json methods = json::array();
@@ -211,6 +233,7 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
                                {"not_studied", m.not_studied},
                                {"constraint_error", m.constraint_error},
                                {"constraint_order", m.constraint_order.order},
+                               {"no_abscissa", m.no_abscissa},
                                {"at_equal_parameter", load},
                                {"at_equal_abscissa", travel}});
         }
@@ -225,7 +248,13 @@ json study_json(const compare::Study& study, const std::vector<BranchAttribution
             for (std::size_t c = 0; c < a.equal_abscissa.size(); ++c)
                 shares["at_equal_abscissa"].push_back(share_json(study.channels[c], a.equal_abscissa[c]));
         }
-        branches.push_back({{"name", branch.branch}, {"methods", methods}, {"gap_attribution", shares}});
+        branches.push_back({{"name", branch.branch},
+                            {"of", branch.belongs_to},
+                            {"unit", unit_of(model, branch.belongs_to)},
+                            {"abscissa", branch.abscissa.empty() ? json(nullptr) : json(branch.abscissa)},
+                            {"steps", branch.steps},
+                            {"methods", methods},
+                            {"gap_attribution", shares}});
     }
     return {{"conclusive", study.conclusive()},
             {"reasons", study.inconclusive},

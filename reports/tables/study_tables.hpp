@@ -13,11 +13,11 @@ std::string study_tables(const Model& model, const compare::Study& study,
                          const std::vector<compare::BranchAttribution>& attribution);
 
 // One row per branch, method, reading, channel and level; the numbers of the fit repeated in each.
-std::string study_csv(const compare::Study& study);
-std::string attribution_csv(const compare::Study& study,
+std::string study_csv(const Model& model, const compare::Study& study);
+std::string attribution_csv(const Model& model, const compare::Study& study,
                             const std::vector<compare::BranchAttribution>& attribution);
 
-nlohmann::ordered_json study_json(const compare::Study& study,
+nlohmann::ordered_json study_json(const Model& model, const compare::Study& study,
                                   const std::vector<compare::BranchAttribution>& attribution);
 
 }  // namespace elastocheck::reports

@@ -12,7 +12,6 @@ using json = nlohmann::ordered_json;
 using compare::Accuracy;
 using compare::TradePoint;
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "-"; }
 std::string size(const Accuracy& accuracy, bool angles) {
     return angles ? fmt::format("{:.2e} mm, {:.2e} deg", accuracy.mm, accuracy.deg)
                   : fmt::format("{:.2e} mm", accuracy.mm);
@@ -26,46 +25,10 @@ std::string asked(const compare::Tolerance& tolerance) {
     return text;
 }
 
-// "40", "1e-05 m", "-"
-std::string setting(const TradePoint& point) {
-    if (point.steps > 0) return fmt::format("{}", point.steps);
-    return point.own_tolerance > 0 ? fmt::format("{:.0e} m", point.own_tolerance) : "-";
-}
-
-std::string front(const TradePoint& point) {
-    constexpr const char* letters = "sft";
-    std::string text;
-    for (std::size_t kind = 0; kind < 3; ++kind) text += point.on_front[kind] ? letters[kind] : ' ';
-    return text;
-}
-
 json accuracy_json(const Accuracy& accuracy, bool angles) {
     json result = {{"mm", accuracy.mm}};
     result["deg"] = angles ? json(accuracy.deg) : json(nullptr);
     return result;
-}
-
-json point_json(const TradePoint& p, bool angles) {
-    return {{"leg", compare::name(p.leg)},
-            {"method", p.method},
-            {"steps", p.steps > 0 ? json(p.steps) : json(nullptr)},
-            {"own_tolerance_m", p.own_tolerance > 0 ? json(p.own_tolerance) : json(nullptr)},
-            {"again", p.again},
-            {"outcome", name(p.outcome)},
-            {"detail", p.detail},
-            {"solves", p.work.solves},
-            {"factorisations", p.work.factorisations},
-            {"evaluations", p.work.evaluations},
-            {"seconds", p.work.seconds},
-            {"time_ratio", p.ratio},
-            {"error", accuracy_json(p.error, angles)},
-            {"share_of_tolerance", p.share},
-            {"ranked", p.ranked},
-            {"not_ranked", p.not_ranked},
-            {"on_front",
-             {{"solves", p.on_front[0]},
-              {"factorisations_and_evaluations", p.on_front[1]},
-              {"time", p.on_front[2]}}}};
 }
 
 void recommendation(const compare::Trade& trade, std::string& text) {
@@ -90,7 +53,21 @@ void recommendation(const compare::Trade& trade, std::string& text) {
 
 }  // namespace
 
-std::string trade_table(const Model& model, const compare::Trade& trade) {
+const std::vector<Shown> trade_columns{{"method"},
+                                       {"steps"},
+                                       {"told", Digits::given},
+                                       {"error", Digits::size},
+                                       {"angle error", Digits::size, "error"},
+                                       {"solves"},
+                                       {"factorisations"},
+                                       {"evaluations"},
+                                       {"price"},
+                                       {"time", Digits::three},
+                                       {"time ratio", Digits::three, "ratio"},
+                                       {"front"},
+                                       {"not ranked"}};
+
+std::string trade_text(const Model& model, const compare::Trade& trade) {
     std::string text;
     const auto out = std::back_inserter(text);
     fmt::format_to(
@@ -104,53 +81,13 @@ std::string trade_table(const Model& model, const compare::Trade& trade) {
         "(t) less time.\n\n",
         model.name, trade.points_per_branch, model.branches.size(), size(trade.uncertainty, trade.angles),
         trade.rounds, 100 * trade.noise);
-    fmt::format_to(out, "  {:<12}{:>9}{:>11}", "method", "steps", "error mm");
-    if (trade.angles) fmt::format_to(out, "{:>11}", "error deg");
-    fmt::format_to(out, "{:>9}{:>9}{:>9}{:>10}{:>9}  {:<6}{}\n", "solves", "factor.", "eval.", "ms", "ratio",
-                   "front", "not ranked");
-    std::string before;
-    for (const auto& point : trade.points) {
-        const bool first = point.method != before;
-        before = point.method;
-        fmt::format_to(out, "  {:<12}{:>9}{:>11}", first ? point.method : "", setting(point),
-                       number(point.error.mm));
-        if (trade.angles) fmt::format_to(out, "{:>11}", number(point.error.deg));
-        fmt::format_to(out, "{:>9}{:>9}{:>9}", point.work.solves, point.work.factorisations,
-                       point.work.evaluations);
-        if (std::isfinite(point.ratio))
-            fmt::format_to(out, "{:>10.3f}{:>9.3g}", 1e3 * point.work.seconds, point.ratio);
-        else
-            fmt::format_to(out, "{:>10}{:>9}", "-", "-");
-        fmt::format_to(out, "  {:<6}{}", front(point), point.not_ranked);
-        text.erase(text.find_last_not_of(' ') + 1);
-        fmt::format_to(out, "\n");
-    }
-    fmt::format_to(out, "\n");
+    text += reports::text(trade_table(trade), trade_columns) + "\n";
     recommendation(trade, text);
     return text;
 }
 
-std::string trade_csv(const compare::Trade& trade) {
-    std::string csv =
-        "method,again,steps,own tolerance [m],outcome,error [mm],error "
-        "[deg],solves,factorisations,evaluations,"
-        "time [s],time ratio,share of tolerance,ranked,front solves,front factorisations and "
-        "evaluations,front time\n";
-    for (const auto& p : trade.points) {
-        csv +=
-            fmt::format("{},{:d},{},{},{},{:.17g},{},{},{},{},{:.17g},{:.17g},{:.17g},{:d},{:d},{:d},{:d}\n",
-                        p.method, p.again, p.steps > 0 ? fmt::format("{}", p.steps) : "",
-                        p.own_tolerance > 0 ? fmt::format("{:g}", p.own_tolerance) : "", name(p.outcome),
-                        p.error.mm, trade.angles ? fmt::format("{:.17g}", p.error.deg) : "", p.work.solves,
-                        p.work.factorisations, p.work.evaluations, p.work.seconds, p.ratio, p.share, p.ranked,
-                        p.on_front[0], p.on_front[1], p.on_front[2]);
-    }
-    return csv;
-}
-
 json trade_json(const compare::Trade& trade) {
-    json points = json::array(), chosen = nullptr;
-    for (const auto& point : trade.points) points.push_back(point_json(point, trade.angles));
+    json chosen = nullptr;
     if (trade.recommendation) {
         const auto& r = *trade.recommendation;
         const TradePoint& point = trade.points[r.point];
@@ -159,6 +96,7 @@ json trade_json(const compare::Trade& trade) {
                   {"method", point.method},
                   {"steps", point.steps > 0 ? json(point.steps) : json(nullptr)},
                   {"own_tolerance_m", point.own_tolerance > 0 ? json(point.own_tolerance) : json(nullptr)},
+                  {"factorisations", point.work.factorisations},
                   {"time_ratio", point.ratio},
                   {"expected_error", accuracy_json(r.expected, trade.angles)},
                   {"low", accuracy_json(r.low, trade.angles)},
@@ -172,7 +110,7 @@ json trade_json(const compare::Trade& trade) {
             {"rounds", trade.rounds},
             {"reference_uncertainty", accuracy_json(trade.uncertainty, trade.angles)},
             {"time_noise", trade.noise},
-            {"points", points},
+            {"points", table_json(trade_table(trade))},
             {"recommendation", chosen},
             {"not_confirmed", trade.rejected},
             {"inconclusive", trade.inconclusive}};

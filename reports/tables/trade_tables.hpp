@@ -1,15 +1,21 @@
-// The price of accuracy as people and machines read it: terminal, CSV, JSON.
+// The price of accuracy, as people read it on a terminal and as a part of result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "compare/trade.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-std::string trade_table(const Model& model, const compare::Trade& trade);
-std::string trade_csv(const compare::Trade& trade);  // one row per configuration, 17 significant digits
-nlohmann::ordered_json trade_json(const compare::Trade& trade);  // a number that is not finite is null
+extern const std::vector<Shown> trade_columns;  // of compare::trade_table, on the terminal and the page
+
+std::string trade_text(const Model& model, const compare::Trade& trade);
+
+// {tolerance, output_points, rounds, reference_uncertainty, time_noise, points, recommendation, not_confirmed,
+// inconclusive}: `points` is compare::trade_table, `position` in the recommendation a row of it.
+nlohmann::ordered_json trade_json(const compare::Trade& trade);
 
 }  // namespace elastocheck::reports

@@ -45,9 +45,10 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     const Model model = compile(support::scene("pendulum"));
     const auto measurement = compare::measure(model, compare::compare(model));
     for (const auto& branch : measurement.branches) {
-        ASSERT_EQ(branch.loads.size(), 11u);
-        EXPECT_EQ(branch.loads.front(), 0);
-        EXPECT_EQ(std::abs(branch.loads.back()), 1500);
+        EXPECT_EQ(branch.unit, "N");
+        ASSERT_EQ(branch.a.size(), 11u);
+        EXPECT_EQ(branch.a.front(), 0);
+        EXPECT_EQ(std::abs(branch.a.back()), 1500);
     }
     BaselineFile file;
     file.baseline.accepted = measurement;
@@ -61,6 +62,10 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     ASSERT_EQ(again.baseline.accepted.series.size(), measurement.series.size());
     for (std::size_t k = 0; k < measurement.series.size(); ++k)
         EXPECT_EQ(again.baseline.accepted.series[k].values, measurement.series[k].values);
+    for (std::size_t k = 0; k < measurement.branches.size(); ++k) {
+        EXPECT_EQ(again.baseline.accepted.branches[k].unit, measurement.branches[k].unit);
+        EXPECT_EQ(again.baseline.accepted.branches[k].a, measurement.branches[k].a);
+    }
     EXPECT_EQ(again.baseline.reason, file.baseline.reason);
     EXPECT_EQ(again.baseline.limits.size(), 1u);
 }
@@ -82,14 +87,14 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {good.substr(0, good.size() / 2), "is not the JSON of a baseline"},
              {good.substr(0, good.size() - 3), "is not the JSON of a baseline"},
              {good + "x", "is not the JSON of a baseline"},
-             {replaced(good, "baseline/1", "baseline/0"),
-              "'elastocheck/baseline/0' cannot be read by this version"},
+             {replaced(good, "baseline/2", "baseline/1"),
+              "'elastocheck/baseline/1' cannot be read by this version"},
              {replaced(good, "\"limits\"", "\"limit\""), "'limits' is missing"},
              {replaced(good, "\"limits\": []", "\"limits\": [], \"more\": 1"), "'more' is not known"},
              {replaced(good, "\"limits\": []", R"("limits": [{"of":"recursive","channel":"x","max":1}])"),
               "limits.of: 'recursive' is not known"},
              {replaced(good, "\"limits\": []",
-                       R"("limits": [{"of":"deviation at equal load","channel":"x"}])"),
+                       R"("limits": [{"of":"deviation at equal parameter","channel":"x"}])"),
               "limits: 'max' is missing"},
              {replaced(good, "\"atol\"", "\"atoll\""), "'atol' is missing"},
              {replaced(good, "\"physical\"", "\"physic\""), "'physical' is missing"},

@@ -75,10 +75,10 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
             if (s["unit"] == moving["unit"] && s["of"] == moving["of"] && s["values"] != moving["values"])
                 return std::swap(s["values"], moving["values"]);
     });
-    const std::string older = edited([](auto& f) { f["schema"] = "elastocheck/baseline/0"; });
+    const std::string older = edited([](auto& f) { f["schema"] = "elastocheck/baseline/1"; });
     const std::string nothing = edited([](auto& f) { f["series"].clear(), f["branches"].clear(); });
     const std::string other_scene = edited([](auto& f) { f["scene"]["name"] = "another"; });
-    const std::string other_loads = edited([](auto& f) { f["branches"][0]["loads"][5] = 1.0; });
+    const std::string elsewhere = edited([](auto& f) { f["branches"][0]["parameter"][5] = 1.0; });
     const std::vector<Case> cases{
         {"as accepted", 0, good, good},
         {"NaN measured", 3, good, nan},
@@ -102,18 +102,18 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         {"truncated measurement", 3, good, truncated(good)},
         {"truncated baseline", 3, truncated(good), good},
         {"another scene", 3, good, other_scene},
-        {"other loads", 3, good, other_loads},
+        {"other parameters", 3, good, elsewhere},
         {"no reason", 3, edited([](auto& f) { f["accepted"]["reason"] = ""; }), good},
         {"a bound that is no number", 3,
          edited([](auto& f) { f["tolerances"]["same-build"]["mm"]["atol"] = nullptr; }), good},
         {"an infinite bound", 3,  // 1e999 is no JSON number that a double holds
          std::string(good).replace(good.find("\"atol\":"), 7, "\"atol\":1e999,\"x\":"), good},
         {"a limit that holds", 0, edited([](auto& f) {
-             f["limits"] = {{{"of", "deviation at equal load"}, {"channel", "centre_z"}, {"max", 1e6}}};
+             f["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
          }),
          good},
         {"a limit on nothing", 3, edited([](auto& f) {
-             f["limits"] = {{{"of", "deviation at equal load"}, {"channel", "centre"}, {"max", 1e6}}};
+             f["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre"}, {"max", 1e6}}};
          }),
          good},
         {"a NaN and a broken bound", 1, edited(set_to_zero), edited([](auto& f) {
@@ -197,7 +197,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     // Accepting prints the difference first, and keeps what was set by hand.
     ordered_json file = ordered_json::parse(text_of(baseline));
     file["tolerances"]["physical"]["mm"]["atol"] = 0.5;
-    file["limits"] = {{{"of", "deviation at equal load"}, {"channel", "centre_z"}, {"max", 1e6}}};
+    file["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
     folder.write("baselines/own.json", file.dump());
     said = gate(own + " --accept --reason 'stiffer'");
     EXPECT_EQ(said.code, 0) << said.err;
@@ -215,10 +215,10 @@ TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
                       baseline = folder.path / "baselines/own.json";
     ASSERT_EQ(gate(own + " --accept --reason first").code, 0);
     ordered_json file = ordered_json::parse(text_of(baseline));
-    file["limits"] = {{{"of", "deviation at equal load"}, {"channel", "centre_z"}, {"max", -0.0}}};
+    file["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", -0.0}}};
     std::string channel;
     for (const auto& s : file["series"])
-        if (s["of"] == "deviation at equal load" && s["unit"] == "mm" && s["values"][0] > 0)
+        if (s["of"] == "deviation at equal parameter" && s["unit"] == "mm" && s["values"][0] > 0)
             channel = s["channel"];
     ASSERT_NE(channel, "");
     file["limits"][0]["channel"] = channel;

@@ -25,8 +25,8 @@ compare::Offence offence(double is) {
     o.branch = "jounce";
     o.channel = "toe";
     o.unit = "deg";
-    o.has_load = true;
-    o.load = 3000;
+    o.a = 3000;
+    o.a_unit = "N";
     o.was = 1;
     o.is = is;
     o.tolerance = 0.25;
@@ -74,13 +74,13 @@ TEST(GateReport, ExitCodesAreRanked) {
 TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
     EXPECT_EQ(
         story(offence(0.5)),
-        "branch 'jounce', recursive: toe at load 3000: accepted 1 deg, measured 0.5 deg, difference -0.5, "
+        "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, difference -0.5, "
         "2 times the tolerance of 0.25");
     compare::Offence limit = offence(0.007);
-    limit.of_limit = true, limit.has_load = false, limit.was = limit.tolerance = 0.005;
+    limit.of_limit = true, limit.a = {}, limit.was = limit.tolerance = 0.005;
     limit.quantity = Quantity::deviation_at_equal_abscissa;
     EXPECT_EQ(story(limit),
-              "branch 'jounce', deviation at equal travel: toe: 0.007 deg is over its limit of 0.005 deg");
+              "branch 'jounce', deviation at equal abscissa: toe: 0.007 deg is over its limit of 0.005 deg");
     const std::string table = gate_table(failed());
     EXPECT_TRUE(contains(table, "scenes/bad.yaml: FAILED: 2 of 7 numbers out of tolerance, same-build"))
         << table;
@@ -130,7 +130,7 @@ TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
         << page;
     EXPECT_LT(
         page.find(
-            "| scenes/bad.yaml | jounce | recursive | toe \\[deg\\] | 3000 | 1 | 3.5 | +2.5 | 10 | 2 |"),
+            "| scenes/bad.yaml | jounce | recursive | toe \\[deg\\] | 3000 N | 1 | 3.5 | +2.5 | 10 | 2 |"),
         page.find("<details>"))
         << page;
     EXPECT_GT(page.find("| scenes/good.yaml | passed | 7 |"), page.find("<details>")) << page;
@@ -173,7 +173,7 @@ TEST(GateReport, AnnotationsAreAtMostTenWorstFirstAndEscaped) {
     EXPECT_EQ(count(lines, "\n"), 10u);
     EXPECT_TRUE(lines.starts_with(
         "::error file=a%3Ab%2Cc.yaml,title=elastocheck gate%3A out of tolerance::branch "
-        "'jounce', recursive: toe at load 3000: accepted 1 deg, measured 21 deg, difference "
+        "'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 21 deg, difference "
         "+20, 80 times the tolerance of 0.25; 2 numbers of it in all\n"))
         << lines;
     EXPECT_TRUE(contains(annotations({other}), "::100 %25%0Aand a%0Dline\n"));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "models/compile.hpp"
 #include "reports/tables/csv.hpp"
 #include "tests/support/scenes.hpp"
@@ -53,11 +55,15 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
     const json& s = d["scenes"][0];
     ASSERT_EQ(s["branches"].size(), 2u);
     for (const auto& branch : s["branches"]) {
+        EXPECT_EQ(branch["unit"], "N");
+        EXPECT_EQ(branch["from"], 0);
+        EXPECT_EQ(std::abs(branch["to"].get<double>()), 3000);
+        EXPECT_EQ(branch["drivers"]["moved"], json::array({"vertical"}));
+        EXPECT_EQ(branch["abscissa"], "travel");
         ASSERT_EQ(branch["legs"].size(), 3u);
         for (const auto& leg : branch["legs"]) {
             EXPECT_EQ(leg["outcome"], "converged");
-            EXPECT_EQ(leg["curve"]["load"].size(), 13u);
-            EXPECT_EQ(leg["curve"]["travel_mm"].size(), 13u);
+            EXPECT_EQ(leg["curve"]["a"].size(), 13u);
             for (const auto& channel : s["channels"])
                 EXPECT_EQ(leg["curve"]["values"][channel["name"].get<std::string>()].size(), 13u);
             EXPECT_EQ(leg["residuals_by"].size(), 3u);
@@ -69,6 +75,15 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
     const auto& toe = s["branches"][0]["deviation"]["at_equal_parameter"]["channels"]["toe"];
     EXPECT_EQ(toe["max"], made.comparison.branches[0].deviation.equal_parameter.channels[3].max);
     EXPECT_EQ(toe["unit"], "deg");
+}
+
+TEST(Document, EveryChannelSaysWhatItIs) {
+    const json d = Made().document();
+    for (const auto& channel : d["scenes"][0]["channels"]) {
+        EXPECT_FALSE(channel["definition"].get<std::string>().empty()) << channel;
+        EXPECT_EQ(channel["kinematic"], channel["unit"] == "mm" || channel["unit"] == "deg") << channel;
+        EXPECT_FALSE(channel.contains("unique")) << channel;
+    }
 }
 
 TEST(Document, NumbersThatAreNotFiniteAreNull) {
@@ -91,12 +106,12 @@ TEST(Document, InputHashIsFnv1a) {
 
 TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const Made made;
-    std::string csv = curves_header(made.model);
+    std::string csv = curves_header(made.comparison.channels);
     for (const auto& branch : made.comparison.branches)
         for (const auto& run : branch.runs) csv += curves_rows(branch.branch, run);
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
     const std::string header = csv.substr(0, csv.find('\n'));
-    EXPECT_TRUE(header.starts_with("branch,leg,load factor [N],travel [mm],wheel_centre_x [mm],")) << header;
+    EXPECT_TRUE(header.starts_with("branch,leg,parameter,unit,wheel_centre_x [mm],")) << header;
     EXPECT_NE(header.find(",toe [deg],camber [deg],"), std::string::npos);
     const auto columns = std::ranges::count(header, ',');
     for (std::size_t at = 0; at < csv.size();) {

@@ -197,7 +197,7 @@ TEST(Harm, AFullDiskBehindStandardOutputIsNoSuccess) {
 
 TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
     const Folder folder;
-    folder.write("far.csv", "travel_mm,tip_x_mm\n1e4,0\n");
+    folder.write("far.csv", "load_N,tip_x_mm\n1e9,0\n");
     const Said said = in(folder, "report " + scene + " --measured far.csv -o out");
     EXPECT_EQ(said.code, 3) << said.err;
     EXPECT_TRUE(contains(said.err, "no point of far.csv lies where the legs could be compared with it"))
@@ -231,7 +231,7 @@ TEST(Harm, ComparesFilesAreOfOneRun) {
     const auto points = [&] {
         const auto result = nlohmann::json::parse(text_of(folder.path / "out/result.json"));
         const auto& branch = result["scenes"][0]["branches"][0];
-        return branch["legs"][0]["curve"]["load"].size();
+        return branch["legs"][0]["curve"]["a"].size();
     };
     const auto of_few = rows();
     ASSERT_EQ(in(folder, "compare " + scene + " --steps 4 -o out").code, 0);

@@ -49,13 +49,13 @@ std::string refusal(const std::string& csv) {
 }
 
 TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecursion) {
+    const auto travel = static_cast<std::size_t>(find_channel(solved().comparison.channels, "travel"));
     std::string csv = "load_N, travel_mm, toe_deg, wheel_centre_y_change_mm\n";
     for (const auto& branch : solved().comparison.branches) {
         const auto& curve = branch.runs[1].curve;
-        for (std::size_t k = 5; k < curve.load.size(); k += 5)
-            csv += std::to_string(curve.load[k]) + "," + std::to_string(curve.travel[k]) + "," +
-                   std::to_string(curve.values[k][3]) + "," +
-                   std::to_string(curve.values[k][1] - curve.values[0][1]) + "\n";
+        for (std::size_t k = 5; k < curve.a.size(); k += 5)
+            csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f}\n", curve.a[k], curve.values[k][travel],
+                               curve.values[k][3], curve.values[k][1] - curve.values[0][1]);
     }
     const json m = measured(csv);
     EXPECT_EQ(m["points"], 16);
@@ -106,9 +106,9 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
           Case{"travel_mm,toe_deg\n", "kc.csv: no point in it"},
           Case{"travel_mm,tow_deg\n1,2\n", "kc.csv:1: unknown column 'tow_deg', did you mean 'toe_deg'?"},
           Case{"travel_mm,toe_rad\n1,2\n",
-               "kc.csv:1: unknown column 'toe_rad'; allowed: travel_mm, load_N, branch,"},
+               "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
           Case{"toe_deg\n1\n",
-               "kc.csv:1: neither 'travel_mm' nor 'load_N'; one of them says where a point is"},
+               "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
           Case{"travel_mm,load_N\n1,2\n", "kc.csv:1: no output among the columns"},
           Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n", "kc.csv:1: column 'toe_deg' stands there twice"},
           Case{"travel_mm,toe_deg\n1,2\n3\n", "kc.csv:3: 1 cells, but 2 columns are named in the first line"},
@@ -179,8 +179,8 @@ TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
 
 // A scene out of balance settles before it travels; a measurement counts from where it is drawn.
 TEST(Measurement, TravelCountsFromTheDesignPosition) {
-    Scene heavy = support::scene("pinned_bar");
-    heavy.static_loads = heavy.branches[0].loads;
+    Scene heavy = support::scene("mcpherson");
+    heavy.static_loads = {std::get<Load>(heavy.branches[0].drivers.at(0).what)};
     std::get<DeadForce>(heavy.static_loads.at(0).kind).f *= 500;
     const Model model = compile(heavy);
     compare::Options options;
@@ -188,21 +188,41 @@ TEST(Measurement, TravelCountsFromTheDesignPosition) {
     options.recursion.steps = 20;
     const auto comparison = compare::compare(model, options);
     const auto& curve = comparison.branches[0].runs[1].curve;
-    Equilibrium design;
-    for (const auto& body : model.bodies) design.poses.push_back(body.design);
-    design.reactions.resize(model.joints.size());
-    const auto drawn = compare::evaluate(model, design);
-    const double rest = curve.values[0][2] - drawn[2];  // tip_z
+    const auto drawn = compare::evaluate(model, compare::design_state(model));
+    const double rest = curve.values[0][2] - drawn[2];  // wheel_centre_z
     ASSERT_GT(std::abs(rest), 1);                       // [mm]: it does settle
     json scene = json::object();
-    add_measurement(
-        scene,
-        fmt::format("travel_mm,tip_x_mm\n{:.17g},{:.17g}\n", curve.travel[10] + rest, curve.values[10][0]),
-        "kc.csv", model, comparison);
+    add_measurement(scene,
+                    fmt::format("branch,travel_mm,wheel_centre_y_mm\njounce,{:.17g},{:.17g}\n",
+                                curve.values[10][2] - drawn[2], curve.values[10][1]),
+                    "kc.csv", model, comparison);
     const json& row = scene["measured"]["readings"][0]["channels"][0];
     EXPECT_EQ(row["compared"], 1);
     EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 1e-9);
-    EXPECT_NEAR(scene["measured"]["settled_mm"]["up"].get<double>(), rest, 1e-12);
+}
+
+// Newtons say nothing of a branch that goes by millimetres.
+TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
+    const Model model = compile(support::scene("mcpherson_travel"));
+    compare::Options options;
+    options.recursion.steps = 8;
+    const auto comparison = compare::compare(model, options);
+    json scene = json::object();
+    std::string said = "read";
+    try {
+        add_measurement(scene, "load_N,toe_deg\n100,1\n", "kc.csv", model, comparison);
+    } catch (const MeasurementError& error) {
+        said = error.what();
+    }
+    EXPECT_EQ(said, "kc.csv:1: load_N: not every branch goes by it; a column 'branch' has to say where a "
+                    "point belongs");
+    try {
+        add_measurement(scene, "branch,load_N,toe_deg\ntravel,100,1\n", "kc.csv", model, comparison);
+    } catch (const MeasurementError& error) {
+        said = error.what();
+    }
+    EXPECT_EQ(said, "kc.csv:1: load_N: branch 'travel' goes by parameter_mm");
+    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv", model, comparison);
 }
 
 TEST(Measurement, PointsOutsideTheRangeAreNotCompared) {

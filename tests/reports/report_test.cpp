@@ -107,7 +107,11 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
     const Folder folder;
     json result = small_result("<b>&\"'| `x` $(reboot) \\ *bold*");
     auto& scene = result["scenes"][0];
-    for (auto& branch : scene["branches"]) branch["name"] = "'; system 'touch hacked'; '<script>";
+    const std::string evil = "'; system 'touch hacked'; '<script>";
+    for (auto& branch : scene["branches"]) branch["name"] = evil;
+    for (auto& finding : scene["findings"])
+        for (auto& of_unit : finding)
+            if (of_unit.is_object()) of_unit["branch"] = evil;
     write_report(result, "result.json", folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html");
     EXPECT_TRUE(contains(html, "<h1>&lt;b&gt;&amp;&quot;&apos;| `x` $(reboot) \\ *bold*</h1>"));
@@ -244,7 +248,7 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     // A result.json beside it proves nothing either.
     const fs::path result = folder.path / "result";
     fs::create_directory(result);
-    std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/2\"}";
+    std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/3\"}";
     std::ofstream(result / "curves.csv") << "measured by hand";
     before = contents_of(result);
     EXPECT_TRUE(contains(refusal(result), "curves.csv: is no part of a report"));
@@ -326,7 +330,7 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
 TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
     const Folder folder;
     for (const std::string open : {"[", "{\"a\":"}) {
-        std::string deep = "{\"schema\":\"elastocheck/result/2\",\"scenes\":";
+        std::string deep = "{\"schema\":\"elastocheck/result/3\",\"scenes\":";
         for (int k = 0; k < 100'000; ++k) deep += open;
         const auto said = support::says(command + " report --from " + folder.write("deep.json", deep) +
                                         " -o " + (folder.path / "out").string());

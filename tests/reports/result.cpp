@@ -32,11 +32,12 @@ const json& sample_result(const std::string& name) {
     compare::StudyOptions study_options;
     study_options.steps = {10, 20, 40, 80, 160};
     const auto study = compare::study(model, study_options);
-    part["convergence"] = study_json(study, compare::attribute_gap(model));
+    part["convergence"] = study_json(model, study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
     part["orders"] = table_json(order_table(
         compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
+    add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);

@@ -57,11 +57,12 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
     json result = sample_result();
     for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
+    result["scenes"][0]["findings"].erase("gap");
     for (const auto& section : sections(result))
         EXPECT_TRUE(section.id != "price" && section.id != "convergence" && section.id != "arithmetic" &&
                     section.id != "drawing");
     const std::string text = said(result);
-    EXPECT_TRUE(contains(text, "too soft in wheel rate at full load.")) << text;  // no word on the gap
+    EXPECT_TRUE(contains(text, " at the end of rebound.")) << text;  // no word on the gap
     EXPECT_FALSE(contains(text, "rung")) << text;
 }
 
@@ -96,55 +97,77 @@ TEST(Sections, ADamagedDocumentIsReadOrRefusedWithItsPlace) {
 
 TEST(Sections, AMissingFieldIsNamed) {
     json result = sample_result();
-    result["scenes"][0]["branches"][1]["legs"][0]["curve"].erase("load");
+    result["scenes"][0]["branches"][1]["legs"][0]["curve"].erase("a");
     try {
         (void)sections(result);
         FAIL();
     } catch (const ResultError& error) {
-        EXPECT_STREQ(error.what(), "result.json: scenes[0].branches[1].legs[0].curve.load: missing");
+        EXPECT_STREQ(error.what(), "result.json: scenes[0].branches[1].legs[0].curve.a: missing");
     }
 }
 
 TEST(Verdict, IsMadeOfTheNumbers) {
     json result = sample_result();
-    auto& branches = result["scenes"][0]["branches"];
+    auto& scene = result["scenes"][0];
     const std::string before = said(result);
     EXPECT_TRUE(contains(before, "The published recursion with 20 steps is within")) << before;
-    EXPECT_TRUE(contains(before, "in wheel rate at full load")) << before;
-    for (auto& branch : branches)
-        for (const char* name : {"toe", "camber"})
-            branch["deviation"]["at_equal_abscissa"]["channels"][name]["max"] = 0.25;
+    EXPECT_TRUE(contains(before, "too soft at the end of jounce")) << before;
+    scene["findings"]["worst_at_equal_abscissa"]["deg"]["max"] = 0.25;
+    scene["findings"]["worst_at_equal_abscissa"]["deg"]["channel"] = "toe";
     EXPECT_TRUE(contains(said(result), "within 0.25\u00a0deg (toe) at equal travel")) << said(result);
-    // The reference's last travel moved away from the recursion's: another rate.
-    for (auto& branch : branches) {
-        const double travel = branch["legs"][0]["curve"]["travel_mm"].back();
-        branch["legs"][1]["curve"]["travel_mm"].back() = travel * 1.25;
-    }
-    EXPECT_TRUE(contains(said(result), "25\u00a0% too stiff in wheel rate")) << said(result);
+    scene["rate_errors"][0]["off"] = 0.25;
+    EXPECT_TRUE(contains(said(result), "its wheel rate is 25\u00a0% too stiff at the end of jounce"))
+        << said(result);
 }
 
+// compare decides which of them it is; here each finds its words.
 TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
     struct Case {
-        double gap;
-        const char* words;
+        const char *role, *words;
     };
-    for (const auto& [share, words] :
-         {Case{0.97, "nearly all of it formulation gap that more steps cannot remove"},
-          Case{0.5, "50\u00a0% of it formulation gap that more steps cannot remove"},
-          Case{0.05, "nearly all of it step error that more steps remove"},
-          Case{1.6, "the formulation gap alone, which more steps cannot remove, is larger"},
-          Case{-0.5, "have opposite signs"}, Case{0, "none of it formulation gap: more steps remove it"}}) {
+    for (const auto& [role, words] :
+         {Case{"nearly_all", "nearly all of it formulation gap that more steps cannot remove"},
+          Case{"part", "50\u00a0% of it formulation gap that more steps cannot remove"},
+          Case{"hardly_any", "nearly all of it step error that more steps remove"},
+          Case{"hidden", "the formulation gap alone, which more steps cannot remove, is larger (0.50\u00a0mm)"},
+          Case{"opposite", "step error and formulation gap (0.50\u00a0mm) have opposite signs"},
+          Case{"none", "none of it formulation gap: more steps remove it"}}) {
         json result = sample_result();
-        auto& scene = result["scenes"][0];
-        for (std::size_t b = 0; b < 2; ++b)
-            for (auto& entry : scene["convergence"]["branches"][b]["methods"][0]["at_equal_parameter"]) {
-                const double end = scene["branches"][b]["deviation"]["at_equal_parameter"]["channels"]
-                                        [entry["channel"].get<std::string>()]["end"];
-                entry["gap"] = share * end;
-                entry["band"] = 1e-6;
-            }
-        EXPECT_TRUE(contains(said(result), words)) << share << ": " << said(result);
+        auto& gap = result["scenes"][0]["findings"]["gap"];
+        gap["deviation"] = 1.0, gap["gap"] = 0.5, gap["role"] = role;
+        EXPECT_TRUE(contains(said(result), words)) << role << ": " << said(result);
     }
+}
+
+// "at equal load" is no word for a branch that a motion drives.
+TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
+    const std::string text = said(sample_result("slider_crank"));
+    EXPECT_TRUE(contains(text, "at equal parameter")) << text;
+    EXPECT_FALSE(contains(text, "load")) << text;
+    for (const auto& section : sections(sample_result("slider_crank")))
+        for (const auto& group : section.figures) {
+            EXPECT_FALSE(contains(group.caption, "equal load")) << group.caption;
+            for (const auto& figure : group.figures) {
+                EXPECT_FALSE(contains(figure.title + figure.x + figure.description, "load")) << figure.id;
+                // Nothing is drawn over what turns back.
+                EXPECT_TRUE(section.id != "curves" || figure.x == "parameter [deg]") << figure.id;
+            }
+        }
+}
+
+// Both ends of a branch that is walked both ways, and the force where the travel is given.
+TEST(Verdict, TellsTheWheelRateOfEveryEnd) {
+    const json result = sample_result("mcpherson_travel");
+    const std::string text = said(result);
+    for (const char* end : {"at the end of travel at −80\u00a0mm", "at the end of travel at 80\u00a0mm",
+                            "at the end of braking", "at the end of load"})
+        EXPECT_TRUE(contains(text, end)) << end << ": " << text;
+    bool force = false;
+    for (const auto& section : sections(result))
+        for (const auto& group : section.figures)
+            for (const auto& figure : group.figures)
+                force = force || (figure.y == "jack.drive force [N]" && figure.x == "travel [mm]");
+    EXPECT_TRUE(force);
 }
 
 TEST(Verdict, InconclusiveIsSaidFirst) {
@@ -174,11 +197,12 @@ TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
     json result = sample_result();
     for (auto& branch : result["scenes"][0]["branches"]) {
         auto& curve = branch["legs"][2]["curve"];
-        curve["load"] = json::array();
-        curve["travel_mm"] = json::array();
+        curve["a"] = json::array();
         for (auto& [name, values] : curve["values"].items()) values = json::array();
         branch["reference_uncertainty"]["at_equal_parameter"]["channels"] = json::object();
+        branch["profiles"]["references"] = {{"mm", json::array()}, {"deg", json::array()}};
     }
+    result["scenes"][0]["findings"]["references_apart"] = {{"mm", nullptr}, {"deg", nullptr}};
     EXPECT_FALSE(contains(said(result), "agree to")) << said(result);
     for (const auto& section : sections(result))
         if (section.id == "deviation")
@@ -208,8 +232,7 @@ TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
 
 TEST(Verdict, NaNIsNeverASmallDeviation) {
     json result = sample_result();
-    for (auto& branch : result["scenes"][0]["branches"])
-        branch["deviation"]["at_equal_abscissa"]["channels"]["camber"]["max"] = nullptr;
+    result["scenes"][0]["findings"]["worst_at_equal_abscissa"]["deg"]["max"] = nullptr;
     EXPECT_TRUE(contains(said(result), "within – deg") || contains(said(result), "within –\u00a0deg"))
         << said(result);
 }
@@ -223,16 +246,16 @@ TEST(ParseResult, RefusesWhatItCannotRead) {
         }
         return std::string("read");
     };
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/1\", \"scene\": {}}").substr(0, 63),
-              "result.json: schema: 'elastocheck/result/1' is not a document t");
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\", \"scene\": {}}").substr(0, 63),
+              "result.json: schema: 'elastocheck/result/2' is not a document t");
     const std::string whole = sample_result().dump();
     EXPECT_EQ(refusal(whole), "read");
     EXPECT_EQ(refusal(whole.substr(0, whole.size() / 2)), "result.json: is no JSON, or was cut off");
     EXPECT_EQ(refusal(""), "result.json: is no JSON, or was cut off");
     EXPECT_EQ(refusal("[]"), "result.json: expected an object, found array");
     EXPECT_EQ(refusal("{}"), "result.json: schema: missing");
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\"}"), "result.json: scenes: missing");
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\", \"scenes\": []}"),
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\"}"), "result.json: scenes: missing");
+    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\", \"scenes\": []}"),
               "result.json: scenes: there is no scene in it");
 }
 

@@ -30,16 +30,16 @@ std::optional<FigureGroup> group(const Field& branch) {
     const Field attribution = branch["gap_attribution"];
     const auto shares = attribution["at_equal_parameter"].items();
     if (shares.empty()) return std::nullopt;
-    const std::string name = branch["name"].text();
+    const std::string name = branch["name"].text(), reading = at_equal_parameter(branch["unit"].text());
     Figure figure{.id = fmt::format("gap-{}", slug(name)),
                   .title = fmt::format("{}: contributions to the gap", name),
                   .description = {},
-                  .x = "contribution at full load [% of the output’s range]",
+                  .x = "contribution at the end [% of the output’s range]",
                   .y = ""};
     FigureGroup group;
     group.table = {
-        .caption = fmt::format(
-            "Gap at full load and equal load, branch {}: whole = lever + axis + load + rest", name),
+        .caption = fmt::format("Gap at the end of branch {}, {}: whole = lever + axis + load + rest", name,
+                               reading),
         .columns = {{"output", true},
                     {"whole"},
                     {"stored force’s lever"},
@@ -75,7 +75,7 @@ std::optional<FigureGroup> group(const Field& branch) {
     figure.y_high = -0.4;
     figure.height = std::max(0.8, 0.35 + 0.13 * -row);
     figure.description = "Bars of the three contributions per output. Whole gap:" + words;
-    group.caption = fmt::format("Branch {}, at equal load.", name);
+    group.caption = fmt::format("Branch {}, {}.", name, reading);
     group.figures.push_back(std::move(figure));
     return group;
 }

@@ -57,15 +57,15 @@ LegCurve curve_of(const Field& branch, std::string_view leg) {
     legs.fail(fmt::format("no leg '{}'", leg));
 }
 
-std::string parameter_word(const std::string& unit) {
-    return unit == "N" || unit == "N·m" ? "load" : "parameter";
-}
-
 std::string Sweep::parameter() const { return fmt::format("{} [{}]", parameter_word(unit), unit); }
 
-std::string Sweep::at_equal_parameter() const { return "at equal " + parameter_word(unit); }
+std::string Sweep::at_equal_parameter() const { return reports::at_equal_parameter(unit); }
 std::string Sweep::at_equal_abscissa() const {
-    return "at equal " + (abscissa.empty() ? "abscissa" : abscissa.substr(0, abscissa.find(" [")));
+    return reports::at_equal_abscissa(abscissa.substr(0, abscissa.find(" [")));
+}
+
+Sweep sweep_of(const Field& scene, const Field& branch) {
+    return {branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
 }
 
 std::string abscissa_of(const Field& scene, const Field& branch) {
@@ -75,6 +75,18 @@ std::string abscissa_of(const Field& scene, const Field& branch) {
         if (channel.name == abscissa->text()) return channel.heading();
     abscissa->fail("no such channel");
 }
+
+namespace {
+
+// Whether every leg's curve can be drawn over it.
+bool over_abscissa(const Field& branch) {
+    return std::ranges::all_of(branch["legs"].items(), [&](const Field& leg) {
+        const LegCurve curve = curve_of(branch, leg["leg"].text());
+        return curve.a.empty() || !curve.x.empty();
+    });
+}
+
+}  // namespace
 
 std::vector<Sweep> sweeps_of(const Field& scene) {
     std::vector<Sweep> sweeps;
@@ -88,12 +100,13 @@ std::vector<Sweep> sweeps_of(const Field& scene) {
         Sweep* twin = nullptr;
         for (auto& sweep : sweeps)
             if (sweep.branches.size() == 1 && same_drive(sweep.branches.front(), branch)) twin = &sweep;
-        const std::string name = branch["name"].text();
+        const std::string name = branch["name"].text(),
+                          abscissa = over_abscissa(branch) ? abscissa_of(scene, branch) : "";
         if (twin == nullptr) {
-            sweeps.push_back({name, branch["unit"].text(), abscissa_of(scene, branch), {branch}});
+            sweeps.push_back({name, branch["unit"].text(), abscissa, {branch}});
         } else {
             twin->name += " and " + name;
-            if (twin->abscissa != abscissa_of(scene, branch)) twin->abscissa.clear();
+            if (twin->abscissa != abscissa) twin->abscissa.clear();
             twin->branches.push_back(branch);
         }
     }

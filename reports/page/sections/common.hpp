@@ -6,6 +6,7 @@
 
 #include "reports/document/field.hpp"
 #include "reports/page/page.hpp"
+#include "reports/text/readings.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
@@ -34,9 +35,6 @@ struct LegCurve {
 };
 LegCurve curve_of(const Field& branch, std::string_view leg);
 
-// "load" of a parameter in N or N·m, "parameter" of another.
-std::string parameter_word(const std::string& unit);
-
 // Name and unit of what a branch is read over besides its parameter: "travel [mm]"; empty where there is nothing.
 std::string abscissa_of(const Field& scene, const Field& branch);
 
@@ -44,7 +42,7 @@ std::string abscissa_of(const Field& scene, const Field& branch);
 struct Sweep {
     std::string name;      // "jounce and rebound"
     std::string unit;      // of the parameter, "N"
-    std::string abscissa;  // what else they are read over, "travel [mm]"; empty where there is nothing
+    std::string abscissa;  // what else they are drawn over, "travel [mm]"; empty where it cannot be
     std::vector<Field> branches;
 
     std::string parameter() const;           // "load [N]", "parameter [mm]"
@@ -52,6 +50,7 @@ struct Sweep {
     std::string at_equal_abscissa() const;   // "at equal travel"
 };
 std::vector<Sweep> sweeps_of(const Field& scene);
+Sweep sweep_of(const Field& scene, const Field& branch);  // alone; its abscissa even where it turns back
 
 // Up to `count` positions evenly over 0 ... size - 1, both ends among them.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);

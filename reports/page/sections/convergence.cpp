@@ -39,8 +39,18 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps, const st
     return result;
 }
 
-std::optional<FigureGroup> group(const std::string& branch, const Field& method,
-                                 const std::vector<double>& steps) {
+// The readings of a branch as a study has it: the key in the document, and what it is called.
+std::vector<std::pair<const char*, std::string>> readings_of(const Field& branch) {
+    const auto abscissa = branch.find("abscissa");
+    const std::string by = abscissa ? ChannelInfo{abscissa->text(), ""}.label() : "";
+    return {{"at_equal_parameter", at_equal_parameter(branch["unit"].text())},
+            {"at_equal_abscissa", at_equal_abscissa(by)}};
+}
+
+std::optional<FigureGroup> group(const Field& study, const Field& method) {
+    const std::string branch = study["name"].text();
+    const auto steps = study["steps"].numbers();
+    if (steps.empty()) study["steps"].fail("no step counts");
     FigureGroup group;
     group.table.caption = fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
     group.table.columns = {{"steps"}, {"|Φ|, eq. (31)"}};
@@ -49,8 +59,7 @@ std::optional<FigureGroup> group(const std::string& branch, const Field& method,
     if (phi.size() != steps.size()) method["constraint_error"].fail("not as many numbers as step counts");
     for (double& value : phi) value *= 1e3;
     std::vector<Levels> both;
-    for (const auto& [key, name] : {std::pair{"at_equal_parameter", "at equal load"},
-                                    std::pair{"at_equal_abscissa", "at equal travel"}}) {
+    for (const auto& [key, name] : readings_of(study)) {
         if (method[key].items().empty()) continue;
         const Levels levels = levels_of(method[key], steps.size());
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
@@ -98,12 +107,13 @@ std::string order(const Field& entry) {
 }
 
 Table orders(const Field& branch) {
-    Table table{.caption = fmt::format("Orders and gaps, branch {}, at equal load", branch["name"].text()),
+    Table table{.caption = fmt::format("Orders and gaps, branch {}, {}", branch["name"].text(),
+                                       at_equal_parameter(branch["unit"].text())),
                 .columns = {{"method", true},
                             {"output", true},
                             {"order"},
                             {"step error, finest"},
-                            {"gap at full load"},
+                            {"gap at the end"},
                             {"± band"},
                             {"gap, share of range"}},
                 .rows = {},
@@ -135,12 +145,15 @@ std::optional<Section> convergence_section(const Field& scene) {
     if (!study) return std::nullopt;
     Section section{.id = "convergence", .title = "Error over steps"};
     section.words["reasons"] = (*study)["reasons"].texts();
-    const auto steps = (*study)["steps"].numbers();
     for (const auto& branch : (*study)["branches"].items()) {
-        for (const auto& method : branch["methods"].items())
-            if (method["method"].text() == "published" && method["not_studied"].text().empty())
-                if (auto made = group(branch["name"].text(), method, steps))
-                    section.figures.push_back(std::move(*made));
+        for (const auto& method : branch["methods"].items()) {
+            if (method["method"].text() != "published" || !method["not_studied"].text().empty()) continue;
+            if (auto made = group(branch, method)) section.figures.push_back(std::move(*made));
+            if (const std::string why = method["no_abscissa"].text(); !why.empty())
+                section.words["notes"].push_back({{"branch", branch["name"].text()},
+                                                  {"reading", readings_of(branch).back().second},
+                                                  {"why", why}});
+        }
         section.tables.push_back(orders(branch));
     }
     return section;

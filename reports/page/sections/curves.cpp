@@ -1,4 +1,4 @@
-// The outputs over the travel, all legs: the paper's Figs. 8-10, and the load with them.
+// The outputs over the travel, all legs: the paper's Figs. 8-10, and with them the load or what drives.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 struct Output {
     std::string id, title, axis, channel;
     bool change = false;
-    bool load = false;  // the parameter itself, over the abscissa
+    bool load = false;  // the load itself, over the abscissa
 };
 
 std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
@@ -44,8 +44,14 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
             {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
     if (!sweep.abscissa.empty() && !measured_over_parameter(scene)) {
-        const bool load = parameter_word(sweep.unit) == "load";
-        outputs.push_back({"load", load ? "Load" : "Parameter", sweep.parameter(), "", false, true});
+        if (parameter_word(sweep.unit) == "load") {
+            outputs.push_back({"load", "Load", sweep.parameter(), "", false, true});
+        } else {  // the force that moves it, in the place of the load
+            for (const auto& c : channels_of(scene))
+                for (const auto& moved : sweep.branches.front()["drivers"]["moved"].texts())
+                    if (c.name.starts_with(moved + ".drive_"))
+                        outputs.push_back({slug(c.name), c.label(), c.heading(), c.name});
+        }
     }
     return outputs;
 }

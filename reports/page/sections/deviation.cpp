@@ -161,7 +161,7 @@ Table deviations(const Field& scene, const Field& branch) {
     Table table{.caption =
                     fmt::format("Deviation of the published recursion from the equilibrium leg, branch {}",
                                 branch["name"].text())};
-    const Sweep alone{branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
+    const Sweep alone = sweep_of(scene, branch);
     table.columns = {
         {"output", true},
         {"range"},
@@ -228,10 +228,10 @@ std::optional<Section> deviation_section(const Field& scene) {
     for (const auto& branch : scene["branches"].items()) {
         section.tables.push_back(deviations(scene, branch));
         const std::string why = branch["deviation"]["at_equal_abscissa"]["not_compared"].text();
-        const Sweep alone{"", branch["unit"].text(), abscissa_of(scene, branch), {}};
         if (!why.empty())
-            section.words["notes"].push_back(
-                {{"branch", branch["name"].text()}, {"reading", alone.at_equal_abscissa()}, {"why", why}});
+            section.words["notes"].push_back({{"branch", branch["name"].text()},
+                                              {"reading", sweep_of(scene, branch).at_equal_abscissa()},
+                                              {"why", why}});
     }
     return section;
 }

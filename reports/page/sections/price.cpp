@@ -130,7 +130,7 @@ std::optional<Section> price_section(const Field& scene) {
                                        "time, as a ratio to the equilibrium leg", "Error against time"));
     }
     std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
-    group.caption = "Worst position error over all branches, output points and outputs, at equal load.";
+    group.caption = "Worst position error over all branches, output points and outputs, at equal parameter.";
     group.table = ladder(*trade);
     if (group.figures.empty())
         section.tables.push_back(group.table);

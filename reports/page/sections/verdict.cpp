@@ -16,21 +16,47 @@ constexpr double nothing = 1e-9;  // mm, deg: smaller deviations are the arithme
 
 struct Worst {
     std::string branch, channel, unit;
+    std::string reading;  // "at equal load"
     double max = -1, range = 0;
 
     double share() const { return max / range; }
     std::string text() const { return quantity(max, unit); }
     json words() const {
-        return {{"value", text()}, {"channel", channel}, {"branch", branch}, {"share", percent(share())}};
+        return {{"value", text()},
+                {"channel", channel},
+                {"branch", branch},
+                {"reading", reading},
+                {"share", percent(share())}};
     }
+    std::string label() const { return fmt::format("{}, worst {}", channel, reading); }
 };
 
 std::optional<Worst> worst_of(const Field& scene, const char* reading, const char* unit) {
     const auto found = scene["findings"][reading].find(unit);
     if (!found) return std::nullopt;
     const ChannelInfo channel{(*found)["channel"].text(), unit};
-    return Worst{(*found)["branch"].text(), channel.label(), unit, (*found)["max"].number(),
-                 (*found)["range"].number()};
+    Worst worst{(*found)["branch"].text(),  channel.label(), unit, "", (*found)["max"].number(),
+                (*found)["range"].number()};
+    for (const auto& branch : scene["branches"].items()) {
+        if (branch["name"].text() != worst.branch) continue;
+        const Sweep sweep = sweep_of(scene, branch);
+        worst.reading = std::string_view(reading) == "worst_at_equal_parameter" ? sweep.at_equal_parameter()
+                                                                                : sweep.at_equal_abscissa();
+    }
+    if (worst.reading.empty()) (*found)["branch"].fail("no such branch");
+    return worst;
+}
+
+// Where a wheel rate was read: "jounce"; "travel at −80 mm", "jounce (left wheel)" where that is not enough.
+std::string end_of(const Field& scene, const Field& rate) {
+    std::string text = rate["branch"].text();
+    const std::string wheel = rate["wheel"].text();
+    int ends = 0;
+    for (const auto& other : scene["rate_errors"].items())
+        ends += other["branch"].text() == text && other["wheel"].text() == wheel;
+    if (ends > 1) text += " at " + quantity(rate["to"].number(), rate["unit"].text());
+    if (!wheel.empty()) text += fmt::format(" ({} wheel)", wheel);
+    return text;
 }
 
 // The recursion's wheel rate, branch by branch where something vertical moves a wheel: "2.9 % too soft".
@@ -41,7 +67,7 @@ json rate_words(const Field& scene) {
         if (!std::isfinite(off)) continue;
         list.push_back({{"value", percent(std::abs(off))},
                         {"soft", off < 0},
-                        {"branch", rate["branch"].text()},
+                        {"branch", end_of(scene, rate)},
                         {"comma", !list.empty()}});
     }
     return list;
@@ -170,21 +196,21 @@ std::optional<Section> verdict_section(const Field& scene) {
             if (travel_deg && travel_deg->max >= nothing)
                 tiles.push_back({{"key", "travel"},
                                  {"value", travel_deg->text()},
-                                 {"label", fmt::format("{}, worst at equal abscissa", travel_deg->channel)}});
+                                 {"label", travel_deg->label()}});
             else if (travel_mm && travel_mm->max >= nothing)
                 tiles.push_back({{"key", "travel"},
                                  {"value", travel_mm->text()},
-                                 {"label", fmt::format("{}, worst at equal abscissa", travel_mm->channel)}});
+                                 {"label", travel_mm->label()}});
             if (load_mm)
                 tiles.push_back({{"key", "load"},
                                  {"value", load_mm->text()},
-                                 {"label", fmt::format("{}, worst at equal parameter", load_mm->channel)}});
+                                 {"label", load_mm->label()}});
             for (const auto& rate : scene["rate_errors"].items())
                 if (const double off = rate["off"].number(); std::isfinite(off))
                     tiles.push_back({{"key", "rate"},
                                      {"value", percent(off)},
                                      {"label", fmt::format("wheel rate at the end of {}, error",
-                                                           rate["branch"].text())}});
+                                                           end_of(scene, rate))}});
         }
         words["published"] = published;
         std::vector<std::string> agreement;

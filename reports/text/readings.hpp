@@ -1,0 +1,20 @@
+// What the two readings of a curve are called.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace elastocheck::reports {
+
+// "load" of a parameter in N or N·m, "parameter" of another.
+inline std::string parameter_word(std::string_view unit) {
+    return unit == "N" || unit == "N·m" ? "load" : "parameter";
+}
+inline std::string at_equal_parameter(std::string_view unit) { return "at equal " + parameter_word(unit); }
+
+// "at equal travel"; without such a channel "at equal abscissa".
+inline std::string at_equal_abscissa(std::string_view channel) {
+    return "at equal " + std::string(channel.empty() ? "abscissa" : channel);
+}
+
+}  // namespace elastocheck::reports
