@@ -39,16 +39,18 @@ void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& 
 }
 
 // What the correction in s.x changes of the reactions, as a share of what it may: of the larger of those at
-// the two nodes as much as the tolerance is of L. The motion does not tell: a driven mechanism has none that
-// is not given, and all its forces in λ.
+// the two nodes as much as the tolerance is of L, and the rounding of all that acts at q, since there may be
+// none. The motion does not tell: a driven mechanism has none that is not given, and all its forces in λ.
 template <class Real>
-Real share_of_reactions(const March<Real>& s, const Going<Real>& going, const Vector<Real>& one,
-                        const Vector<Real>& other) {
+Real share_of_reactions(March<Real>& s, const Going<Real>& going, const State<Real>& q,
+                        const Vector<Real>& one, const Vector<Real>& other) {
     const auto Phi_q_transposed = s.system.M.topRightCorner(s.n(), s.m());
     const auto force = [&](const auto& lambda) { return size_of_force<Real>(s, Phi_q_transposed * lambda); };
     const Real largest = std::max(force(one), force(other)), change = force(s.x.tail(s.m()));
+    elastic_force<Real>(s.model, s.inputs, q, s.force);
+    const Real acts = std::max({largest, size_of_force(s, s.applied), size_of_force(s, s.force)});
     const Real allowed = largest * going.length_tolerance / static_cast<Real>(s.length) +
-                         Real(guard::rounding) * std::numeric_limits<Real>::epsilon() * largest;
+                         Real(guard::rounding) * std::numeric_limits<Real>::epsilon() * acts;
     return allowed > 0 ? change / allowed : Real(0);
 }
 
@@ -89,7 +91,8 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
             between(node, next, Real(0.5), q, lambda);
             trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
             if (trial.outcome == Outcome::converged) {
-                error = std::max({trial.left, size, share_of_reactions(s, going, node.lambda, next.lambda)});
+                error =
+                    std::max({trial.left, size, share_of_reactions(s, going, q, node.lambda, next.lambda)});
                 const bool dips = s.system.lu.orientation != node.orientation ||
                                   log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
                 if (dips) trial.verdict = Verdict::turned_over;

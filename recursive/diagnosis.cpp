@@ -297,6 +297,12 @@ Diagnosis diagnose(const Model& model) {
     return result;
 }
 
+std::string idle_modes(const Diagnosis& diagnosis) {
+    std::string all;
+    for (const auto& mode : diagnosis.idle) all += (all.empty() ? "" : "; ") + mode.description;
+    return all;
+}
+
 Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
     const State<double> q = design_state<double>(model);
     MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);

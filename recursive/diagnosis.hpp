@@ -52,6 +52,9 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model& model);
 
+// "strut: rotation about ...; link: ...", as many as there are.
+std::string idle_modes(const Diagnosis& diagnosis);
+
 // κ₂ of eq. (24) at the design position, idle and redundant directions left out.
 struct Conditioning {
     double raw = 0;  // as it stands: depends on the unit of length; shown because it is what others see

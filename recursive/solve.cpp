@@ -29,9 +29,7 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
                                              : at_parameter(branch.unit, stopped);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail += ": the load pushes what nothing resists:";
-            for (const auto& mode : diagnosis.idle) detail += " " + mode.description + ";";
-            detail.pop_back();
+            detail += ": the load pushes what nothing resists: " + idle_modes(diagnosis);
             break;
         case Outcome::singular:
             detail += ": the branch divides, turns back or loses its stability before";

@@ -35,6 +35,7 @@ struct Elimination {
     Pattern pattern;
     std::vector<int> row, col;  // the k-th pivot is A(row[k], col[k])
     std::vector<int> to;        // where in W an entry goes
+    std::vector<int> fill;      // the places of W that elimination alone fills
     // Entries of the k-th column of L and row of U beside the pivot, as numbers of rows and columns of W:
     // below[first_below[k] ... first_below[k+1]), right[...] likewise.
     std::vector<int> below, first_below, right, first_right;
@@ -67,7 +68,7 @@ void reserve(SparseLU<Real>& lu) {
     for (auto* list : {&lu.in_row, &lu.in_column}) list->assign(n, 0);
     for (auto* list : {&lu.order.row, &lu.order.col, &lu.order.first_below, &lu.order.first_right})
         list->reserve(n + 1);
-    for (auto* list : {&lu.order.below, &lu.order.right}) list->reserve(n * n);
+    for (auto* list : {&lu.order.below, &lu.order.right, &lu.order.fill}) list->reserve(n * n);
     lu.order.to.reserve(lu.order.pattern.entries());
 }
 
@@ -149,11 +150,13 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
         std::swap(order.col[k], order.col[best_c]);
         std::swap(lu.in_column[k], lu.in_column[best_c]);
         std::swap(lu.largest[k], lu.largest[best_c]);
+        // A singular matrix is told by its pivots; the next one of its pattern need not be, and fills in all
+        // the same.
+        lu.filled[k * n + k] = 1;
         for (std::size_t r = k + 1; r < n; ++r) {
             if (!lu.filled[r * n + k]) continue;
             --lu.in_row[r];
-            if (!(best_value > 0)) continue;  // singular, which the pivots will tell
-            const Real l = lu.W[r * n + k] / lu.W[k * n + k];
+            const Real l = best_value > 0 ? lu.W[r * n + k] / lu.W[k * n + k] : Real(0);
             for (std::size_t c = k + 1; c < n; ++c) {
                 if (!lu.filled[k * n + c]) continue;
                 if (!lu.filled[r * n + c]) {
@@ -183,9 +186,15 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     order.to.resize(pattern.entries());
     for (std::size_t j = 0; j < n; ++j)
         for (auto e = static_cast<std::size_t>(pattern.first[j]);
-             e < static_cast<std::size_t>(pattern.first[j + 1]); ++e)
-            order.to[e] = static_cast<int>(
-                row_of[static_cast<std::size_t>(pattern.row[e])] * static_cast<long>(n) + column_of[j]);
+             e < static_cast<std::size_t>(pattern.first[j + 1]); ++e) {
+            const auto at = static_cast<std::size_t>(row_of[static_cast<std::size_t>(pattern.row[e])]) * n +
+                            static_cast<std::size_t>(column_of[j]);
+            order.to[e] = static_cast<int>(at);
+            lu.filled[at] = 0;
+        }
+    order.fill.clear();
+    for (std::size_t at = 0; at < n * n; ++at)
+        if (lu.filled[at]) order.fill.push_back(static_cast<int>(at));
     order.parity = parity(order.row) * parity(order.col);
 }
 
@@ -212,7 +221,7 @@ template <class Real>
 Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
     const std::size_t n = lu.size();
     Real* const W = lu.W.data();
-    std::fill(lu.W.begin(), lu.W.end(), Real(0));
+    for (const int at : lu.order.fill) W[at] = 0;
     Real sum = 0;
     const int* const to = lu.order.to.data();
     for (std::size_t e = 0; e < lu.order.to.size(); ++e) {

@@ -245,10 +245,16 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
     return judge(w.s, w.s.q, analysis.pivot_ratio);
 }
 
-// The sign of the determinant here. By arc length it is multiplied by that of a', so that it stays what it is
-// at limit points, where both turn over.
-int side(const Walk& w, double slope) {
-    return w.by_arc() && slope < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
+// The sign of the determinant here; `rises` tells which way the parameter goes. By arc length the two are
+// multiplied: at limit points both turn over.
+int side(const Walk& w, double rises) {
+    return w.by_arc() && rises < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
+}
+// Which way the parameter goes at the end that the last piece came to, by the factors made there: at a limit
+// point the polynomial's own a' changes its sign a rounding, or a tolerance, earlier or later than they do.
+double rises_ahead(const Walk& w) {
+    const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
+    return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
 }
 
 // From an equilibrium, with its factors in s.system, to the end.
@@ -265,7 +271,7 @@ Outcome walk(Walk& w) {
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
         // A polynomial goes straight on where the path divides, and a branch goes on unstable: the
         // determinant has gone through zero between here and there.
-        if (side(w, slope(w.c.load, end.tau)) != w.side) return Outcome::singular;
+        if (side(w, rises_ahead(w)) != w.side) return Outcome::singular;
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
         if (end.last) return Outcome::converged;
@@ -274,7 +280,7 @@ Outcome walk(Walk& w) {
     return Outcome::iteration_limit;
 }
 
-std::string words(const Walk& w, Outcome outcome) {
+std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string at = settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
@@ -295,6 +301,8 @@ std::string words(const Walk& w, Outcome outcome) {
                    ": the matrix is singular here or was on the way: the branch divides, or loses its "
                    "stability";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
+        case Outcome::loaded_idle_mode:
+            return at + ": the load pushes what nothing resists: " + idle_modes(diagnosis);
         default: return at;
     }
 }
@@ -312,7 +320,7 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     s.consistent = true;
     const auto finish = [&](Walk& w, Outcome outcome) {
         w.path.outcome = outcome;
-        if (outcome != Outcome::converged) w.path.detail = words(w, outcome);
+        if (outcome != Outcome::converged) w.path.detail = words(w, outcome, analysis.diagnosis);
         w.path.counts = s.counts;
         w.path.arc_length = options.arc_length;
         if (w.e.drive == Drive::start) w.path.expansions.clear();

@@ -7,8 +7,9 @@
 
 #include "models/compile.hpp"
 #include "recursive/series/expand.hpp"
-#include "recursive/solve.hpp"
 #include "recursive/settle.hpp"
+#include "recursive/solve.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -49,8 +50,7 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
 
 TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
     for (const auto& name : support::scene_names()) {
-        const Model model = compile(support::scene(name));
-        const Branch& branch = model.branches[0];
+        const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         March<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied.setZero();

@@ -6,6 +6,7 @@
 #include "models/compile.hpp"
 #include "recursive/diagnosis.hpp"
 #include "recursive/solve.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -45,8 +46,7 @@ EquilibriumPath truth(const Model& model, const Branch& branch) {
 TEST(Methods, EachRungHasItsOrderToTheTruth) {
     for (const char* name :
          {"mcpherson", "mcpherson_preload", "pinned_bar", "bushing_pair", "two_spring_arch"}) {
-        const Model model = compile(support::scene(name));
-        for (const auto& branch : model.branches) {
+        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const auto exact = truth(model, branch);
             for (const auto& method : methods) {
                 if (!has_steps(method)) continue;
@@ -96,8 +96,7 @@ TEST(Methods, RecordedPointsAreThoseOfTheFullRun) {
 
 TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
     for (const auto& name : support::scene_names()) {
-        const Model model = compile(support::scene(name));
-        for (const auto& branch : model.branches) {
+        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
             for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
                 const auto path = solve(
@@ -136,8 +135,8 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
     // off by more than half the motion; the others cannot know, but stay within twice.
     double worst_share = 0;
     for (const auto& name : support::scene_names()) {
-        const Model model = compile(support::scene(name));
-        for (const auto& branch : model.branches) {
+        for (auto [model, branch] : one_ways(compile(support::scene(name)))) {
+            if (branch.unit == ParameterUnit::radian) branch.to /= 2;  // a full turn ends where it began
             const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 3000, .record = 1});
             double moved = 0;
             for (std::size_t body = 0; body < model.bodies.size(); ++body)
@@ -168,10 +167,12 @@ TEST(Methods, TooFewStepsAreNamedAsSuch) {
 }
 
 TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
-    // So many steps of a rung of order 3 that only rounding is left of |Φ|.
+    // So many steps of a rung of order 3, over so short a way, that only rounding is left of |Φ|.
     const Model model = compile(support::scene("mcpherson"));
+    Branch branch = model.branches[0];
+    branch.to = 1000;
     const auto Phi = [&](Precision precision) {
-        return solve(model, model.branches[0],
+        return solve(model, branch,
                      {.method = rung("chord"), .steps = 40960, .record = 1, .precision = precision})
             .points.back()
             .constraint_error;

@@ -9,6 +9,7 @@
 #include "recursive/assembly.hpp"
 #include "recursive/diagnosis.hpp"
 #include "recursive/solve.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -234,21 +235,21 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
     const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
     for (const auto& name : support::scene_names()) {
         const Scene scene = support::scene(name);
-        const Model model = compile(scene);
-        const Model moved = compile(support::moved(scene, R, t)),
-                    axes = compile(support::with_body_axes(scene, {R, Q})),
-                    mirrored = compile(support::mirrored(scene)),
-                    reversed = compile(support::reversed(scene));
-        for (std::size_t b = 0; b < model.branches.size(); ++b) {
-            const auto point = [&](const Model& m) {
-                const auto path = solve(m, m.branches[b], {.steps = 50});
+        const auto drawn = one_ways(compile(scene)), moved = one_ways(compile(support::moved(scene, R, t))),
+                   axes = one_ways(compile(support::with_body_axes(scene, {R, Q}))),
+                   mirrored = one_ways(compile(support::mirrored(scene))),
+                   reversed = one_ways(compile(support::reversed(scene)));
+        for (std::size_t b = 0; b < drawn.size(); ++b) {
+            const auto point = [&](const std::vector<OneWay>& told) {
+                const auto& [model, branch] = told[b];
+                const auto path = solve(model, branch, {.steps = 50});
                 EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
-                return leading_point(m, path.points.back());
+                return leading_point(model, path.points.at(25));  // a full turn ends where it began
             };
-            const Vector3d p = point(model);
+            const auto& [model, branch] = drawn[b];
+            const Vector3d p = point(drawn);
             const double bound =
-                1e-9 *
-                (p - leading_point(model, solve(model, model.branches[b], {.steps = 1}).points[0])).norm();
+                1e-9 * (p - leading_point(model, solve(model, branch, {.steps = 1}).points[0])).norm();
             EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
             EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
             EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";

@@ -403,27 +403,39 @@ Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     return M;
 }
 
-TEST(Pattern, HoldsAllThatIsNotZeroAndHardlyMore) {
+struct Coverage {
+    double held = 0, met = 0,
+           missed = 0;  // entries: of the pattern; ever other than zero; of these not in it
+};
+Coverage coverage(const Model& model, Random& random) {
+    Pattern pattern;
+    Eigen::ArrayXXd met;
+    for (int trial = 0; trial < 5; ++trial) {
+        const Matrix<double> M = anywhere(model, random, pattern);
+        if (trial == 0) met.setZero(M.rows(), M.cols());
+        met = met.max((M.array() != 0).cast<double>());
+    }
+    Coverage result{static_cast<double>(pattern.entries()), met.sum(), 0};
+    for (int j = 0; j < pattern.size; ++j)
+        for (int e = pattern.first[static_cast<std::size_t>(j)];
+             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e)
+            met(pattern.row[static_cast<std::size_t>(e)], j) = 0;
+    result.missed = met.sum();
+    return result;
+}
+
+TEST(Pattern, HoldsAllThatIsNotZero) {
     Random random;
-    for (const auto& name : support::scene_names()) {
-        const Model model = compile(support::scene(name));
-        Pattern pattern;
-        Eigen::ArrayXXd met;
-        for (int trial = 0; trial < 5; ++trial) {
-            const Matrix<double> M = anywhere(model, random, pattern);
-            if (trial == 0) met.setZero(M.rows(), M.cols());
-            met = met.max((M.array() != 0).cast<double>());
-        }
-        double held = 0;
-        for (int j = 0; j < pattern.size; ++j)
-            for (int e = pattern.first[static_cast<std::size_t>(j)];
-                 e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
-                const int i = pattern.row[static_cast<std::size_t>(e)];
-                held += 1;
-                met(i, j) = 0;
-            }
-        EXPECT_EQ(met.sum(), 0) << name << ": entries that the pattern does not know of";
-        EXPECT_LE(held, 0.75 * static_cast<double>(met.size()) + 20) << name;
+    for (const auto& name : support::scene_names())
+        EXPECT_EQ(coverage(compile(support::scene(name)), random).missed, 0) << name;
+}
+
+TEST(Pattern, OfASuspensionIsAtMostATwentiethMoreThanThat) {
+    // Not so of planar mechanisms, whose third dimension it does not know to be empty.
+    Random random;
+    for (const char* name : {"mcpherson", "mcpherson_preload", "mcpherson_travel"}) {
+        const Coverage c = coverage(compile(support::scene(name)), random);
+        EXPECT_LE(c.held, 1.05 * c.met) << name;
     }
 }
 

@@ -127,7 +127,8 @@ TEST(SeriesEquations, HoldForAnyBushingBetweenAnyBodiesAtAnyAngle) {
     for (const auto& [i, j] : sides)
         for (const double angle : {0.0, 1e-9, 1e-4, 0.04, 0.3, 1.0, 2.0}) {
             Case c = anywhere(random);
-            Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};
+            Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()},
+                      Vector6<double>::Zero()};
             e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
             const Eigen::Quaterniond turn = exponential<double>(angle * random.unit());
             e.j.A_local = c.q[j].p.conjugate() * c.q[i].p * e.i.A_local * turn;
@@ -142,8 +143,8 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
         Case c = anywhere(random);
         Matrix6<double> K = Matrix6<double>::Zero();
         K.topLeftCorner<3, 3>() = random.stiffness().topLeftCorner<3, 3>();
-        c.model.elastics.push_back(
-            {"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K}, {}}});
+        c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K},
+                                                     Vector6<double>::Zero()}});
         expect_same(c, random, fmt::format("mount between {} and {}", i, j));
         // Until something brings a moment about.
         Preload preload{0, Vector6<double>::Zero()};
@@ -177,7 +178,7 @@ TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
                                                     angle_between(along_i, along_j, random)};
             for (const auto& kind : kinds) {
                 Case c = anywhere(random);
-                c.model.joints.push_back({.name = "joint", .driven = 0});
+                c.model.joints.push_back({.name = "joint", .at = {}, .driven = 0});
                 c.model.constraints.push_back({0, kind});
                 // Two drivers of one joint: what they move adds up.
                 for (int k = 0; k < 2; ++k)
@@ -198,7 +199,8 @@ TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
                     .norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", spring});
-            Bushing bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}, {}};
+            Bushing bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()},
+                            Vector6<double>::Zero()};
             bushing.j.A_local = c.q[j].p.conjugate() * c.q[i].p * bushing.i.A_local *
                                 exponential<double>(random(0, 1.5) * random.unit());
             c.model.elastics.push_back({"bushing", bushing});

@@ -68,6 +68,22 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
     EXPECT_LE(worst, 1e-14);
 }
 
+TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
+    Matrix<double> A(3, 3);
+    A << 4, 1, 1, 1, 4, 0, 1, 0, 4;  // an arrow, whose point fills in what is left when it goes first
+    const Pattern pattern = pattern_of(A);
+    SparseLU<double> lu;
+    recursive::analyse(lu, pattern, std::vector<double>(pattern.entries(), 0.0).data());
+    EXPECT_EQ(recursive::factorise(lu, std::vector<double>(pattern.entries(), 0.0).data()), 0);
+    for (int again = 0; again < 2; ++again) {
+        ASSERT_GT(factorise(lu, A), 0);
+        const Vector<double> b = Vector<double>::Ones(3);
+        Vector<double> x(3);
+        solve(lu, b.data(), x.data());
+        EXPECT_LE((A * x - b).norm(), 1e-15);
+    }
+}
+
 TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
     Matrix<double> A(3, 3);
     A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any diagonal that is not negative, and one zero
