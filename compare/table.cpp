@@ -316,27 +316,36 @@ Table trade_table(const Trade& trade) {
     Table table{"trade",
                 {words("leg"),
                  words("method"),
-                 {"steps", "", "per branch; 0: its own"},
-                 {"told", "m"},
+                 {"steps", "", "per branch; none where the method chooses"},
+                 {"told", "m", "where it chooses"},
                  words("outcome"),
+                 {"error", "mm"},
+                 {"angle error", "deg"},
+                 {"share", "", "of the tolerance"},
                  {"solves"},
                  {"factorisations"},
                  {"evaluations"},
                  {"price", "", "in back-substitutions: N/3 · factorisations + solves + evaluations"},
+                 {"time", "s", "median over the rounds"},
                  {"time ratio", "", "to the equilibrium leg"},
-                 {"error", "mm"},
-                 {"angle error", "deg"},
-                 {"share", "", "of the tolerance"},
+                 words("front",
+                       "no other is as good for s: fewer solves, f: fewer factorisations + "
+                       "evaluations, t: less time"),
                  words("not ranked", "why"),
-                 words("recommended")},
+                 words("recommended"),
+                 words("detail", "of the outcome")},
                 {}};
     for (std::size_t k = 0; k < trade.points.size(); ++k) {
         const TradePoint& p = trade.points[k];
         const bool chosen = trade.recommendation && trade.recommendation->point == k;
-        table.rows.push_back({name(p.leg), p.method, count(p.steps), p.own_tolerance,
-                              elastocheck::name(p.outcome), count(p.work.solves),
-                              count(p.work.factorisations), count(p.work.evaluations), p.work.price, p.ratio,
-                              p.error.mm, p.error.deg, p.share, p.not_ranked, chosen ? "yes" : ""});
+        std::string front;
+        for (std::size_t kind = 0; kind < p.on_front.size(); ++kind)
+            if (p.on_front[kind]) front += "sft"[kind];
+        table.rows.push_back({name(p.leg), p.method, p.steps > 0 ? count(p.steps) : nan,
+                              p.own_tolerance > 0 ? p.own_tolerance : nan, elastocheck::name(p.outcome),
+                              p.error.mm, trade.angles ? p.error.deg : nan, p.share, count(p.work.solves),
+                              count(p.work.factorisations), count(p.work.evaluations), p.work.price,
+                              p.work.seconds, p.ratio, front, p.not_ranked, chosen ? "yes" : "", p.detail});
     }
     return table;
 }

@@ -196,7 +196,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::Trade trade = compare::trade(model, options);
     const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
     progress("");
-    print("{}\n{}", trade_table(model, trade), precision_text(precision));
+    print("{}\n{}", trade_text(model, trade), precision_text(precision));
     if (!folder.empty()) {
         json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         part["trade"] = trade_json(trade);
@@ -204,7 +204,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
         write_results(folder, command, std::move(part),
-                      {{"trade.csv", trade_csv(trade)}, {"precision.csv", csv(precision_table(precision))}});
+                      {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
     }
     return trade.recommendation ? fine : could_not_judge;
 }

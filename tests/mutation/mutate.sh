@@ -78,7 +78,7 @@ alarms() {
 }
 tests='models/test_models recursive/test_recursive recursive/test_series recursive/test_series_and_reference
     recursive/test_allocation reference/test_equilibrium reference/test_energy compare/test_compare
-    compare/test_trade compare/test_trade_tables gate/test_judge gate/test_gate reports/test_reports'
+    compare/test_trade gate/test_judge gate/test_gate reports/test_reports'
 # Of what is no GoogleTest, the one that looks at the build tree itself.
 of_build_tree=Performance.ValgrindIsLookedForWhenItIsNeeded
 

@@ -6,11 +6,14 @@
 #include <stdexcept>
 
 #include "compare/order_study.hpp"
+#include "compare/precision.hpp"
+#include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/select.hpp"
+#include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -137,6 +140,33 @@ TEST(Tables, TheArithmeticStandsSideBySide) {
     EXPECT_FALSE(contains(said, "converged")) << said;
     study.series[0].levels[1].outcome = Outcome::diverged;
     EXPECT_TRUE(contains(precision_text(study), "diverged"));
+}
+
+TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
+    Scene scene = support::scene("pendulum");
+    for (auto& branch : scene.branches) branch.to *= 2;  // far enough for a row that diverges
+    const Model model = compile(scene);
+    const auto trade = compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
+    ASSERT_TRUE(trade.recommendation);
+    const std::string said = trade_text(model, trade);
+    EXPECT_TRUE(contains(said, "the same 10 output points")) << said;
+    EXPECT_TRUE(contains(said, "For 0.01 mm: " + describe(trade.points[trade.recommendation->point])))
+        << said;
+    EXPECT_TRUE(contains(said, "diverged")) << said;
+    EXPECT_FALSE(contains(said, "error [deg]")) << said;  // a pendulum's outputs are positions
+
+    const auto table = compare::trade_table(trade);
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(table), '\n')), trade.points.size() + 1);
+    EXPECT_EQ(words(table, trade.recommendation->point, "recommended"), "yes");
+    expect_same(table, through_json(table));
+    const auto document = json::parse(trade_json(trade).dump());
+    EXPECT_TRUE(document["tolerance"]["deg"].is_null());
+    EXPECT_EQ(document["recommendation"]["position"], trade.recommendation->point);
+
+    const auto none = compare::trade(model, {.tolerance = {1e-15}, .most_steps = 10, .rounds = 0});
+    EXPECT_TRUE(contains(trade_text(model, none), "nothing here reaches it"));
+    EXPECT_FALSE(contains(trade_text(model, none), "ratio\n")) << "no time was taken";
+    EXPECT_TRUE(trade_json(none)["recommendation"].is_null());
 }
 
 }  // namespace

@@ -8,20 +8,16 @@
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
+#include "reports/tables/select.hpp"
+#include "reports/tables/trade_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 constexpr Colour colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
-std::string setting_of(const Field& point) {
-    if (const auto steps = point.find("steps")) return whole_number(steps->whole());
-    if (const auto own = point.find("own_tolerance_m")) return setting(1e3 * own->number(), "mm");
-    return "";
-}
-
-Figure figure(const Field& trade, const char* id, const char* price, const char* front, const char* axis,
-              const char* title) {
+Figure figure(const Field& trade, const compare::Table& points, const char* id, const char* price, char front,
+              const char* axis, const char* title) {
     Figure figure{.id = id,
                   .title = title,
                   .x = axis,
@@ -32,11 +28,11 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
     Series pareto{"", Series::Style::wide, faint};
     std::vector<std::vector<double>> on_front;
     double low = 1, high = 1e-16;
-    const Field points = trade["points"];
-    for (const auto& point : points.items()) {
-        const double error = point["error"]["mm"].number(), work = point[price].number();
-        if (!point["ranked"].truth() || !(error > 0) || !(work > 0) || !std::isfinite(error)) continue;
-        const std::string method = point["method"].text();
+    for (std::size_t r = 0; r < points.rows.size(); ++r) {
+        const double error = number(points, r, "error"), work = number(points, r, price);
+        if (!words(points, r, "not ranked").empty() || !(error > 0) || !(work > 0) || !std::isfinite(error))
+            continue;
+        const std::string& method = words(points, r, "method");
         Series* series = nullptr;
         for (auto& s : figure.series)
             if (s.title == method) series = &s;
@@ -48,7 +44,7 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
         }
         series->rows.push_back({work, error});
         low = std::min(low, error), high = std::max(high, error);
-        if (point["on_front"][front].truth()) on_front.push_back({work, error});
+        if (words(points, r, "front").find(front) != std::string::npos) on_front.push_back({work, error});
     }
     std::ranges::sort(on_front);
     pareto.rows = on_front;
@@ -62,10 +58,9 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
         figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.2)));
     }
     if (const auto chosen = trade.find("recommendation")) {
-        const auto all = points.items();
         const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
-        if (at >= all.size()) (*chosen)["position"].fail("no such point");
-        const double x = all[at][price].number(), y = all[at]["error"]["mm"].number();
+        if (at >= points.rows.size()) (*chosen)["position"].fail("no such point");
+        const double x = number(points, at, price), y = number(points, at, "error");
         if (x > 0 && y > 0) figure.series.push_back({"recommended", Series::Style::rings, ink, 5, {{x, y}}});
     }
     std::vector<std::string> names;
@@ -78,36 +73,6 @@ Figure figure(const Field& trade, const char* id, const char* price, const char*
     return figure;
 }
 
-Table ladder(const Field& trade) {
-    Table table{.caption = "The ladder: what each method gives for its work",
-                .columns = {},
-                .rows = {},
-                .folded = true};
-    bool times = false, angles = false;
-    for (const auto& point : trade["points"].items()) {
-        times = times || point.find("time_ratio");
-        angles = angles || point["error"].find("deg");
-    }
-    table.columns = {{"method", true}, {"steps, or its own tolerance"}, {"error [mm]"}};
-    if (angles) table.columns.push_back({"error [deg]"});
-    for (const char* name : {"solves", "factorisations", "evaluations"}) table.columns.push_back({name});
-    if (times) table.columns.push_back({"time [ratio]"});
-    table.columns.push_back({"remark", true});
-    for (const auto& point : trade["points"].items()) {
-        std::vector<std::string> row{point["method"].text(), setting_of(point),
-                                     number(point["error"]["mm"].number(), 2)};
-        if (angles)
-            row.push_back(point["error"].find("deg") ? number(point["error"]["deg"].number(), 2) : "–");
-        for (const char* count : {"solves", "factorisations", "evaluations"})
-            row.push_back(whole_number(point[count].whole()));
-        if (times) row.push_back(number(point["time_ratio"].number(), 2));
-        const bool front = point["on_front"][times ? "time" : "factorisations_and_evaluations"].truth();
-        row.push_back(front ? "on the front" : point["not_ranked"].text());
-        table.rows.push_back(row);
-    }
-    return table;
-}
-
 }  // namespace
 
 std::optional<Section> price_section(const Field& scene) {
@@ -118,20 +83,26 @@ std::optional<Section> price_section(const Field& scene) {
     section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
     section.words["reasons"] = (*trade)["inconclusive"].texts();
     section.words["judged_not"] = !section.words["reasons"].empty();
+    const auto points = read_table((*trade)["points"], compare::trade_table({}));
     bool times = false;
-    for (const auto& point : (*trade)["points"].items()) times = times || point.find("time_ratio");
+    for (std::size_t r = 0; r < points.rows.size(); ++r)
+        times = times || std::isfinite(number(points, r, "time ratio"));
     FigureGroup group;
-    group.figures.push_back(figure(*trade, "price-solves", "solves", "solves", "linear solves, all branches",
-                                   "Error against linear solves"));
+    group.figures.push_back(figure(*trade, points, "price-solves", "solves", 's',
+                                   "linear solves, all branches", "Error against linear solves"));
     if (times) {
         section.words["times"] = {{"rounds", (*trade)["rounds"].whole()},
                                   {"noise", percent((*trade)["time_noise"].number())}};
-        group.figures.push_back(figure(*trade, "price-time", "time_ratio", "time",
+        group.figures.push_back(figure(*trade, points, "price-time", "time ratio", 't',
                                        "time, as a ratio to the equilibrium leg", "Error against time"));
     }
     std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
     group.caption = "Worst position error over all branches, output points and outputs, at equal parameter.";
-    group.table = ladder(*trade);
+    group.table = page_table(
+        "The ladder: what each method gives for its work. On the front no other is as good for s: fewer "
+        "solves, f: fewer factorisations and evaluations, t: less time",
+        points, trade_columns);
+    group.table.folded = true;
     if (group.figures.empty())
         section.tables.push_back(group.table);
     else

@@ -132,12 +132,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
         words["found"]["steps"] = whole_number(steps->whole());
     else if (const auto own = chosen->find("own_tolerance_m"))
         words["found"]["own"] = setting(1e3 * own->number(), "mm");
-    words["found"]["factorisations"] = [&] {
-        const auto all = (*trade)["points"].items();
-        const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
-        if (at >= all.size()) (*chosen)["position"].fail("no such point");
-        return whole_number(all[at]["factorisations"].whole());
-    }();
+    words["found"]["factorisations"] = whole_number((*chosen)["factorisations"].whole());
     const double ratio = (*chosen)["time_ratio"].number();
     if (std::isfinite(ratio)) words["found"]["time"] = time_ratio(ratio);
     tiles.push_back(
