@@ -100,9 +100,10 @@ std::vector<std::string> parameter_columns(const compare::Comparison& all) {
 void check_parameter(const Points& points, const std::string& file, const compare::Comparison& all) {
     if (points.parameter.empty()) return;
     if (points.branch.empty() && parameter_columns(all).size() > 1)
-        fail(file, 1,
-             fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
-                         points.parameter));
+        fail(
+            file, 1,
+            fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
+                        points.parameter));
     for (const auto& name : points.branch) {
         const auto branch = std::ranges::find(all.branches, name, &compare::BranchComparison::branch);
         if (const std::string other = parameter_column(branch->unit); other != points.parameter)

@@ -26,7 +26,7 @@ std::string magnitude(double value, int digits) {
     const int exponent = std::stoi(scientific.substr(e + 1));
     if (exponent >= -4 && exponent < 6)
         return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
-    return fmt::format("{} × 10{}", scientific.substr(0, e), raised(exponent));
+    return fmt::format("{}{}×{}10{}", scientific.substr(0, e), solid_space, solid_space, raised(exponent));
 }
 
 }  // namespace

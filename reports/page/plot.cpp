@@ -52,6 +52,9 @@ json script_data(const Figure& figure, const std::string& name) {
                           {"bars", s.style == Series::Style::bars},
                           {"last", k + 1 == figure.series.size()}});
     }
+    // Under an equal-axes plot's key there is room for as many lines as it has entries.
+    const auto entries =
+        std::ranges::count_if(figure.series, [](const Series& s) { return !s.title.empty(); });
     for (const auto& band : figure.bands)
         bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
                          {"high", fmt::format("{:.9g}", band.high)},
@@ -70,6 +73,7 @@ json script_data(const Figure& figure, const std::string& name) {
             {"log_x", figure.log_x},
             {"log_y", figure.log_y},
             {"equal_axes", figure.equal_axes},
+            {"key_lines", std::max(6L, std::lround(1.25 * static_cast<double>(entries) + 1))},
             {"reversed_x", figure.reversed_x},
             {"reversed_y", figure.reversed_y},
             {"y_range", range_of(figure.y_low, figure.y_high)},

@@ -158,9 +158,11 @@ std::string study_tables(const Model& model, const compare::Study& study,
         model.name);
     for (std::size_t b = 0; b < study.branches.size(); ++b) {
         text += fmt::format("\nbranch '{}'\n", study.branches[b].branch);
-        for (const auto& method : study.branches[b].methods) method_table(model, study, study.branches[b], method, text);
+        for (const auto& method : study.branches[b].methods)
+            method_table(model, study, study.branches[b], method, text);
         for (const auto& a : attribution)
-            if (a.branch == study.branches[b].branch) attribution_table(model, study, study.branches[b], a, text);
+            if (a.branch == study.branches[b].branch)
+                attribution_table(model, study, study.branches[b], a, text);
     }
     for (const auto& reason : study.inconclusive) text += fmt::format("\ninconclusive: {}", reason);
     text += study.conclusive() ? "\nconclusive\n" : "\nINCONCLUSIVE\n";
@@ -203,7 +205,8 @@ std::string attribution_csv(const Model& model, const compare::Study& study,
     for (const auto& branch : attribution)
         for (const bool load : readings) {
             const auto& shares = load ? branch.equal_parameter : branch.equal_abscissa;
-            const auto studied = std::ranges::find(study.branches, branch.branch, &compare::BranchStudy::branch);
+            const auto studied =
+                std::ranges::find(study.branches, branch.branch, &compare::BranchStudy::branch);
             if (studied == study.branches.end()) continue;
             const std::string reading = reading_name(model, *studied, load);
             for (std::size_t c = 0; c < shares.size(); ++c) {
@@ -217,7 +220,8 @@ std::string attribution_csv(const Model& model, const compare::Study& study,
     return csv;
 }
 
-json study_json(const Model& model, const compare::Study& study, const std::vector<BranchAttribution>& attribution) {
+json study_json(const Model& model, const compare::Study& study,
+                const std::vector<BranchAttribution>& attribution) {
     json branches = json::array();
     for (const auto& branch : study.branches) {
         json methods = json::array();

@@ -72,10 +72,9 @@ TEST(GateReport, ExitCodesAreRanked) {
 }
 
 TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
-    EXPECT_EQ(
-        story(offence(0.5)),
-        "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, difference -0.5, "
-        "2 times the tolerance of 0.25");
+    EXPECT_EQ(story(offence(0.5)),
+              "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, difference -0.5, "
+              "2 times the tolerance of 0.25");
     compare::Offence limit = offence(0.007);
     limit.of_limit = true, limit.a = {}, limit.was = limit.tolerance = 0.005;
     limit.quantity = Quantity::deviation_at_equal_abscissa;
@@ -171,10 +170,10 @@ TEST(GateReport, AnnotationsAreAtMostTenWorstFirstAndEscaped) {
     const std::string lines = annotations({passed(), other, scene});
     EXPECT_EQ(count(lines, "::error "), 10u);
     EXPECT_EQ(count(lines, "\n"), 10u);
-    EXPECT_TRUE(lines.starts_with(
-        "::error file=a%3Ab%2Cc.yaml,title=elastocheck gate%3A out of tolerance::branch "
-        "'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 21 deg, difference "
-        "+20, 80 times the tolerance of 0.25; 2 numbers of it in all\n"))
+    EXPECT_TRUE(
+        lines.starts_with("::error file=a%3Ab%2Cc.yaml,title=elastocheck gate%3A out of tolerance::branch "
+                          "'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 21 deg, difference "
+                          "+20, 80 times the tolerance of 0.25; 2 numbers of it in all\n"))
         << lines;
     EXPECT_TRUE(contains(annotations({other}), "::100 %25%0Aand a%0Dline\n"));
     EXPECT_EQ(annotations({passed()}), "");

@@ -52,7 +52,8 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
             means = std::regex_replace(means, std::regex("joint '[^']+' on ('[^']+'|ground)"),
                                        "the joint on its first body");
             means = std::regex_replace(means, std::regex("moves '[^']+'"), "moves the joint");
-            means = std::regex_replace(means, std::regex("ground axis [xyz](, positive [a-z ]+)?"), "ground axis");
+            means = std::regex_replace(means, std::regex("ground axis [xyz](, positive [a-z ]+)?"),
+                                       "ground axis");
             EXPECT_TRUE(contains(readme, means))
                 << "reports/README.md does not say: " << means << "\nof " << row;
         }
@@ -183,10 +184,10 @@ TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
                   "preload: [-76.9309197398, 813.830593499, -3796.67069248]");
     const Said said = elastocheck_says("compare " + folder.write("unstable.yaml", scene));
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(
-        said.out,
-        "energy leg: branch lost: branch 'jounce', settling from the design pose: the equilibrium stops being "
-        "a minimum"))
+    EXPECT_TRUE(contains(said.out,
+                         "energy leg: branch lost: branch 'jounce', settling from the design pose: the "
+                         "equilibrium stops being "
+                         "a minimum"))
         << said.out;
     EXPECT_TRUE(contains(said.out, "nothing compared: a curve is empty")) << said.out;
 }
@@ -225,8 +226,9 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_parameter"].size(),
-              6u);
+    EXPECT_EQ(
+        result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_parameter"].size(),
+        6u);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,320,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));

@@ -105,10 +105,8 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
          {Case{"", "kc.csv: empty; the first line names the columns"},
           Case{"travel_mm,toe_deg\n", "kc.csv: no point in it"},
           Case{"travel_mm,tow_deg\n1,2\n", "kc.csv:1: unknown column 'tow_deg', did you mean 'toe_deg'?"},
-          Case{"travel_mm,toe_rad\n1,2\n",
-               "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
-          Case{"toe_deg\n1\n",
-               "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
+          Case{"travel_mm,toe_rad\n1,2\n", "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
+          Case{"toe_deg\n1\n", "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
           Case{"travel_mm,load_N\n1,2\n", "kc.csv:1: no output among the columns"},
           Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n", "kc.csv:1: column 'toe_deg' stands there twice"},
           Case{"travel_mm,toe_deg\n1,2\n3\n", "kc.csv:3: 1 cells, but 2 columns are named in the first line"},
@@ -214,15 +212,17 @@ TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
     } catch (const MeasurementError& error) {
         said = error.what();
     }
-    EXPECT_EQ(said, "kc.csv:1: load_N: not every branch goes by it; a column 'branch' has to say where a "
-                    "point belongs");
+    EXPECT_EQ(said,
+              "kc.csv:1: load_N: not every branch goes by it; a column 'branch' has to say where a "
+              "point belongs");
     try {
         add_measurement(scene, "branch,load_N,toe_deg\ntravel,100,1\n", "kc.csv", model, comparison);
     } catch (const MeasurementError& error) {
         said = error.what();
     }
     EXPECT_EQ(said, "kc.csv:1: load_N: branch 'travel' goes by parameter_mm");
-    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv", model, comparison);
+    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv", model,
+                    comparison);
 }
 
 TEST(Measurement, PointsOutsideTheRangeAreNotCompared) {

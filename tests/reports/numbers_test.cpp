@@ -16,8 +16,8 @@ TEST(Numbers, HaveThreeToFourDigitsAndATrueMinus) {
     EXPECT_EQ(number(123456.0), "123456");
     EXPECT_EQ(number(0), "0");
     EXPECT_EQ(number(0.99996, 3), "1.00");
-    EXPECT_EQ(number(2.6e-13, 2), "2.6 × 10⁻¹³");
-    EXPECT_EQ(number(-3.456e7), "−3.46 × 10⁷");
+    EXPECT_EQ(number(2.6e-13, 2), "2.6\u00a0×\u00a010⁻¹³");
+    EXPECT_EQ(number(-3.456e7), "−3.46\u00a0×\u00a010⁷");
     EXPECT_EQ(signed_number(0.5), "+0.500");
 }
 

@@ -9,6 +9,7 @@
 #include "compare/precision.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
+#include "reports/page/sections/common.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
@@ -109,6 +110,24 @@ TEST(Tables, SpreadPutsRowsThatAgreeBesideEachOther) {
     const auto wide = spread(small, "how", {"error"});
     EXPECT_EQ(csv(wide), "who,count,x: error [mm],y: error [mm]\n\"a, b\",3,0.1,1e-07\nc,4,,\n");
     EXPECT_EQ(distinct(small, "who"), (std::vector<std::string>{"a, b", "c"}));
+}
+
+TEST(Tables, ThePageShowsTheSameColumns) {
+    const compare::Table told{"told",
+                              {{"who", "", "", true}, {"told", "m"}, {"count"}, {"share"}, {"empty"}},
+                              {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
+    const Table page = page_table("Caption", told,
+                                  {{"who"},
+                                   {"told", Digits::given},
+                                   {"count", Digits::whole, "how many"},
+                                   {"share", Digits::percent},
+                                   {"empty"}});
+    ASSERT_EQ(page.columns.size(), 4u);
+    EXPECT_TRUE(page.columns[0].words && !page.columns[1].words);
+    EXPECT_EQ(page.columns[1].name, "told [m]");
+    EXPECT_EQ(page.columns[2].name, "how many");
+    EXPECT_EQ(page.rows[0], (std::vector<std::string>{"a", "1 × 10⁻⁶", "12\u202f345", "14\u00a0%"}));
+    EXPECT_EQ(page.rows[1], (std::vector<std::string>{"b", "2.5 × 10⁻⁶", "–", "0.10\u00a0%"}));
 }
 
 TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {

@@ -37,16 +37,15 @@ std::optional<FigureGroup> group(const Field& branch) {
                   .x = "contribution at the end [% of the output’s range]",
                   .y = ""};
     FigureGroup group;
-    group.table = {
-        .caption = fmt::format("Gap at the end of branch {}, {}: whole = lever + axis + load + rest", name,
-                               reading),
-        .columns = {{"output", true},
-                    {"whole"},
-                    {"stored force’s lever"},
-                    {"its axis and law"},
-                    {"load’s lever"},
-                    {"rest"},
-                    {"± band"}}};
+    group.table = {.caption = fmt::format(
+                       "Gap at the end of branch {}, {}: whole = lever + axis + load + rest", name, reading),
+                   .columns = {{"output", true},
+                               {"whole"},
+                               {"stored force’s lever"},
+                               {"its axis and law"},
+                               {"load’s lever"},
+                               {"rest"},
+                               {"± band"}}};
     for (const auto& term : terms) figure.series.push_back({term.name, Series::Style::bars, term.colour});
     double row = 0;
     std::string words;

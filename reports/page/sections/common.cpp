@@ -135,10 +135,18 @@ double largest(const std::vector<double>& values) {
 
 namespace {
 
+// As somebody gave it: with as many digits as that takes, up to six.
+std::string given(double value) {
+    int digits = 1;
+    while (digits < 6 && std::stod(fmt::format("{:.{}e}", value, digits - 1)) != value) ++digits;
+    return number(value, digits);
+}
+
 std::string written(double value, Digits digits) {
+    if (!std::isfinite(value)) return number(value);
     switch (digits) {
         case Digits::whole: return std::abs(value) < 1e15 ? whole_number(std::lround(value)) : number(value);
-        case Digits::given: return number(value, 1);
+        case Digits::given: return given(value);
         case Digits::size: return number(value, 2);
         case Digits::three: return number(value, 3);
         case Digits::percent: return percent(value);

@@ -6,8 +6,8 @@
 
 #include "reports/document/field.hpp"
 #include "reports/page/page.hpp"
-#include "reports/text/readings.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/text/readings.hpp"
 
 namespace elastocheck::reports {
 

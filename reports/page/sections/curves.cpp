@@ -56,7 +56,8 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     return outputs;
 }
 
-// Below 1e-9 of a mm or deg it is the arithmetic's.
+// Below 1e-9 of a mm, deg or N it is the arithmetic's; an axis would make room for it.
+double at_rest(double x) { return std::abs(x) < 1e-9 ? 0 : x; }
 std::string value(double x, int digits = 5) { return std::abs(x) < 1e-9 ? "0" : number(x, digits); }
 
 std::vector<double> values_of(const LegCurve& curve, const Output& output) {
@@ -88,7 +89,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
             const auto& x = travel && !curve.x.empty() ? curve.x : curve.a;
             if (!series->rows.empty() && series != &energy) series->rows.emplace_back();
             for (const auto k : thinned(values.size(), series == &energy ? 6 : 41))
-                series->rows.push_back({x[k], values[k]});
+                series->rows.push_back({at_rest(x[k]), at_rest(values[k])});
             if (series == &reference && !values.empty()) most = std::max(most, largest(values));
         }
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),

@@ -23,7 +23,7 @@ void append(Series& series, const std::vector<double>& load, const Profile& prof
 
 struct Curves {
     Series load{"", Series::Style::line, vermilion};
-    Series travel{"", Series::Style::line, blue};
+    Series travel{"", Series::Style::dashed, blue};  // the other may lie below it
     Series recommended{"", Series::Style::line, green};
     Series references{"references apart", Series::Style::thin, slate};
 };
@@ -101,7 +101,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     std::ranges::sort(rows_by_load, {}, [](const auto& row) { return row.first; });
     for (auto& [load, row] : rows_by_load) table.rows.push_back(std::move(row));
     Figure figure{.id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
-                  .title = angle ? "Angles: worst deviation" : "Positions: worst deviation",
+                  .title = fmt::format("{}: worst deviation, {}", angle ? "Angles" : "Positions", sweep.name),
                   .x = sweep.parameter(),
                   .y = fmt::format("deviation from equilibrium [{}]", unit),
                   .log_y = true,

@@ -35,8 +35,8 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, const cha
     const auto found = scene["findings"][reading].find(unit);
     if (!found) return std::nullopt;
     const ChannelInfo channel{(*found)["channel"].text(), unit};
-    Worst worst{(*found)["branch"].text(),  channel.label(), unit, "", (*found)["max"].number(),
-                (*found)["range"].number()};
+    Worst worst{(*found)["branch"].text(), channel.label(),           unit, "",
+                (*found)["max"].number(),  (*found)["range"].number()};
     for (const auto& branch : scene["branches"].items()) {
         if (branch["name"].text() != worst.branch) continue;
         const Sweep sweep = sweep_of(scene, branch);
@@ -71,6 +71,29 @@ json rate_words(const Field& scene) {
                         {"comma", !list.empty()}});
     }
     return list;
+}
+
+// The force that is off most: of what drives a branch, where that is off at all, else of a joint. Positions that
+// a motion dictates are exact whatever it takes to hold them.
+json force_words(const Field& scene) {
+    json words = nullptr;
+    bool of_drive = false;
+    double most = 1e-6;  // [N], [N·m]: less is the arithmetic's
+    for (const auto& branch : scene["branches"].items())
+        for (const auto& channel : channels_of(scene)) {
+            if (channel.kinematic) continue;
+            const auto d = branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
+            const bool drive = channel.name.find(".drive_") != channel.name.npos;
+            if (!d || (of_drive && !drive)) continue;
+            const double max = (*d)["max"].number();
+            if (max <= 1e-6 || (drive == of_drive && max <= most)) continue;
+            most = max, of_drive = drive;
+            words = {{"value", quantity(max, channel.unit)},
+                     {"channel", channel.label()},
+                     {"share", percent(max / (*d)["range"].number())},
+                     {"drive", drive}};
+        }
+    return words;
 }
 
 // Branches that the recursion did not get through.
@@ -176,7 +199,10 @@ std::optional<Section> verdict_section(const Field& scene) {
             published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
             const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
             published["exact"] = exact;
-            const json rates = rate_words(scene);
+            const json rates = rate_words(scene), forces = force_words(scene);
+            published["forces"] = forces;
+            if (rates.empty() && !forces.is_null() && forces["drive"].get<bool>())
+                published["drive"] = forces;
             if (!exact && published["failed"].empty()) {
                 const auto& travel = travel_deg ? travel_deg : travel_mm;
                 const auto& load = load_mm ? load_mm : load_deg;
@@ -189,23 +215,19 @@ std::optional<Section> verdict_section(const Field& scene) {
                 published["gap"] = gap_words(scene);
             }
             if (travel_deg && travel_deg->max >= nothing)
-                tiles.push_back({{"key", "travel"},
-                                 {"value", travel_deg->text()},
-                                 {"label", travel_deg->label()}});
+                tiles.push_back(
+                    {{"key", "travel"}, {"value", travel_deg->text()}, {"label", travel_deg->label()}});
             else if (travel_mm && travel_mm->max >= nothing)
-                tiles.push_back({{"key", "travel"},
-                                 {"value", travel_mm->text()},
-                                 {"label", travel_mm->label()}});
+                tiles.push_back(
+                    {{"key", "travel"}, {"value", travel_mm->text()}, {"label", travel_mm->label()}});
             if (load_mm)
-                tiles.push_back({{"key", "load"},
-                                 {"value", load_mm->text()},
-                                 {"label", load_mm->label()}});
+                tiles.push_back({{"key", "load"}, {"value", load_mm->text()}, {"label", load_mm->label()}});
             for (const auto& rate : scene["rate_errors"].items())
                 if (const double off = rate["off"].number(); std::isfinite(off))
-                    tiles.push_back({{"key", "rate"},
-                                     {"value", percent(off)},
-                                     {"label", fmt::format("wheel rate at the end of {}, error",
-                                                           end_of(scene, rate))}});
+                    tiles.push_back(
+                        {{"key", "rate"},
+                         {"value", percent(off)},
+                         {"label", fmt::format("wheel rate at the end of {}, error", end_of(scene, rate))}});
         }
         words["published"] = published;
         std::vector<std::string> agreement;
