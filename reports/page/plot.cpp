@@ -73,7 +73,7 @@ json script_data(const Figure& figure, const std::string& name) {
             {"log_x", figure.log_x},
             {"log_y", figure.log_y},
             {"equal_axes", figure.equal_axes},
-            {"key_lines", std::max(6L, std::lround(1.25 * static_cast<double>(entries) + 1))},
+            {"key_lines", std::max(6L, static_cast<long>(entries) + 1)},
             {"reversed_x", figure.reversed_x},
             {"reversed_y", figure.reversed_y},
             {"y_range", range_of(figure.y_low, figure.y_high)},
