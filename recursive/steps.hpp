@@ -74,6 +74,21 @@ void store_driven(March<Real>& s, const Follow& follow, Drive drive, Real amount
                                });
 }
 
+// Whether the coming step drives an angle by more than a rotation can be linearised. Where Φ is asked how far
+// there is to go, half a turn and a whole one look like none.
+template <class Real>
+bool turns_too_far(const March<Real>& s, Drive drive, Real amount) {
+    for (const auto& driver : s.branch.drivers) {
+        const auto* motion = std::get_if<Motion>(&driver.what);
+        if (motion != nullptr &&
+            std::holds_alternative<DirectionAtAngle>(
+                s.model.constraints[constraint_of(s.model, *motion)].kind) &&
+            !(std::abs(amount * speed<Real>(driver, drive)) <= Real(guard::largest_turn)))
+            return true;
+    }
+    return false;
+}
+
 // From (qⁿ, aⁿ) to (qⁿ⁺¹, aⁿ⁺¹), or from tⁿ to tⁿ⁺¹ while settling.
 //
 // ⎡ K(qⁿ)    Φ_q(qⁿ)ᵀ ⎤ ⎧ Δq ⎫ⁿ   ⎧ f_ext - f_elast - ∂f_elast/∂a Δa ⎫
@@ -84,6 +99,7 @@ template <class Real>
 Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
     const Drive drive = next.t != s.place.t ? Drive::start : Drive::rate;
     const Real amount = drive == Drive::start ? next.t - s.place.t : next.a - s.place.a;
+    if (turns_too_far(s, drive, amount)) return Outcome::diverged;
     const Place<Real> here = s.place;
     if (!method.closed) {  // the lower row of (29), at (qⁿ, aⁿ)
         s.lower.setZero();
@@ -118,6 +134,7 @@ Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
 template <class Real>
 Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     const int n = s.n(), m = s.m();
+    if (turns_too_far(s, Drive::rate, next.a - s.place.a)) return Outcome::diverged;
     go_to(s, next);
     external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);  // what idle modes are checked against
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;

@@ -88,6 +88,18 @@ TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
     }
 }
 
+TEST(Driver, AStepOfHalfATurnOrAWholeOneIsNotTakenForNone) {
+    for (const double to : {full_turn / 2, full_turn, -full_turn / 2}) {
+        Driven1 d = slider_crank(1);
+        d.branch.to = to;
+        for (const auto& method : methods)
+            if (has_steps(method)) {
+                const auto path = solve(d.model, d.branch, {.method = method, .steps = 1});
+                EXPECT_EQ(path.outcome, Outcome::diverged) << method.name << " " << to;
+            }
+    }
+}
+
 TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
     const Driven1 d = slider_crank(360);
     // Over a whole turn the leading term comes back to zero: the worst of the way counts.

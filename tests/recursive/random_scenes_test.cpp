@@ -120,9 +120,9 @@ double apart(const Diagnosis& diagnosis, const Equilibrium& a, const Equilibrium
 }
 
 TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
-    constexpr int scenes = 300;
-    int judged = 0, declined_by_references = 0;
-    std::map<std::string, int> declined, why;
+    constexpr int scenes = 200;  // of a thousand 846 are judged, adaptive declines 1 and series 2 of them
+    int judged = 0;
+    std::map<std::string, int> declined;
     std::string which;
     for (int number = 0; number < scenes; ++number) {
         const Model model = compile(random_scene(number));
@@ -150,10 +150,7 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
         for (std::size_t k = 0; k < std::min(energy.points.size(), equilibrium.points.size()); ++k)
             references = std::max(
                 references, apart(analysis.diagnosis, energy.points[k], equilibrium.points[k], 1e-7, 1e-7));
-        if (energy.outcome != Outcome::converged || !(references <= 1)) {
-            ++declined_by_references;
-            continue;
-        }
+        if (energy.outcome != Outcome::converged || !(references <= 1)) continue;
         ++judged;
         for (const auto& [name, length, angle] :
              {std::tuple{"adaptive", Adaptive{}.length_tolerance, Adaptive{}.angle_tolerance},
@@ -170,11 +167,10 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
                     << number << " " << name << " at " << loads[k];
         }
     }
+    EXPECT_LE(declined["adaptive"] + declined["series"], judged / 100) << which;
     RecordProperty("judged", judged);
     RecordProperty("adaptive declined", declined["adaptive"]);
     RecordProperty("series declined", declined["series"]);
-    std::printf("%d scenes, %d judged; declined: adaptive %d, series %d%s\n", scenes, judged,
-                declined["adaptive"], declined["series"], which.c_str());
     EXPECT_GE(judged, scenes * 6 / 10);
 }
 
