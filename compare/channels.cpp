@@ -149,7 +149,10 @@ void add_effort(std::vector<Channel>& list, const Model& model, int k) {
     if (joint.driven < 0) return;
     const bool turns = std::holds_alternative<DirectionAtAngle>(
         model.constraints[static_cast<std::size_t>(joint.driven)].kind);
-    list.push_back({.name = joint.name + (turns ? ".drive_moment" : ".drive_force"),
+    // What drives joint `rack` is a joint of its own, `rack.drive`: its effort is the rack's.
+    const std::string stem =
+        joint.name.ends_with(".drive") ? joint.name.substr(0, joint.name.size() - 6) : joint.name;
+    list.push_back({.name = stem + (turns ? ".drive_moment" : ".drive_force"),
                     .unit = turns ? Unit::newton_metre : Unit::newton,
                     .main = false,
                     .reads = Effort{k},

@@ -130,7 +130,7 @@ TEST(Axle, SteeringTurnsBothWheelsAndTheHeldHeightsAreHeld) {
                        right = solved().channel(branch, "right.toe", leg);
             EXPECT_GT(std::abs(left.back() - left.front()), 10);
             EXPECT_LE(largest_difference(left, backwards(right)), 1e-8) << branch << " " << name(leg);
-            const auto force = solved().channel(branch, "rack.drive.drive_force", leg);
+            const auto force = solved().channel(branch, "rack.drive_force", leg);
             std::vector<double> opposite = backwards(force);
             for (double& f : opposite) f = -f;
             EXPECT_LE(largest_difference(force, opposite), 1e-5) << branch << " " << name(leg);
