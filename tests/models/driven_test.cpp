@@ -412,6 +412,7 @@ TEST(Ways, OfAOneWayBranchAreOne) {
 TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
     const Scene scene =
         parsed(rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
+                   "  slide: {drive: joints.slide, to: 9, steps: 1}\n"  // behind a jack that is not there
                    "  both: {drive: joints.slide, to: 9, steps: 1, hold: {travel: 0}}"));
     const Model model = compile(scene);
     ASSERT_EQ(model.joints.size(), 8U);
@@ -422,7 +423,7 @@ TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
         ASSERT_EQ(here.branches.size(), 1U);
         EXPECT_EQ(here.branches[0].name, branch.name);
         ASSERT_EQ(here.joints.size(), model.joints.size());  // reactions keep their places
-        const int standing = branch.name == "load" ? 0 : branch.name == "jack" ? 1 : 2;
+        const int standing = branch.name == "load" ? 0 : branch.name == "both" ? 2 : 1;
         EXPECT_EQ(constraint_rows(here), constraint_rows(model) - 2 + standing) << branch.name;
         for (std::size_t k = 0; k < here.joints.size(); ++k) {
             const int driven = here.joints[k].driven;
@@ -432,6 +433,7 @@ TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
                 EXPECT_EQ(driven, -1);
             } else {
                 ASSERT_GE(driven, 0);
+                ASSERT_LT(static_cast<std::size_t>(driven), here.constraints.size()) << branch.name;
                 EXPECT_EQ(here.constraints[static_cast<std::size_t>(driven)].joint, static_cast<int>(k));
             }
         }
