@@ -144,9 +144,9 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
 TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     const std::string text = said(sample_result("arch_driven"));
     EXPECT_TRUE(
-        contains(text, "is exact in its positions and angles, but its guide.drive.drive force is off by"))
+        contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
         << text;
-    EXPECT_TRUE(contains(said(sample_result("slider_crank")), "Its crank.drive.drive moment is off by up to"))
+    EXPECT_TRUE(contains(said(sample_result("slider_crank")), "Its crank.drive moment is off by up to"))
         << said(sample_result("slider_crank"));
 }
 
