@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "compare/gate.hpp"
@@ -306,6 +307,9 @@ TEST(Judgement, BoundsAreSharesOfWhatActs) {
     EXPECT_NE(describe(bounds).find("0.5 m"), std::string::npos) << describe(bounds);
     // Ten times the load, ten times the bound.
     EXPECT_NEAR(compare(compile(one_arm(1e5, 1e4))).branches[0].bounds.force / bounds.force, 10, 0.5);
+    // The last digit of half a metre, on a mount of 1e11 N/m, is worth more than any share of the load.
+    const auto stiff = compare(compile(one_arm(1e11, 1000))).branches[0].bounds;
+    EXPECT_GE(stiff.residual_force, 0.5 * 1e11 * std::numeric_limits<double>::epsilon());
 }
 
 TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
@@ -451,6 +455,12 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     EXPECT_LT(found.curve.a.front(), -150);
     EXPECT_GT(found.curve.a.front(), -212);
     EXPECT_EQ(found.curve.a[found.curve.start], 0);
+    // Nor is it lost behind a way that succeeds.
+    std::swap(scene.branches[0].from, scene.branches[0].to);
+    const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
+    EXPECT_EQ(second.path.outcome, Outcome::branch_lost);
+    EXPECT_TRUE(second.path.detail.starts_with(scene.branches[0].name + " to -300 N: "))
+        << second.path.detail;
 }
 
 TEST(Ways, AnyChannelCanBeTheAbscissa) {

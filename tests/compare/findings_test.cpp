@@ -140,6 +140,13 @@ TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
             }
 }
 
+TEST(Measured, TheLargestMissKeepsItsSign) {
+    Measured measured = taken(0, 0.25, false, true);
+    measured.columns[0].values[0] += 1;
+    const auto found = compare_measured(mcpherson(), compared(), measured);
+    EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, -0.75, 1e-6);
+}
+
 TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
     Measured measured = taken(0, 0, true, true);
     for (auto& name : measured.branch) name = "rebound";  // which does not reach them
