@@ -96,8 +96,8 @@ ring() {
         if [ $# -lt 2 ] || [ -n "$(find $touched -newer "$2")" ]; then echo "$test"; fi
     done | OUT=$1 BUILD=$build xargs -P "$(nproc)" -I{} sh -c '
         log=$OUT/$(basename {}).log
-        timeout 100 "$BUILD/tests/{}" --gtest_brief=1 >"$log" 2>&1 || echo "exit $?" >>"$log"'
-    timeout 100 "$command" gate "$tree"/models/scenes/*.yaml --class cross-build >"$1/gate.log" 2>&1 || true
+        timeout 400 "$BUILD/tests/{}" --gtest_brief=1 >"$log" 2>&1 || echo "exit $?" >>"$log"'
+    timeout 400 "$command" gate "$tree"/models/scenes/*.yaml --class cross-build >"$1/gate.log" 2>&1 || true
     for test in $tests; do
         log=$1/$(basename "$test").log
         [ ! -f "$log" ] || awk -v run="$(basename "$test")" -f "$here/tests_that_rang.awk" "$log"
