@@ -137,6 +137,11 @@ std::vector<std::size_t> main_channels(const std::vector<Channel>& all) {
     return list;
 }
 
+std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
+    const int by = default_abscissa(all, truth);
+    return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
+}
+
 Way with_steps(Way way, int steps) {
     way.branch.steps = steps;
     return way;
@@ -236,9 +241,8 @@ Study study(const Model& model, const StudyOptions& options) {
                     fmt::format("{}: its share of the steps is too small for levels", way.name));
                 continue;
             }
-            const int by = default_abscissa(all, known.truth);
-            BranchStudy b{
-                way.name, branch.name, by < 0 ? "" : all[static_cast<std::size_t>(by)].name, steps, {}};
+            BranchStudy b{way.name, branch.name, unit_of(branch.unit), abscissa_name(all, known.truth),
+                          steps,    {}};
             for (const auto& method : options.methods) {
                 if (!recursive::has_steps(method)) continue;  // has no step count
                 b.methods.push_back(study_method(model, all, way, known, method, steps, options.progress));
@@ -258,11 +262,13 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
     BranchAttribution attribution;
     attribution.branch = way.name;
     attribution.belongs_to = branch;
+    attribution.unit = unit_of(way.branch.unit);
     const References known = references(model, channels, way.branch, {way});
     if (!known.failures.empty()) {
         attribution.not_attributed = known.failures.front();
         return attribution;
     }
+    attribution.abscissa = abscissa_name(channels, known.truth);
     std::vector<std::vector<Curve>> levels(combinations);
     std::vector<const Curve*> curves{&known.truth, &known.other};
     for (unsigned bits = 0; bits < combinations; ++bits) {

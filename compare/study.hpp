@@ -56,6 +56,7 @@ struct MethodStudy {
 struct BranchStudy {
     std::string branch;      // its name, or of one way of it: "bounce to -80 mm"
     std::string belongs_to;  // the name of the branch
+    Unit unit{};             // in which its parameter is shown
     std::string abscissa;    // name of the channel, empty where there is none
     std::vector<int> steps;  // of this way
     std::vector<MethodStudy> methods;
@@ -90,6 +91,8 @@ struct GapShare {
 
 struct BranchAttribution {
     std::string branch, belongs_to;                         // as in BranchStudy
+    Unit unit{};                                            // likewise
+    std::string abscissa;                                   // likewise
     std::vector<GapShare> equal_parameter, equal_abscissa;  // per main channel; empty where it cannot be read
     std::string not_attributed;                             // why there is nothing
     std::string no_abscissa;                                // why there is nothing at equal abscissa

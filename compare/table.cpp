@@ -1,7 +1,10 @@
 #include "compare/table.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "compare/readings.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -12,12 +15,15 @@ double count(auto number) { return static_cast<double>(number); }
 
 Column words(const char* name, const char* description = "") { return {name, "", description, true}; }
 
-// Calls sink(words of the reading, it) for both readings of a pair-like thing.
+// Calls sink(words of the reading, it) for both readings of a branch: over its parameter and its abscissa.
 template <class T, class Sink>
-void both(const T& at_parameter, const T& at_abscissa, Sink&& sink) {
-    sink(std::string("at equal parameter"), at_parameter);
-    sink(std::string("at equal abscissa"), at_abscissa);
+void both(Unit unit, const std::string& abscissa, const T& at_parameter, const T& at_abscissa, Sink&& sink) {
+    sink(parameter_reading(symbol(unit)), at_parameter);
+    sink(abscissa_reading(abscissa), at_abscissa);
 }
+
+// Part of a whole that is not only the arithmetic's, mm or deg.
+double percent(double part, double whole) { return std::abs(whole) < 1e-9 ? nan : 100 * part / whole; }
 
 }  // namespace
 
@@ -75,7 +81,9 @@ Table deviation_table(const Comparison& comparison) {
                  words("not compared", "why")},
                 {}};
     for (const auto& branch : comparison.branches)
-        both(std::pair{&branch.deviation.equal_parameter, &branch.uncertainty.equal_parameter},
+        both(branch.unit,
+             branch.abscissa < 0 ? "" : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name,
+             std::pair{&branch.deviation.equal_parameter, &branch.uncertainty.equal_parameter},
              std::pair{&branch.deviation.equal_abscissa, &branch.uncertainty.equal_abscissa},
              [&](const std::string& reading, const auto& found) {
                  const auto& [off, doubt] = found;
@@ -141,25 +149,74 @@ Table study_table(const Study& study) {
                  words("unit"),
                  words("behaviour"),
                  {"order"},
-                 {"gap", "", "own limit less reference at the end"},
+                 {"order error", "", "its standard error"},
+                 words("as formal", "the order agrees with the method's"),
+                 {"limit", "", "own, of infinitely many steps, at the end"},
                  {"band", "", "uncertainty of the limit"},
+                 {"finest step error", "", "largest over the branch with the most steps"},
+                 {"gap", "", "own limit less reference at the end"},
                  {"largest gap"},
+                 {"rms gap"},
+                 {"gap exponent", "", "power of the parameter or abscissa with which it grows"},
                  {"references apart"},
+                 {"range", "", "of the reference over the branch"},
+                 {"gap share", "%", "gap at the end, of the range"},
+                 {"constraint order", "", "at which |Φ| of eq. (31) falls at the end"},
+                 {"constraint order error", "", "its standard error"},
                  words("not studied", "why")},
                 {}};
     for (const auto& branch : study.branches)
-        for (const auto& method : branch.methods)
-            both(method.equal_parameter, method.equal_abscissa,
+        for (const auto& m : branch.methods)
+            both(branch.unit, branch.abscissa, m.equal_parameter, m.equal_abscissa,
                  [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
+                     const OrderFit& Phi = m.constraint_order;
                      if (found.empty())
-                         table.rows.push_back(
-                             {branch.branch, method.method, reading, "", "", "", nan, nan, nan, nan, nan,
-                              method.not_studied.empty() ? method.no_abscissa : method.not_studied});
+                         table.rows.push_back({branch.branch,
+                                               m.method,
+                                               reading,
+                                               "",
+                                               "",
+                                               "",
+                                               nan,
+                                               nan,
+                                               "",
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               nan,
+                                               Phi.order,
+                                               Phi.order_error,
+                                               m.not_studied.empty() ? m.no_abscissa : m.not_studied});
                      for (std::size_t c = 0; c < found.size(); ++c) {
                          const ChannelStudy& s = found[c];
-                         table.rows.push_back({branch.branch, method.method, reading, study.channels[c].name,
-                                               symbol(study.channels[c].unit), name(s.end.behaviour),
-                                               s.end.order, s.gap, s.end.band, s.gap_max, s.uncertainty, ""});
+                         table.rows.push_back({branch.branch,
+                                               m.method,
+                                               reading,
+                                               study.channels[c].name,
+                                               symbol(study.channels[c].unit),
+                                               name(s.end.behaviour),
+                                               s.end.order,
+                                               s.end.order_error,
+                                               s.end.as_formal ? "yes" : "",
+                                               s.end.limit,
+                                               s.end.band,
+                                               s.step_error_max.back(),
+                                               s.gap,
+                                               s.gap_max,
+                                               s.gap_rms,
+                                               s.gap_exponent,
+                                               s.uncertainty,
+                                               s.range,
+                                               percent(s.gap, s.range),
+                                               Phi.order,
+                                               Phi.order_error,
+                                               ""});
                      }
                  });
     return table;
@@ -173,21 +230,33 @@ Table step_table(const Study& study) {
                  words("output"),
                  words("unit"),
                  {"steps"},
+                 words("outcome"),
                  {"end", "", "value less own limit at the end"},
                  {"largest"},
-                 {"rms"}},
+                 {"rms"},
+                 {"error", "", "value less reference at the end: step error and gap"},
+                 {"constraint error", "m", "or rad: |Φ| at the end, eq. (31)"}},
                 {}};
     for (const auto& branch : study.branches)
-        for (const auto& method : branch.methods)
-            both(method.equal_parameter, method.equal_abscissa,
-                 [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
-                     for (std::size_t c = 0; c < found.size(); ++c)
-                         for (std::size_t l = 0; l < branch.steps.size(); ++l)
-                             table.rows.push_back({branch.branch, method.method, reading,
-                                                   study.channels[c].name, symbol(study.channels[c].unit),
-                                                   count(branch.steps[l]), found[c].step_error_end[l],
-                                                   found[c].step_error_max[l], found[c].step_error_rms[l]});
-                 });
+        for (const auto& m : branch.methods)
+            both(
+                branch.unit, branch.abscissa, m.equal_parameter, m.equal_abscissa,
+                [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
+                    const auto row = [&](std::size_t l, const std::string& output, const std::string& unit,
+                                         const std::array<double, 4>& error) {
+                        table.rows.push_back({branch.branch, m.method, reading, output, unit,
+                                              count(branch.steps[l]), elastocheck::name(m.outcomes[l]),
+                                              error[0], error[1], error[2], error[3], m.constraint_error[l]});
+                    };
+                    if (found.empty())
+                        for (std::size_t l = 0; l < branch.steps.size(); ++l)
+                            row(l, "", "", {nan, nan, nan, nan});
+                    for (std::size_t c = 0; c < found.size(); ++c)
+                        for (std::size_t l = 0; l < branch.steps.size(); ++l)
+                            row(l, study.channels[c].name, symbol(study.channels[c].unit),
+                                {found[c].step_error_end[l], found[c].step_error_max[l],
+                                 found[c].step_error_rms[l], found[c].step_error_end[l] + found[c].gap});
+                });
     return table;
 }
 
@@ -198,24 +267,48 @@ Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttrib
                  words("output"),
                  words("unit"),
                  {"whole", "", "gap of the recursion in which nothing follows the bodies"},
-                 {"lever", "", "share of the lever of the stored force"},
-                 {"axis", "", "share of its axis and law"},
-                 {"load", "", "share of the lever of the load"},
+                 {"lever", "", "contribution of the lever of the stored force"},
+                 {"axis", "", "contribution of its axis and law"},
+                 {"load", "", "contribution of the lever of the load"},
                  {"rest", "", "what is left when all three follow: 0 within the band"},
                  {"band"},
-                 words("not attributed", "why")},
+                 {"lever share", "%", "of the whole"},
+                 {"axis share", "%", "likewise"},
+                 {"load share", "%", "likewise"}},
                 {}};
+    // In the order of GapShare::combinations.
+    for (const char* follows : {"nothing", "lever", "axis", "lever and axis", "load", "lever and load",
+                                "axis and load", "lever, axis and load"})
+        table.columns.push_back({std::string("gap, following: ") + follows});
+    table.columns.push_back(words("not attributed", "why"));
     for (const auto& branch : attribution)
-        both(branch.equal_parameter, branch.equal_abscissa,
+        both(branch.unit, branch.abscissa, branch.equal_parameter, branch.equal_abscissa,
              [&](const std::string& reading, const std::vector<GapShare>& found) {
-                 if (found.empty())
-                     table.rows.push_back(
-                         {branch.branch, reading, "", "", nan, nan, nan, nan, nan, nan,
-                          branch.not_attributed.empty() ? branch.no_abscissa : branch.not_attributed});
+                 if (found.empty()) {
+                     std::vector<Cell> row{branch.branch, reading, "", ""};
+                     row.resize(table.columns.size() - 1, nan);
+                     row.emplace_back(branch.not_attributed.empty() ? branch.no_abscissa
+                                                                    : branch.not_attributed);
+                     table.rows.push_back(std::move(row));
+                 }
                  for (std::size_t c = 0; c < found.size(); ++c) {
                      const GapShare& s = found[c];
-                     table.rows.push_back({branch.branch, reading, main[c].name, symbol(main[c].unit),
-                                           s.whole, s.lever, s.axis, s.load, s.rest, s.band, ""});
+                     std::vector<Cell> row{branch.branch,
+                                           reading,
+                                           main[c].name,
+                                           symbol(main[c].unit),
+                                           s.whole,
+                                           s.lever,
+                                           s.axis,
+                                           s.load,
+                                           s.rest,
+                                           s.band,
+                                           percent(s.lever, s.whole),
+                                           percent(s.axis, s.whole),
+                                           percent(s.load, s.whole)};
+                     row.insert(row.end(), s.combinations.begin(), s.combinations.end());
+                     row.emplace_back("");
+                     table.rows.push_back(std::move(row));
                  }
              });
     return table;

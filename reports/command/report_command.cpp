@@ -80,7 +80,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     study_options.progress = tell;
     const auto study = compare::study(model, study_options);
     add_gap(document, comparison, study);
-    document["convergence"] = study_json(model, study, compare::attribute_gap(model, tell));
+    document["convergence"] = study_json(study, compare::attribute_gap(model, tell));
     for (const auto& reason : study.inconclusive)
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 

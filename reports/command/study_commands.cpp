@@ -161,7 +161,7 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
         orders = compare::order_study(model, {.progress = progress});
     progress("");
-    if (!options.methods.empty()) print(study_tables(model, study, attribution));
+    if (!options.methods.empty()) print(study_text(model, study, attribution));
     print(order_text(order_table(orders)));
     const bool conclusive =
         (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
@@ -169,9 +169,10 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
         json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
-            part["convergence"] = study_json(model, study, attribution);
-            files.push_back({"convergence.csv", study_csv(model, study)});
-            files.push_back({"attribution.csv", attribution_csv(model, study, attribution)});
+            part["convergence"] = study_json(study, attribution);
+            files.push_back({"convergence.csv", csv(study_table(study))});
+            files.push_back({"step_errors.csv", csv(step_table(study))});
+            files.push_back({"attribution.csv", csv(gap_table(study.channels, attribution))});
         }
         if (!orders.empty()) {
             part["orders"] = table_json(order_table(orders));
@@ -203,8 +204,9 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         part["precision"] = precision_json(precision);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
-        write_results(folder, command, std::move(part),
-                      {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
+        write_results(
+            folder, command, std::move(part),
+            {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
     }
     return trade.recommendation ? fine : could_not_judge;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/text/readings.hpp"
+#include "compare/readings.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -60,7 +60,7 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
     const auto out = std::back_inserter(text);
     const Channel* by =
         branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
-    const std::string by_abscissa = at_equal_abscissa(by == nullptr ? "" : by->name);
+    const std::string by_abscissa = compare::abscissa_reading(by == nullptr ? "" : by->name);
     const auto& load = branch.deviation.equal_parameter;
     const auto& travel = branch.deviation.equal_abscissa;
     const auto& doubt = branch.uncertainty.equal_parameter;
@@ -70,7 +70,7 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
         return;
     }
     fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "",
-                   at_equal_parameter(symbol(branch.unit)), by_abscissa, "the references'");
+                   compare::parameter_reading(symbol(branch.unit)), by_abscissa, "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
                    "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share",
                    "max", fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share",

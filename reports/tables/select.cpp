@@ -18,6 +18,11 @@ bool same(const Cell& a, const Cell& b) {
     return x != nullptr && y != nullptr ? *x == *y || (*x != *x && *y != *y) : a == b;
 }
 
+std::string said(const Cell& cell) {
+    const auto* value = std::get_if<double>(&cell);
+    return value != nullptr ? fmt::format("{:g}", *value) : std::get<std::string>(cell);
+}
+
 }  // namespace
 
 std::size_t column(const Table& table, std::string_view name) {
@@ -50,6 +55,16 @@ Table where(const Table& table, std::string_view name, const std::string& value)
     return some;
 }
 
+Table only(const Table& table, const std::vector<std::string>& names) {
+    Table some{table.name, {}, std::vector<std::vector<Cell>>(table.rows.size())};
+    for (const auto& name : names) {
+        const std::size_t c = column(table, name);
+        some.columns.push_back(table.columns[c]);
+        for (std::size_t r = 0; r < table.rows.size(); ++r) some.rows[r].push_back(table.rows[r][c]);
+    }
+    return some;
+}
+
 Table spread(const Table& table, std::string_view across, const std::vector<std::string>& values) {
     std::vector<std::size_t> keys, moved;
     for (const auto& value : values) moved.push_back(column(table, value));
@@ -59,7 +74,10 @@ Table spread(const Table& table, std::string_view across, const std::vector<std:
 
     Table wide{table.name, {}, {}};
     for (const std::size_t c : keys) wide.columns.push_back(table.columns[c]);
-    const auto blocks = distinct(table, across);
+    std::vector<std::string> blocks;
+    for (const auto& row : table.rows)
+        if (const auto block = said(row[by]); std::ranges::find(blocks, block) == blocks.end())
+            blocks.push_back(block);
     for (const auto& block : blocks)
         for (const std::size_t c : moved) {
             wide.columns.push_back(table.columns[c]);
@@ -80,8 +98,8 @@ Table spread(const Table& table, std::string_view across, const std::vector<std:
             wide.rows.push_back(std::move(fresh));
             into = wide.rows.end() - 1;
         }
-        const auto block = static_cast<std::size_t>(
-            std::ranges::find(blocks, std::get<std::string>(row[by])) - blocks.begin());
+        const auto block =
+            static_cast<std::size_t>(std::ranges::find(blocks, said(row[by])) - blocks.begin());
         for (std::size_t k = 0; k < moved.size(); ++k)
             (*into)[keys.size() + block * moved.size() + k] = row[moved[k]];
     }

@@ -21,7 +21,10 @@ std::vector<std::string> distinct(const compare::Table& table, std::string_view 
 // The rows in which it says `value`.
 compare::Table where(const compare::Table& table, std::string_view name, const std::string& value);
 
-// Side by side what stands one below the other: columns `values` once for each word of column `across`, named
+// These columns, in this order.
+compare::Table only(const compare::Table& table, const std::vector<std::string>& names);
+
+// Side by side what stands one below the other: columns `values` once for each word or number of column `across`, named
 // "float: error", and one row for those that agree in all other columns. What is not there is NaN or empty.
 compare::Table spread(const compare::Table& table, std::string_view across,
                       const std::vector<std::string>& values);

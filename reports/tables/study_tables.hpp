@@ -1,23 +1,22 @@
-// A convergence study and a gap attribution: as people read them, as CSV, and as JSON.
+// What stands around the tables of a convergence study and a gap attribution on a terminal and in result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "compare/study.hpp"
 #include "models/model.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-std::string study_tables(const Model& model, const compare::Study& study,
-                         const std::vector<compare::BranchAttribution>& attribution);
+extern const std::vector<Shown> study_columns;  // of study_table, for people
+extern const std::vector<Shown> gap_columns;    // of gap_table
 
-// One row per branch, method, reading, channel and level; the numbers of the fit repeated in each.
-std::string study_csv(const Model& model, const compare::Study& study);
-std::string attribution_csv(const Model& model, const compare::Study& study,
-                            const std::vector<compare::BranchAttribution>& attribution);
-
-nlohmann::ordered_json study_json(const Model& model, const compare::Study& study,
+std::string study_text(const Model& model, const compare::Study& study,
+                       const std::vector<compare::BranchAttribution>& attribution);
+nlohmann::ordered_json study_json(const compare::Study& study,
                                   const std::vector<compare::BranchAttribution>& attribution);
 
 }  // namespace elastocheck::reports

@@ -221,16 +221,19 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         "converge " + scenes + "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
         (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const char* part : {"method 'published' at equal load", "method 'tangent' at equal nose_z",
-                             "|Φ|, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
+    for (const char* part :
+         {"branch 'lift' at equal load", "branch 'lift' at equal nose_z", "  published ", "  tangent ",
+          "|Φ| at its end, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["scenes"][0]["convergence"]["branches"][0]["methods"].size(), 2u);
-    EXPECT_EQ(
-        result["scenes"][0]["convergence"]["branches"][0]["gap_attribution"]["at_equal_parameter"].size(),
-        6u);
+    const auto& study = result["scenes"][0]["convergence"];
+    EXPECT_EQ(study["outputs"]["rows"].size(), 2u * 2 * 2 * 6) << "branches, methods, readings, outputs";
+    EXPECT_EQ(study["step_errors"]["rows"].size(), 2u * 2 * 2 * 6 * 5);
+    EXPECT_EQ(study["gap"]["rows"].size(), 2u * 2 * 6);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
-                         "lift,published,at equal load,nose_z,mm,320,"));
+                         "lift,published,at equal load,nose_z,mm,converging,"));
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "step_errors.csv"),
+                         "lift,published,at equal load,nose_z,mm,320,converged,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
     EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20").code, 2);
     EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method tangnt").code, 2);

@@ -32,7 +32,7 @@ const json& sample_result(const std::string& name) {
     compare::StudyOptions study_options;
     study_options.steps = {10, 20, 40, 80, 160};
     const auto study = compare::study(model, study_options);
-    part["convergence"] = study_json(model, study, compare::attribute_gap(model));
+    part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
     part["orders"] = table_json(order_table(

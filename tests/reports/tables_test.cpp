@@ -7,6 +7,7 @@
 
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
+#include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "reports/page/numbers.hpp"
@@ -15,6 +16,7 @@
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/select.hpp"
+#include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -161,6 +163,51 @@ TEST(Tables, TheArithmeticStandsSideBySide) {
     EXPECT_FALSE(contains(said, "converged")) << said;
     study.series[0].levels[1].outcome = Outcome::diverged;
     EXPECT_TRUE(contains(precision_text(study), "diverged"));
+}
+
+TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
+    const Model model = compile(support::scene("bushing_pair"));
+    auto study = compare::study(model, {.steps = {20, 40, 80, 160, 320}});
+    const auto attribution = compare::attribute_gap(model);
+    for (const auto& table : {study_table(study), step_table(study), gap_table(study.channels, attribution)})
+        expect_same(table, through_json(table));
+    const auto outputs = study_table(study), gaps = gap_table(study.channels, attribution);
+    const std::string said = study_text(model, study, attribution);
+    for (const char* reading : {"at equal load", "at equal nose_z"}) {
+        EXPECT_EQ(distinct(outputs, "reading"), distinct(gaps, "reading"));
+        EXPECT_TRUE(contains(said, std::string("branch 'lift' ") + reading)) << said;
+    }
+    EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
+
+    // Error to the truth is step error and gap; a gap is its parts, and their shares are of it.
+    const auto steps = step_table(study);
+    const double gap = number(outputs, 0, "gap");
+    EXPECT_EQ(number(steps, 0, "error"), number(steps, 0, "end") + gap);
+    EXPECT_EQ(number(steps, 4, "largest"), number(outputs, 0, "finest step error"));
+    for (std::size_t r = 0; r < gaps.rows.size(); ++r) {
+        const double whole = number(gaps, r, "whole");
+        EXPECT_EQ(number(gaps, r, "gap, following: nothing"), whole);
+        EXPECT_EQ(number(gaps, r, "gap, following: lever, axis and load"), number(gaps, r, "rest"));
+        if (const double share = number(gaps, r, "lever share"); std::isfinite(share)) {
+            EXPECT_NEAR(share * whole / 100, number(gaps, r, "lever"), 1e-12 * std::abs(whole));
+        }
+    }
+
+    auto& method = study.branches[0].methods[0];
+    method.equal_parameter.clear();
+    method.equal_abscissa.clear();
+    method.outcomes[1] = Outcome::diverged;
+    method.not_studied = "with 40 steps: diverged";
+    EXPECT_TRUE(contains(study_text(model, study, attribution), "with 40 steps: diverged"));
+    EXPECT_EQ(words(step_table(study), 1, "outcome"), "diverged");
+}
+
+TEST(Tables, NumbersStandSideBySideToo) {
+    const compare::Table levels{"levels",
+                                {{"who", "", "", true}, {"steps"}, {"error", "mm"}, {"other"}},
+                                {{"a", 10.0, 0.5, 1.0}, {"a", 20.0, 0.25, 2.0}, {"b", 10.0, 1.0, 3.0}}};
+    EXPECT_EQ(csv(spread(only(levels, {"who", "steps", "error"}), "steps", {"error"})),
+              "who,10: error [mm],20: error [mm]\na,0.5,0.25\nb,1,\n");
 }
 
 TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {

@@ -57,11 +57,11 @@ LegCurve curve_of(const Field& branch, std::string_view leg) {
     legs.fail(fmt::format("no leg '{}'", leg));
 }
 
-std::string Sweep::parameter() const { return fmt::format("{} [{}]", parameter_word(unit), unit); }
+std::string Sweep::parameter() const { return fmt::format("{} [{}]", compare::parameter_word(unit), unit); }
 
-std::string Sweep::at_equal_parameter() const { return reports::at_equal_parameter(unit); }
+std::string Sweep::at_equal_parameter() const { return compare::parameter_reading(unit); }
 std::string Sweep::at_equal_abscissa() const {
-    return reports::at_equal_abscissa(abscissa.substr(0, abscissa.find(" [")));
+    return compare::abscissa_reading(abscissa.substr(0, abscissa.find(" [")));
 }
 
 Sweep sweep_of(const Field& scene, const Field& branch) {

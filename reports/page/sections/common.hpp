@@ -7,7 +7,7 @@
 #include "reports/document/field.hpp"
 #include "reports/page/page.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/text/readings.hpp"
+#include "compare/readings.hpp"
 
 namespace elastocheck::reports {
 

@@ -44,7 +44,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
             {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
     if (!sweep.abscissa.empty() && !measured_over_parameter(scene)) {
-        if (parameter_word(sweep.unit) == "load") {
+        if (compare::parameter_word(sweep.unit) == "load") {
             outputs.push_back({"load", "Load", sweep.parameter(), "", false, true});
         } else {  // the force that moves it, in the place of the load
             for (const auto& c : channels_of(scene))
@@ -122,10 +122,10 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     for (const char* leg : {"equilibrium", "energy", "published recursion"})
         table.columns.push_back({leg + unit});
     if (fourth) table.columns.push_back({"measured"});
-    table.caption =
-        output.load
-            ? fmt::format("{} at equal {}, {}", sweep.abscissa, parameter_word(sweep.unit), sweep.name)
-            : fmt::format("{}, at equal {}, {}", output.axis, parameter_word(sweep.unit), sweep.name);
+    table.caption = output.load ? fmt::format("{} at equal {}, {}", sweep.abscissa,
+                                              compare::parameter_word(sweep.unit), sweep.name)
+                                : fmt::format("{}, at equal {}, {}", output.axis,
+                                              compare::parameter_word(sweep.unit), sweep.name);
 
     Figure figure{.id = fmt::format("{}-{}", output.id, slug(sweep.name)),
                   .title = output.title,

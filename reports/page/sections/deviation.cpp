@@ -139,7 +139,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     figure.description = fmt::format(
         "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
         "published {} up to {}{}{}. {}",
-        parameter_word(sweep.unit),
+        compare::parameter_word(sweep.unit),
         number(sweep.branches.size() > 1 ? sweep.branches.back()["to"].number()
                                          : sweep.branches.front()["from"].number(),
                4),

@@ -4,17 +4,17 @@
 #include <string>
 #include <string_view>
 
-namespace elastocheck::reports {
+namespace elastocheck::compare {
 
 // "load" of a parameter in N or N·m, "parameter" of another.
 inline std::string parameter_word(std::string_view unit) {
     return unit == "N" || unit == "N·m" ? "load" : "parameter";
 }
-inline std::string at_equal_parameter(std::string_view unit) { return "at equal " + parameter_word(unit); }
+inline std::string parameter_reading(std::string_view unit) { return "at equal " + parameter_word(unit); }
 
 // "at equal travel"; without such a channel "at equal abscissa".
-inline std::string at_equal_abscissa(std::string_view channel) {
+inline std::string abscissa_reading(std::string_view channel) {
     return "at equal " + std::string(channel.empty() ? "abscissa" : channel);
 }
 
-}  // namespace elastocheck::reports
+}  // namespace elastocheck::compare
