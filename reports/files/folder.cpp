@@ -79,7 +79,10 @@ void check_ours(const fs::path& folder) {
 void remove_ours(const fs::path& folder) {
     std::error_code ignored;
     if (fs::is_regular_file(fs::symlink_status(folder / marker))) {
-        fs::remove_all(folder, ignored);
+        for (const auto& entry : fs::directory_iterator(folder, ignored))
+            if (entry.path().filename() != marker) fs::remove_all(entry.path(), ignored);
+        fs::remove(folder / marker, ignored);  // last: a kill on the way leaves what is still recognised
+        ::rmdir(folder.c_str());
         return;
     }
     const auto listed = listed_in(folder);
