@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "compare/legs.hpp"
-#include "models/overloaded.hpp"
 #include "compare/timing.hpp"
+#include "models/overloaded.hpp"
 #include "recursive/solve.hpp"
 
 namespace elastocheck::compare {

@@ -2,7 +2,6 @@
 
 namespace elastocheck::recursive {
 
-template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
-                                       double&);
+template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&, double&);
 
 }  // namespace elastocheck::recursive

@@ -134,7 +134,8 @@ int run(int argc, char** argv) {
         ->delimiter(',')
         ->check(CLI::Range(1, most_steps));
     converge_command
-        ->add_option("-o,--output", output, "folder for result.json, convergence.csv, step_errors.csv and attribution.csv")
+        ->add_option("-o,--output", output,
+                     "folder for result.json, convergence.csv, step_errors.csv and attribution.csv")
         ->check(a_name());
 
     std::string tolerance = "0.01mm,0.001deg";

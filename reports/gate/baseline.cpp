@@ -142,7 +142,8 @@ Series series_of(const Field& field) {
 
 compare::Limit limit_of(const Field& field) {
     expect_fields(field, {"of", "channel", "max"});
-    constexpr std::array deviations{Quantity::deviation_at_equal_parameter, Quantity::deviation_at_equal_abscissa};
+    constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
+                                    Quantity::deviation_at_equal_abscissa};
     return {named(at(field, "of"), deviations), text(at(field, "channel")), number(at(field, "max"))};
 }
 

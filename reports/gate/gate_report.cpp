@@ -192,9 +192,8 @@ std::string gate_table(const GatedScene& scene) {
     std::string out = headline(scene) + "\n";
     const auto worst = worst_of_each_channel({&scene});
     if (!worst.empty())
-        out +=
-            fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>8}\n", "branch", "what",
-                        "channel", "at", "accepted", "measured", "difference", "tolerances", "numbers");
+        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>8}\n", "branch", "what",
+                           "channel", "at", "accepted", "measured", "difference", "tolerances", "numbers");
     for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
         const Offence& o = *worst[k].offence;
         out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10.3g} {:>8}\n",

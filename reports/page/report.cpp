@@ -225,11 +225,12 @@ std::string numbers_csv(const json& result, const std::string& file) {
                 // The references agree to far better; a deviation carries the rounding of its many steps.
                 const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
                 row(scene, branch, channel, "equilibrium at the end", values.back(), fine);
-                row(scene, branch, channel, by_parameter + ": deviation at the end",
-                    (*load)["end"].number(), coarse);
-                row(scene, branch, channel, by_parameter + ": largest deviation",
-                    (*load)["max"].number(), coarse);
-                if (const auto travel = branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
+                row(scene, branch, channel, by_parameter + ": deviation at the end", (*load)["end"].number(),
+                    coarse);
+                row(scene, branch, channel, by_parameter + ": largest deviation", (*load)["max"].number(),
+                    coarse);
+                if (const auto travel =
+                        branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
                     row(scene, branch, channel, by_abscissa + ": largest deviation",
                         (*travel)["max"].number(), coarse);
             }

@@ -143,8 +143,7 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
 // Where a motion dictates every position, what is wrong is the force that it takes.
 TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     const std::string text = said(sample_result("arch_driven"));
-    EXPECT_TRUE(
-        contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
+    EXPECT_TRUE(contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
         << text;
     EXPECT_TRUE(contains(said(sample_result("slider_crank")), "Its crank.drive moment is off by up to"))
         << said(sample_result("slider_crank"));

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "compare/readings.hpp"
 #include "reports/document/field.hpp"
 #include "reports/page/page.hpp"
 #include "reports/tables/render.hpp"
-#include "compare/readings.hpp"
 
 namespace elastocheck::reports {
 
