@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "compare/deformation.hpp"
+#include "compare/positions.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -21,25 +23,27 @@ constexpr double metre = 1;         // the least size that a length is a share o
 
 double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
-const Pose& pose(const std::vector<Pose>& poses, BodyId body) {
-    static const Pose at_rest;
-    return body == ground ? at_rest : poses[static_cast<std::size_t>(body)];
-}
-Vector3d position(const std::vector<Pose>& poses, BodyId body, const Vector3d& s_local) {
-    return pose(poses, body).r + pose(poses, body).p * s_local;
-}
-
 // ---- What the laws say, one function each: the force of a deformation, and the largest stiffness.
 
-double force(const LinearRate& u, double x) { return std::abs(u.k * x); }
-double stiffness(const LinearRate& u) { return u.k; }
 Vector6 force(const LinearStiffness& u, const Vector6& e) { return u.K * e; }
+Vector6 force(const PerAxis& u, const Vector6& e) {
+    Vector6 F;
+    for (std::size_t k = 0; k < 6; ++k)
+        F[static_cast<Eigen::Index>(k)] = compare::force(u.axis[k], e[static_cast<Eigen::Index>(k)]);
+    return F;
+}
 // [N/m]: turning the lever L by an angle moves its end by L times that.
 double stiffness(const LinearStiffness& u, double L) {
     const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
                  K_R = u.K.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff(),
                  coupled = u.K.topRightCorner<3, 3>().cwiseAbs().maxCoeff();
     return std::max({K_T, coupled / L, K_R / (L * L)});
+}
+double stiffness(const PerAxis& u, double L) {
+    double k = 0;
+    for (std::size_t axis = 0; axis < 6; ++axis)
+        k = std::max(k, steepest(u.axis[axis]) / (axis < 3 ? 1 : L * L));
+    return k;
 }
 
 double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
@@ -55,29 +59,22 @@ void moved(const Branch& branch, std::size_t k, double a, Sink&& sink) {
 double as_force(const Vector3d& f, const Vector3d& m, double L) { return larger(f.norm(), m.norm() / L); }
 
 double stored(const AxialSpring& e, std::size_t k, const Branch& branch, const Equilibrium& state, double) {
-    double free_length = e.free_length;
-    moved<FreeLength>(branch, k, state.load, [&](const FreeLength&, double more) { free_length += more; });
-    const double length =
-        (position(state.poses, e.j.body, e.j.s_local) - position(state.poses, e.i.body, e.i.s_local)).norm();
-    return std::visit([&](const auto& law) { return force(law, length - free_length); }, e.law);
+    return std::abs(compare::force(e.law, deformation(e, k, branch, state)));
 }
 double stored(const Bushing& e, std::size_t k, const Branch& branch, const Equilibrium& state, double L) {
-    const Eigen::Quaterniond A_i = pose(state.poses, e.i.body).p * e.i.A_local,
-                             A_j = pose(state.poses, e.j.body).p * e.j.A_local;
-    const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
-    Vector6 deformation;
-    deformation << A_i.conjugate() * (position(state.poses, e.j.body, e.j.s_local) -
-                                      position(state.poses, e.i.body, e.i.s_local)),
-        turn.angle() * turn.axis();
-    Vector6 F = e.preload + std::visit([&](const auto& law) { return force(law, deformation); }, e.law);
+    const Vector6 x = deformation(e, state);
+    Vector6 F = e.preload + std::visit([&](const auto& law) { return force(law, x); }, e.law);
     moved<Preload>(branch, k, state.load, [&](const Preload& p, double v) { F += v * p.direction; });
     return as_force(F.head<3>(), F.tail<3>(), L);
 }
 
 double acting(const LoadKind& load, double factor, double L) {
-    return std::abs(factor) * std::visit(overloaded{[](const DeadForce& l) { return l.f.norm(); },
-                                                    [&](const DeadMoment& l) { return l.m.norm() / L; }},
-                                         load);
+    return std::abs(factor) *
+           std::visit(overloaded{[](const DeadForce& l) { return l.f.norm(); },
+                                 [&](const DeadMoment& l) { return l.m.norm() / L; },
+                                 [](const FollowerForce& l) { return l.f_local.norm(); },
+                                 [&](const FollowerMoment& l) { return l.m_local.norm() / L; }},
+                      load);
 }
 
 // Where something is attached, at the design pose.
@@ -111,10 +108,7 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
 
     double k = 0;
     for (const auto& elastic : model.elastics)
-        k = larger(k, std::visit(overloaded{[](const AxialSpring& e) {
-                                                return std::visit([](const auto& u) { return stiffness(u); },
-                                                                  e.law);
-                                            },
+        k = larger(k, std::visit(overloaded{[](const AxialSpring& e) { return steepest(e.law); },
                                             [&](const Bushing& e) {
                                                 return std::visit(
                                                     [&](const auto& u) { return stiffness(u, L); }, e.law);

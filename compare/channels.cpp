@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 
+#include "compare/positions.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -18,14 +19,10 @@ using Eigen::Vector3d;
 constexpr std::array axes{"x", "y", "z"};
 constexpr std::array towards{"forward", "to the left", "up"};
 
-const Pose& pose(const Equilibrium& state, BodyId body) {
-    static const Pose at_rest;
-    return body == ground ? at_rest : state.poses[static_cast<std::size_t>(body)];
-}
+const Pose& pose(const Equilibrium& state, BodyId body) { return compare::pose(state.poses, body); }
 
 Vector3d position(const Equilibrium& state, const Point& point) {
-    const Pose& b = pose(state, point.body);
-    return b.r + b.p * point.s_local;
+    return compare::position(state.poses, point);
 }
 
 Vector3d direction(const Equilibrium& state, const Direction& u) { return pose(state, u.body).p * u.u_local; }

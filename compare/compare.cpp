@@ -33,6 +33,10 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     return run;
 }
 
+const LegRun& run_of(const BranchComparison& branch, Leg leg) {
+    return branch.runs[static_cast<std::size_t>(leg)];
+}
+
 // Over its bound; more than 1 is too much, and so is what is no number.
 double share(double value, double bound) {
     const double part = bound > 0 ? value / bound : value > 0 ? INFINITY : 0;
@@ -90,13 +94,15 @@ std::vector<std::string> Objections::texts() const {
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
                          const BranchComparison& branch) {
     Objections objections;
-    for (const auto& run : branch.runs)
+    for (const auto& run : branch.runs) {
+        if (run.leg == Leg::energy && branch.second != Leg::energy)
+            continue;  // cannot be asked, and need not
         if (run.path.outcome != Outcome::converged)
             objections.add(fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.path.outcome),
                                        run.path.detail));
+    }
     if (!objections.empty()) return objections;
-    const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
-    const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+    const LegRun &equilibrium = run_of(branch, Leg::equilibrium), &second = run_of(branch, branch.second);
     if (const auto why = nothing_moves(model, channels, asked, equilibrium.curve); !why.empty())
         objections.add(why);
 
@@ -112,7 +118,9 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                             channels[c].name, off, symbol(channels[c].unit), bound),
                 part);
     }
-    for (const auto& [run, other] : {std::pair{&equilibrium, Leg::energy}, {&energy, Leg::equilibrium}}) {
+    // Whoever can judge states without having made them: the series is of the recursive leg's equations.
+    const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
+    for (const auto& [run, other] : {std::pair{&equilibrium, judge}, {&second, Leg::equilibrium}}) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
         const Bounds& b = branch.bounds;
         const double part = std::max({share(r.force, b.residual_force), share(r.moment, b.residual_moment),
@@ -169,18 +177,23 @@ Comparison compare(const Model& model, const Options& options) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));
         }
-        const auto run_of = [&](Leg leg) -> const LegRun& { return b.runs[static_cast<std::size_t>(leg)]; };
-        const LegRun& truth = run_of(Leg::equilibrium);
+        if (const auto& energy = run_of(b, Leg::energy).path; energy.outcome == Outcome::not_conservative) {
+            b.second = Leg::series;
+            b.no_energy = energy.detail;
+            if (options.progress) options.progress(fmt::format("{}: series", branch.name));
+            b.runs.push_back(run(model, result.channels, branch, ways[k], Leg::series, {}));
+        }
+        const LegRun& truth = run_of(b, Leg::equilibrium);
         b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
         const auto pair = [&](Leg a, Leg c) {
-            const Curve &of_a = run_of(a).curve, &of_c = run_of(c).curve;
+            const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
             return Pair{
                 a, c, at_equal_parameter(of_a, of_c),
                 at_equal_abscissa(of_a, of_c, compare::abscissa(result.channels, b.abscissa, of_a, of_c))};
         };
         b.deviation = pair(Leg::equilibrium, Leg::recursive);
-        b.cross_check = pair(Leg::energy, Leg::recursive);
-        b.uncertainty = pair(Leg::equilibrium, Leg::energy);
+        b.cross_check = pair(b.second, Leg::recursive);
+        b.uncertainty = pair(Leg::equilibrium, b.second);
         b.bounds = bounds_of(options.agreement, scale_of(ways[k].front().model, branch, truth.path.points));
         b.inconclusive = disagreements(model, result.channels, branch, b);
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})

@@ -26,7 +26,8 @@ struct LegRun {
     EquilibriumPath path;
     Curve curve;
     double seconds = 0;
-    std::array<Residuals, legs.size()> judged;  // worst over the points, by the equations of each leg
+    std::array<Residuals, legs.size()> judged;  // worst over the points, by the equations of each leg;
+                                                // forces are NaN by the energy leg's where there is no energy
 };
 
 // The recursion goes as `recursion` says, the published one unless it says otherwise, and every one of its
@@ -57,14 +58,16 @@ struct Objections {
 
 struct BranchComparison {
     std::string branch;
-    Unit unit = Unit::newton;      // of its parameter
-    int abscissa = -1;             // channel of the readings at equal abscissa; -1: none
-    std::vector<LegRun> runs;      // in the order of `legs`
+    Unit unit = Unit::newton;  // of its parameter
+    int abscissa = -1;         // channel of the readings at equal abscissa; -1: none
+    std::vector<LegRun> runs;  // in the order of `legs`, then the series where it is the second reference
+    Leg second = Leg::energy;  // the second reference: the energy leg, or the series where there is no energy
+    std::string no_energy;     // what has none then, in words
     std::vector<bool> determined;  // per channel; what is not is never compared: reactions that redundant
                                    // joints share as they like, joints that do not stand on this branch
     Pair deviation;                // the recursion against the equilibrium leg
-    Pair cross_check;              // the recursion against the energy leg
-    Pair uncertainty;              // the energy leg against the equilibrium leg
+    Pair cross_check;              // the recursion against the second reference
+    Pair uncertainty;              // the second reference against the equilibrium leg
     Bounds bounds;                 // within which the references have to agree
     Objections inconclusive;       // why this branch cannot be judged; empty when it can
 };

@@ -116,7 +116,10 @@ namespace {
 template <class Sink>
 int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink) {
     const auto at = a.channel(abscissa), x = b.channel(abscissa);
-    const auto [low, high] = std::minmax(x.front(), x.back());
+    // Both are held at the same travel at an end that is driven, and meet it to their rounding.
+    const double rounding = 1e-9 * std::abs(x.back() - x.front());
+    const double low = std::min(x.front(), x.back()) - rounding,
+                 high = std::max(x.front(), x.back()) + rounding;
     int outside = 0;
     for (const double t : at) outside += t < low || t > high;
     for (std::size_t c = 0; c < a.values.front().size(); ++c) {
@@ -190,7 +193,7 @@ Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve) {
     Accuracy largest{};
     for (const auto& values : curve.values)
         for (std::size_t c = 0; c < channels.size(); ++c)
-            raise(channels, c, 4 * std::numeric_limits<double>::epsilon() * values[c], largest);
+            raise(channels, c, 16 * std::numeric_limits<double>::epsilon() * values[c], largest);
     return largest;
 }
 

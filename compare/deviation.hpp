@@ -63,7 +63,8 @@ Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Cu
 // same parameters.
 Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b);
 
-// Two references may agree to the last bit by luck; values of this size know no more than a few units of it.
+// Two references may agree to the last bit by luck; values of this size, summed over a path, know no more than some
+// units of it: 16.
 Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve);
 
 }  // namespace elastocheck::compare

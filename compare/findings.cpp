@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/positions.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -37,23 +38,42 @@ Eigen::Vector3d at_design(const Model& model, const Direction& u) {
     return u.body == ground ? u.u_local : model.bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
 }
 
-enum class Lift { none, load, jack };
+enum class Lift { none, load, jack, road };
 struct Lifted {
     Lift by = Lift::none;
-    int joint = -1;  // of the jack
+    int joint = -1;     // of the jack
+    double force = 0;   // of the load, per unit of the parameter [N]
+    double height = 0;  // of the road, likewise [m]
 };
+
+// The height of the road per unit of what drives the preload, if the element is the tyre under this wheel, which pushes
+// it up by P - k_t (d_z - h): its preload is -P - k_t h.
+double road_height(const Elastic& elastic, const Preload& driven, const Wheel& wheel) {
+    const auto* tyre = std::get_if<Bushing>(&elastic.kind);
+    const bool is_tyre = tyre != nullptr && elastic.only_where_driven && wheel.tyre_rate > 0 &&
+                         tyre->i.body == ground && tyre->j.body == wheel.body &&
+                         (tyre->j.s_local - wheel.contact_local).norm() <= 1e-9;
+    return is_tyre ? -driven.direction[2] / wheel.tyre_rate : 0;
+}
 
 // The one thing that moves, if it is vertical and takes hold of this wheel's body.
 Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
     Lifted found;
     for (const auto& driver : branch.drivers) {
-        if (driver.rate == 0) continue;  // held
+        if (driver.rate == 0) {  // held
+            const auto* road = std::get_if<Preload>(&driver.what);
+            if (road != nullptr &&
+                road_height(model.elastics[static_cast<std::size_t>(road->elastic)], *road, wheel) != 0)
+                return {};  // what lifts the wheel off its tyre has to bear that too
+            continue;
+        }
         const Lifted one = std::visit(
             overloaded{[&](const Load& load) {
                            const auto* force = std::get_if<DeadForce>(&load.kind);
                            const bool lifts =
                                force != nullptr && force->at.body == wheel.body && vertical(force->f);
-                           return Lifted{lifts ? Lift::load : Lift::none, -1};
+                           return Lifted{lifts ? Lift::load : Lift::none, -1,
+                                         lifts ? driver.rate * force->f.z() : 0, 0};
                        },
                        [&](const Motion& motion) {
                            const ModelJoint& joint = model.joints[static_cast<std::size_t>(motion.joint)];
@@ -61,9 +81,14 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                            const auto* plane = std::get_if<PointInPlane>(
                                &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
                            const bool lifts = plane != nullptr && vertical(at_design(model, plane->normal_j));
-                           return Lifted{lifts ? Lift::jack : Lift::none, motion.joint};
+                           return Lifted{lifts ? Lift::jack : Lift::none, motion.joint, 0, 0};
                        },
-                       [](const FreeLength&) { return Lifted{}; }, [](const Preload&) { return Lifted{}; }},
+                       [](const FreeLength&) { return Lifted{}; },
+                       [&](const Preload& preload) {
+                           const Elastic& elastic = model.elastics[static_cast<std::size_t>(preload.elastic)];
+                           const double height = driver.rate * road_height(elastic, preload, wheel);
+                           return Lifted{height != 0 ? Lift::road : Lift::none, -1, 0, height};
+                       }},
             driver.what);
         if (one.by == Lift::none || found.by != Lift::none) return {};
         found = one;
@@ -93,8 +118,9 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
     std::vector<RateError> list;
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const BranchComparison& branch = comparison.branches[b];
-        const Curve &truth = run_of(branch, Leg::equilibrium).curve,
-                    &fast = run_of(branch, Leg::recursive).curve;
+        const LegRun &reference = run_of(branch, Leg::equilibrium),
+                     &recursion = run_of(branch, Leg::recursive);
+        const Curve &truth = reference.curve, &fast = recursion.curve;
         if (truth.a.empty() || truth.a.size() != fast.a.size() || truth.start != fast.start) continue;
         for (std::size_t w = 0; w < model.wheels.size(); ++w) {
             const Wheel& wheel = model.wheels[w];
@@ -117,11 +143,31 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 if (end == truth.start) continue;
                 RateError error{branch.branch, wheel.name, truth.a[end], branch.unit};
                 error.travel = fast.values[end][travel] - truth.values[end][travel];
-                if (by.by == Lift::load) {  // the same force over travels that differ
-                    error.off = gained(truth, travel, end) / gained(fast, travel, end) - 1;
-                } else {  // forces that differ over the same travel
-                    error.force = fast.values[end][force] - truth.values[end][force];
-                    error.off = gained(fast, force, end) / gained(truth, force, end) - 1;
+                const double change = (truth.a[end] - truth.a[truth.start]) / in_unit(branch.unit);
+                // [N]: of the load, of the jack, of the tyre on the road: k_t (Δh - Δz), z of the contact patch
+                const auto lifting = [&](const LegRun& run) {
+                    if (by.by == Lift::load) return by.force * change;
+                    if (by.by == Lift::jack) return gained(run.curve, force, end);
+                    const auto z = [&](std::size_t k) {
+                        return position(run.path.points[k].poses, wheel.body, wheel.contact_local).z();
+                    };
+                    return wheel.tyre_rate * (by.height * change - (z(end) - z(run.curve.start)));
+                };
+                // [N/mm]: under a load the same force over travels that differ, on a jack forces that differ
+                const auto rate = [&](const LegRun& run) {
+                    return lifting(run) / gained(run.curve, travel, end);
+                };
+                error.wheel_rate = rate(reference);
+                error.off = rate(recursion) / error.wheel_rate - 1;
+                if (by.by == Lift::jack) error.force = fast.values[end][force] - truth.values[end][force];
+                if (wheel.tyre_rate > 0) {
+                    const double tyre = 1e-3 * wheel.tyre_rate;
+                    const auto ride = [&](const LegRun& run) {
+                        return by.by == Lift::road ? 1e-3 * lifting(run) / (by.height * change)
+                                                   : 1 / (1 / rate(run) + 1 / tyre);
+                    };
+                    error.ride_rate = ride(reference);
+                    error.ride_off = ride(recursion) / error.ride_rate - 1;
                 }
                 if (std::isfinite(error.off)) list.push_back(error);
             }

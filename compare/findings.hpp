@@ -1,6 +1,7 @@
 // What a comparison comes to: the few numbers that a verdict is made of.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,15 +24,20 @@ struct Worst {
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit);  // recursion
 std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit);  // references
 
-// How far the recursion's wheel rate is off at one end of a branch: force over travel from a = 0 to there.
-// Only where the branch moves nothing but a vertical load on that wheel, or a jack under it.
+// The wheel rate, and how far the recursion's is off, at one end of a branch: force over travel from a = 0 to there.
+// Only where the branch moves nothing but a vertical load on that wheel, a jack under it, or the road under its tyre.
 struct RateError {
     std::string branch, wheel;
     double to = 0;  // the end, in `unit`
     Unit unit = Unit::newton;
-    double off = 0;     // rate of the recursion over that of the reference, less 1: positive is too stiff
-    double travel = 0;  // travel there, recursion less reference [mm]
-    double force = 0;   // jack force there, likewise [N]
+    double off = 0;         // rate of the recursion over that of the reference, less 1: positive is too stiff
+    double travel = 0;      // travel there, recursion less reference [mm]
+    double force = 0;       // jack force there, likewise [N]
+    double wheel_rate = 0;  // k_w of the reference from a = 0 to there: force over travel [N/mm]
+    // With the wheel's tyre in series, k_t: 1 / (1/k_w + 1/k_t) of the reference [N/mm], where the road moves the tyre's
+    // force over the height of the road; and how far the recursion's is off. NaN where the wheel has no tyre.
+    double ride_rate = std::numeric_limits<double>::quiet_NaN();
+    double ride_off = std::numeric_limits<double>::quiet_NaN();
 };
 std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison);
 

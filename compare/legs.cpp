@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "compare/deformation.hpp"
 #include "models/branch.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
@@ -22,6 +24,23 @@ std::vector<double> grid(const Branch& way) {
     return a;
 }
 
+EquilibriumPath recursion(const Way& way, recursive::Options options, int refine) {
+    options.record = way.branch.steps;
+    options.steps = way.branch.steps * refine;
+    return recursive::solve(way.model, way.branch, options);
+}
+
+// Where curves go on for ever.
+EquilibriumPath walk_anywhere(const Way& way, const Gait& gait) {
+    switch (gait.leg) {
+        case Leg::recursive: return recursion(way, gait.recursion, gait.refine);
+        case Leg::equilibrium: return reference::equilibrium::solve(way.model, way.branch, grid(way.branch));
+        case Leg::energy: return reference::energy::solve(way.model, way.branch, grid(way.branch));
+        case Leg::series: return recursion(way, {.method = recursive::find_method("series").value()}, 1);
+    }
+    return {};
+}
+
 std::string label(const Branch& way) {
     const Unit unit = unit_of(way.unit);
     return fmt::format("{} to {:.4g} {}", way.name, in_unit(unit) * way.to, symbol(unit));
@@ -34,6 +53,7 @@ const char* name(Leg leg) {
         case Leg::recursive: return "recursive";
         case Leg::equilibrium: return "equilibrium";
         case Leg::energy: return "energy";
+        case Leg::series: return "series";
     }
     return "";
 }
@@ -48,17 +68,27 @@ std::vector<Way> ways_of(const Model& model, Branch branch, int points) {
 }
 
 EquilibriumPath walk(const Way& way, const Gait& gait) {
-    switch (gait.leg) {
-        case Leg::recursive: {
-            recursive::Options options = gait.recursion;
-            options.record = way.branch.steps;
-            options.steps = way.branch.steps * gait.refine;
-            return recursive::solve(way.model, way.branch, options);
-        }
-        case Leg::equilibrium: return reference::equilibrium::solve(way.model, way.branch, grid(way.branch));
-        case Leg::energy: return reference::energy::solve(way.model, way.branch, grid(way.branch));
+    EquilibriumPath path = walk_anywhere(way, gait);
+    end_at_table(way.model, way.branch, path);
+    return path;
+}
+
+EquilibriumPath rest(const Way& way, Leg leg) {
+    constexpr std::array start{0.0};
+    EquilibriumPath path;
+    switch (leg) {
+        case Leg::equilibrium: path = reference::equilibrium::solve(way.model, way.branch, start); break;
+        case Leg::energy: path = reference::energy::solve(way.model, way.branch, start); break;
+        case Leg::recursive:
+        case Leg::series: path = walk_anywhere(way, {.leg = leg}); break;
     }
-    return {};
+    if (!path.points.empty()) {  // how the rest of the way ends does not matter
+        path.outcome = Outcome::converged;
+        path.detail.clear();
+        path.points.resize(1);
+    }
+    end_at_table(way.model, way.branch, path);
+    return path;
 }
 
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
@@ -70,6 +100,8 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
     };
     if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
     EquilibriumPath second = walk(ways.back(), gait);
+    // What has no energy has none on either way.
+    if (joined.outcome == Outcome::not_conservative && second.outcome == joined.outcome) return second;
     if (second.outcome != Outcome::converged) {
         joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
         if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
@@ -86,7 +118,8 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
 
 Residuals judge(Leg by, const Way& way, const Equilibrium& state) {
     switch (by) {
-        case Leg::recursive: return recursive::residuals(way.model, way.branch, state);
+        case Leg::recursive:
+        case Leg::series: return recursive::residuals(way.model, way.branch, state);
         case Leg::equilibrium: return reference::equilibrium::residuals(way.model, way.branch, state);
         case Leg::energy: return reference::energy::residuals(way.model, way.branch, state);
     }
@@ -123,11 +156,16 @@ References references(const Model& model, const std::vector<Channel>& channels, 
                       const std::vector<Way>& ways) {
     References result;
     result.equilibrium = walk(ways, {.leg = Leg::equilibrium});
-    result.energy = walk(ways, {.leg = Leg::energy});
+    result.second = walk(ways, {.leg = Leg::energy});
+    if (result.second.outcome == Outcome::not_conservative) {
+        result.second_leg = Leg::series;
+        result.no_energy = result.second.detail;
+        result.second = walk(ways, {.leg = Leg::series});
+    }
     result.truth = curve(model, channels, branch, result.equilibrium.points);
-    result.other = curve(model, channels, branch, result.energy.points);
+    result.other = curve(model, channels, branch, result.second.points);
     for (const auto& [leg, path] :
-         {std::pair{Leg::equilibrium, &result.equilibrium}, {Leg::energy, &result.energy}})
+         {std::pair{Leg::equilibrium, &result.equilibrium}, {result.second_leg, &result.second}})
         if (path->outcome != Outcome::converged)
             result.failures.push_back(
                 fmt::format("{} leg: {}: {}", name(leg), elastocheck::name(path->outcome), path->detail));
@@ -142,7 +180,7 @@ References references(const Model& model, const std::vector<Channel>& channels, 
 
 Settled settled(const Model& model, const std::vector<Channel>& channels, const Branch& branch) {
     const Way way = ways_of(model, branch).front();
-    const auto path = reference::equilibrium::solve(way.model, way.branch, std::vector<double>{0});
+    const auto path = rest(way, Leg::equilibrium);
     Settled result{branch.name, path.outcome, path.detail, std::vector<double>(channels.size(), nan)};
     if (path.outcome != Outcome::converged || path.points.empty()) return result;
     const auto drawn = evaluate(model, channels, design_state(model)),

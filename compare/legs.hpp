@@ -13,7 +13,9 @@
 
 namespace elastocheck::compare {
 
-enum class Leg { recursive, equilibrium, energy };
+// The three legs, and what stands in for the energy leg where a load or a formulation has no energy: the branch as a
+// power series, told the tightest tolerance.
+enum class Leg { recursive, equilibrium, energy, series };
 inline constexpr std::array legs{Leg::recursive, Leg::equilibrium, Leg::energy};
 const char* name(Leg leg);
 
@@ -36,20 +38,29 @@ struct Gait {
     int refine = 1;
 };
 
+// Ends, whatever the leg, before the first point at which an element is deformed beyond the end of a curve that says
+// nothing there: Outcome::outside_table.
 EquilibriumPath walk(const Way& way, const Gait& gait);
 
 // Both ways in one path, a going from `from` to `to`; one way as it was walked. It ends with the outcome of
 // the first way that failed, and its points are those reached on either side of a = 0.
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait);
 
+// Where the way begins by this leg: one point, the state at a = 0, settled under what is held; none where it does not
+// settle.
+EquilibriumPath rest(const Way& way, Leg leg);
+
 // What the state leaves in the equations of a leg.
 Residuals judge(Leg by, const Way& way, const Equilibrium& state);
 
 // ---- The references along a branch.
 
+// The equilibrium leg, and the energy leg; or series, where the energy leg says that there is no energy.
 struct References {
-    EquilibriumPath equilibrium, energy;
-    Curve truth, other;  // of the equilibrium and of the energy leg, on the channels asked for
+    EquilibriumPath equilibrium, second;
+    Leg second_leg = Leg::energy;
+    std::string no_energy;  // what has none, where second_leg is the series
+    Curve truth, other;     // of the first and of the second, on the channels asked for
     Accuracy
         uncertainty;  // how far they are apart on the main channels, at least their rounding; NaN on failure
     std::vector<std::string> failures;  // why they are no reference: a leg failed, nothing drives the branch,

@@ -133,10 +133,43 @@ Table rate_table(const std::vector<RateError>& errors) {
                  words("unit"),
                  {"error", "%", "of the recursion's force over travel; positive: too stiff"},
                  {"travel", "mm", "recursion less reference at that end"},
-                 {"jack force", "N", "likewise"}},
+                 {"jack force", "N", "likewise"},
+                 {"wheel rate", "N/mm", "of the reference, force over travel from the start to that end"},
+                 {"ride rate", "N/mm", "of wheel and tyre in series; empty without a tyre"},
+                 {"ride error", "%", "of the recursion's ride rate; positive: too stiff"}},
                 {}};
     for (const auto& e : errors)
-        table.rows.push_back({e.branch, e.wheel, e.to, symbol(e.unit), 100 * e.off, e.travel, e.force});
+        table.rows.push_back({e.branch, e.wheel, e.to, symbol(e.unit), 100 * e.off, e.travel, e.force,
+                              e.wheel_rate, e.ride_rate, 100 * e.ride_off});
+    return table;
+}
+
+Table formulation_table(const FormulationStudy& study, const Comparison& comparison) {
+    Table table{"formulations",
+                {words("branch"),
+                 words("output"),
+                 words("unit"),
+                 {"spread", "", "largest less smallest value over the formulations, where that is most"},
+                 {"at", "", "parameter there"},
+                 words("parameter unit"),
+                 words("smallest by", "the formulation that gives the smallest value there"),
+                 words("largest by", "likewise"),
+                 {"references apart", "", "at most, at equal parameter"},
+                 {"deviation", "", "of the recursion from the equilibrium leg at equal parameter, at most"}},
+                {}};
+    const auto in = [&](const Reading& reading, const std::string& channel) {
+        const int c = find_channel(comparison.channels, channel);
+        return c < 0 || reading.channels.empty() ? nan : reading.channels[static_cast<std::size_t>(c)].max;
+    };
+    for (std::size_t b = 0; b < study.branches.size(); ++b)
+        for (const auto& found : study.branches[b].outputs) {
+            const Channel& channel = study.channels[found.channel];
+            const BranchComparison& compared = comparison.branches[b];
+            table.rows.push_back({study.branches[b].branch, channel.name, symbol(channel.unit), found.spread,
+                                  found.at, symbol(study.branches[b].unit), found.lowest, found.highest,
+                                  in(compared.uncertainty.equal_parameter, channel.name),
+                                  in(compared.deviation.equal_parameter, channel.name)});
+        }
     return table;
 }
 

@@ -8,6 +8,7 @@
 
 #include "compare/compare.hpp"
 #include "compare/findings.hpp"
+#include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/study.hpp"
@@ -36,8 +37,10 @@ Table curve_table(const Comparison& comparison);         // every leg, branch an
 Table deviation_table(const Comparison& comparison);     // per branch, reading and channel
 Table agreement_table(const Comparison& comparison);     // bounds and objections per branch
 Table rate_table(const std::vector<RateError>& errors);  // wheel rates
-Table study_table(const Study& study);                   // per way, method, reading and channel
-Table step_table(const Study& study);                    // ... and level
+// Per branch and main output: the spread beside what it is to be read against; of the same scene's comparison.
+Table formulation_table(const FormulationStudy& study, const Comparison& comparison);
+Table study_table(const Study& study);  // per way, method, reading and channel
+Table step_table(const Study& study);   // ... and level
 Table gap_table(const std::vector<Channel>& main, const std::vector<BranchAttribution>& attribution);
 Table order_table(const std::vector<BranchOrders>& orders);
 Table precision_table(const PrecisionStudy& study);

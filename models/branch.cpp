@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "models/overloaded.hpp"
@@ -9,16 +10,37 @@
 namespace elastocheck {
 namespace {
 
-// Which joints stand on the branch.
-std::vector<bool> standing(const Model& model, const Branch& branch) {
-    std::vector<bool> stands;
-    for (const auto& joint : model.joints) stands.push_back(!joint.only_where_driven);
+// Which joints and elements stand on the branch.
+struct Standing {
+    std::vector<bool> joints, elastics;
+};
+Standing standing(const Model& model, const Branch& branch) {
+    Standing stands;
+    for (const auto& joint : model.joints) stands.joints.push_back(!joint.only_where_driven);
+    for (const auto& elastic : model.elastics) stands.elastics.push_back(!elastic.only_where_driven);
+    const auto element = [&](int k) { stands.elastics[static_cast<std::size_t>(k)] = true; };
     for (const auto& driver : branch.drivers)
-        std::visit(overloaded{[](const Load&) {},
-                              [&](const Motion& m) { stands[static_cast<std::size_t>(m.joint)] = true; },
-                              [](const FreeLength&) {}, [](const Preload&) {}},
-                   driver.what);
+        std::visit(
+            overloaded{[](const Load&) {},
+                       [&](const Motion& m) { stands.joints[static_cast<std::size_t>(m.joint)] = true; },
+                       [&](const FreeLength& f) { element(f.elastic); },
+                       [&](const Preload& p) { element(p.elastic); }},
+            driver.what);
     return stands;
+}
+
+// The same element without law and preload.
+ElasticKind without_force(const ElasticKind& kind) {
+    return std::visit(overloaded{[](AxialSpring e) -> ElasticKind {
+                                     e.law = LinearRate{};
+                                     return e;
+                                 },
+                                 [](Bushing e) -> ElasticKind {
+                                     e.law = LinearStiffness{};
+                                     e.preload.setZero();
+                                     return e;
+                                 }},
+                      kind);
 }
 
 }  // namespace
@@ -41,25 +63,29 @@ std::vector<Branch> ways(const Branch& branch) {
 }
 
 Model on_branch(const Model& model, const Branch& branch) {
-    const std::vector<bool> stands = standing(model, branch);
+    const Standing stands = standing(model, branch);
     Model result = model;
     result.branches = {branch};
     result.constraints.clear();
     for (auto& joint : result.joints) joint.driven = -1;
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const auto joint = static_cast<std::size_t>(model.constraints[k].joint);
-        if (!stands[joint]) continue;
+        if (!stands.joints[joint]) continue;
         if (model.joints[joint].driven == static_cast<int>(k))
             result.joints[joint].driven = static_cast<int>(result.constraints.size());
         result.constraints.push_back(model.constraints[k]);
     }
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        if (!stands.elastics[k])
+            result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind)};
     return result;
 }
 
 bool stands_on(const Model& model, const Branch& branch) {
-    const std::vector<bool> stands = standing(model, branch);
-    return branch.from == 0 && std::ranges::all_of(model.constraints, [&](const Constraint& constraint) {
-               return stands[static_cast<std::size_t>(constraint.joint)];
+    const Standing stands = standing(model, branch);
+    return branch.from == 0 && std::ranges::all_of(stands.elastics, std::identity{}) &&
+           std::ranges::all_of(model.constraints, [&](const Constraint& constraint) {
+               return stands.joints[static_cast<std::size_t>(constraint.joint)];
            });
 }
 

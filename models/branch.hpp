@@ -12,11 +12,11 @@ namespace elastocheck {
 std::vector<Branch> ways(const Branch& branch);
 
 // The model as it stands on the branch: joints that stand only where they are driven, and are not driven
-// here, hold nothing (they stay in Model::joints, so that reactions keep their places). Only this branch is
-// left.
+// here, hold nothing, and such elements have no law (both stay in their lists, so that reactions and elements keep
+// their places). Only this branch is left.
 Model on_branch(const Model& model, const Branch& branch);
 
-// Whether every constraint of the model stands on the branch, as every leg requires, and the branch is
+// Whether every constraint and element of the model stands on the branch, as every leg requires, and the branch is
 // one-way.
 bool stands_on(const Model& model, const Branch& branch);
 

@@ -13,6 +13,8 @@ const char* name(Outcome outcome) {
         case Outcome::diverged: return "diverged";
         case Outcome::limit_point: return "limit point";
         case Outcome::branch_lost: return "branch lost";
+        case Outcome::not_conservative: return "not conservative";
+        case Outcome::outside_table: return "outside its table";
     }
     return "unknown";
 }

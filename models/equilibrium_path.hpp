@@ -31,6 +31,8 @@ enum class Outcome {
     diverged,                  // steps that swing back and forth and grow: the method is unstable here
     limit_point,               // the branch ends here: it turns back, and no equilibrium continues it
     branch_lost,               // no equilibrium continues the branch, however small the load step
+    not_conservative,          // a load or a formulation has no energy: the energy leg cannot be asked
+    outside_table,             // a curve that says nothing beyond its ends was led beyond them
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
 

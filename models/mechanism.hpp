@@ -6,8 +6,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace elastocheck {
 
@@ -112,16 +114,35 @@ struct Joint {
 // ---- Elastic elements: geometry times law. The geometry says what deforms, the law what energy that costs;
 // every force follows from the energy.
 
-// Laws of one deformation x, and of six, e.
+// Laws of one deformation x.
 struct LinearRate {
-    double k = 0;  // [N/m] ≥ 0
+    double k = 0;  // [N/m] or [N·m/rad] ≥ 0
 };                 // u(x) = ½ k x²
+
+// A force over a deformation, piecewise a polynomial:
+//
+//   f(x) = Σ c_kn (x - x_k)ⁿ, n = 0 ... 3,  on the pieces  x < x_0 | x_0 ≤ x < x_1 | ... | x ≥ x_K     u(x) = ∫₀ˣ f
+//
+// The piece before the first knot and the one behind the last are straight and go on for ever. f is continuous;
+// its slope is where the curve interpolates a table (curve.hpp), and jumps where a stop of constant rate closes.
+struct Curve {
+    std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
+    std::vector<std::array<double, 4>>
+        pieces;  // c [N, N/m, ...] of the piece before the first knot, about it,
+                 // then of the piece behind each knot, about that knot
+    bool known_outside =
+        true;  // false: beyond the end knots nothing is known, a branch that goes there ends there
+};
+using ScalarLaw = std::variant<LinearRate, Curve>;
+
+// Laws of six deformations e = (d, θ).
 struct LinearStiffness {
     Matrix6 K = Matrix6::Zero();  // symmetric, positive semidefinite, [N/m  N; N  N·m/rad]
 };                                // u(e) = ½ eᵀ K e;  K = diag(K_T', K_R') is eqs. (8)-(9)
-
-using ScalarLaw = std::variant<LinearRate>;
-using SpatialLaw = std::variant<LinearStiffness>;
+struct PerAxis {
+    std::array<ScalarLaw, 6> axis;
+};  // u(e) = Σ u_k(e_k), x y z of d, x y z of θ
+using SpatialLaw = std::variant<LinearStiffness, PerAxis>;
 
 // Two points:  U = u(ℓ - ℓ₀),  ℓ = |p_j - p_i|
 struct AxialSpring {
@@ -130,23 +151,56 @@ struct AxialSpring {
     double free_length = 0;  // ℓ₀ [m]
 };
 
-// Two markers:  U = u(e) + preloadᵀ e,  e = (d, θ),  d = A_iᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
-// with p, A the positions and axes of the two markers. The frame rides on marker i, as in eqs. (10)-(11).
-// `preload` is (force [N], moment [N·m]) in marker axes at e = 0, positive where it pulls j back against +e,
-// as ∂u/∂e does.
+// What a bushing measures, and what its stress does. Tools differ here, and all are right: the default is
+// eqs. (10)-(11) as an energy, the others are named. B = A_iᵀ A_j turns marker axes i into j.
+struct Formulation {
+    // The axes A_f that d is measured in:  on_i: A_i   middle: A_i B^½   on_j: A_j. On j is on i of the same
+    // bushing with its two markers, and the signs of its deformations, changed over: compile() does that, so that
+    // no leg meets it.
+    enum class Frame { on_i, on_j, middle } frame = Frame::on_i;
+    // The three angles θ of B:
+    //   rotation_vector  log(B)
+    //   cardan           B = R_x(θ_x) R_y(θ_y) R_z(θ_z)
+    //   projected        θ_x = atan2(-B_12, B_22)   θ_y = atan2(B_02, B_22)   θ_z = atan2(B_10, B_00), indices from 0:
+    //                    each axis of j as it looks along an axis of i, the small angles of a commercial code
+    enum class Angles { rotation_vector, cardan, projected } angles = Angles::rotation_vector;
+    // true:  forces and moments are those that do work on (d, θ): -∂U/∂q. It has an energy.
+    // false: (F', M') = ∂u/∂e + preload, straight along the axes A_f: F = A_f F', M = A_f M', F acting at p_j on both
+    //        bodies. In general no energy has these; not with the frame in the middle.
+    bool conjugate = true;
+    // false: F acts on each body at its own marker, so that the moment D × F of the points' offset is left out, in the
+    // middle also the share of it that is j's: M = A_i (∂θ/∂φ)ᵀ M' alone, φ the rotation of j relative to i. No energy.
+    bool offset_moment = true;
+
+    friend bool operator==(const Formulation&, const Formulation&) = default;
+};
+constexpr bool has_energy(const Formulation& f) { return f.conjugate && f.offset_moment; }
+
+// Two markers:  U = u(e - e₀) + preloadᵀ e,  e = (d, θ),  d = A_fᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
+// with p, A the positions and axes of the two markers; A_f = A_i, the frame rides on marker i as in eqs. (10)-(11),
+// and θ is the rotation vector, unless the formulation says otherwise.
+// `preload` is (force [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e,
+// as ∂u/∂e does. `undeformed` is e₀ [m, rad], where the law alone gives no force.
+//
+// A torsion spring is a bushing that resists θ_z alone, a tyre one to ground that resists d_z alone, a beam one in
+// the middle of its length with its frame in the middle (models/reader/beams.hpp).
 struct Bushing {
     Marker i, j;
     SpatialLaw law;
     Vector6 preload = Vector6::Zero();
+    Vector6 undeformed = Vector6::Zero();
+    Formulation formulation = {};
 };
 
 using ElasticKind = std::variant<AxialSpring, Bushing>;
 struct Elastic {
     std::string name;
     ElasticKind kind;
+    bool only_where_driven = false;  // a tyre: stands only on the branches that drive it
 };
 
-// ---- Dead loads: they keep their direction in ground axes while their point of application moves.
+// ---- Loads. Dead ones keep their direction in ground axes while their point of application moves, followers
+// turn with their body: they have no potential.
 
 struct DeadForce {
     Point at;
@@ -156,7 +210,15 @@ struct DeadMoment {
     BodyId body = ground;
     Eigen::Vector3d m = Eigen::Vector3d::Zero();  // [N·m]; [m] or [-] where a driver multiplies it
 };
-using LoadKind = std::variant<DeadForce, DeadMoment>;
+struct FollowerForce {
+    Point at;
+    Eigen::Vector3d f_local = Eigen::Vector3d::Zero();  // [N] or [-], body axes
+};
+struct FollowerMoment {
+    BodyId body = ground;
+    Eigen::Vector3d m_local = Eigen::Vector3d::Zero();  // [N·m], [m] or [-], body axes
+};
+using LoadKind = std::variant<DeadForce, DeadMoment, FollowerForce, FollowerMoment>;
 struct Load {
     std::string name;
     LoadKind kind;

@@ -1,7 +1,7 @@
 // A model: the scene as compiled, which is all that a leg ever sees.
 //
-// Two things happen between scene and model, once: joints are lowered to four basic constraints
-// (lowering.hpp), and what cannot influence an asked-for output is left out (compile.cpp).
+// Two things happen between scene and model, once: what cannot influence an asked-for output is left out or condensed
+// (reduce/passes.hpp), and joints are lowered to four basic constraints (lowering.hpp).
 #pragma once
 
 #include <string>
@@ -57,6 +57,13 @@ struct ModelJoint {
     bool only_where_driven = false;
 };
 
+// How much there is to solve.
+struct Size {
+    int bodies = 0, joints = 0, elastics = 0;
+    int rows = 0;  // of the joints' constraints
+    friend bool operator==(const Size&, const Size&) = default;
+};
+
 struct Model {
     std::string name;
     std::vector<Body> bodies;
@@ -68,6 +75,7 @@ struct Model {
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
     std::vector<Omission> left_out;
+    Size as_written, as_solved;  // the scene's, and what is left of it here
 };
 
 inline int coordinates(const Model& model) { return 6 * static_cast<int>(model.bodies.size()); }  // 6 nb

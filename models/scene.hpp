@@ -1,7 +1,9 @@
 // A scene: what the user asked. One YAML file (scene_file.hpp), or built in code.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "models/mechanism.hpp"
@@ -54,6 +56,8 @@ struct Wheel {
         Eigen::Vector3d::Zero();  // contact patch at the design pose, a point of the body [m]
     Eigen::Vector3d spin_axis_local = Eigen::Vector3d::UnitY();  // unit, pointing outboard
     int side = +1;                                               // +1 left, -1 right
+    double tyre_rate =
+        0;  // vertical, k_t [N/m]; 0 where no tyre is given. Ride rate: 1 / (1/k_wheel + 1/k_t)
 };
 
 // A body point whose position is an output, for scenes that are not suspensions.
@@ -75,6 +79,42 @@ struct Number {
     std::string unit;  // "mm", "N·m/deg"; empty for a pure number
 };
 
+// ---- Trim: what is adjusted until the design position is one of equilibrium, under what is held on every
+// branch. As many conditions as adjustments. Solved before anything else (compare/trim.hpp); the branches start
+// from there.
+
+struct WheelTravel {
+    int wheel = 0;
+};  // of the centre, up from the design position [m]
+struct WheelToe {
+    int wheel = 0;
+};  // [rad]
+struct WheelCamber {
+    int wheel = 0;
+};  // [rad]
+struct ProbeCoordinate {
+    int probe = 0;
+    int axis = 2;  // 0 x, 1 y, 2 z
+};                 // position less that at the design position [m]
+using ConditionKind = std::variant<WheelTravel, WheelToe, WheelCamber, ProbeCoordinate>;
+
+struct Trim {
+    struct Adjustment {
+        std::string name;                            // as a branch would drive it: "springs.coil.preload"
+        Driven what;                                 // counted from what the scene says; never a Load
+        double per_unit = 1;                         // of `what`, for one unit of the quantity named [SI/SI]
+        ParameterUnit unit = ParameterUnit::newton;  // of the quantity named
+    };
+    struct Condition {
+        std::string name;  // "left.travel"
+        ConditionKind what;
+        std::optional<double> value;  // SI; none: as it is in the scene as drawn
+    };
+    std::vector<Adjustment> adjust;
+    std::vector<Condition> until;
+    int line = 0;  // of the file, 0 when built in code
+};
+
 // What was asked for and is not modelled.
 struct Omission {
     std::string what;  // "body 'antiroll_bar'"
@@ -93,6 +133,7 @@ struct Scene {
     std::vector<Branch> branches;
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
+    std::optional<Trim> trim;
     std::vector<Omission> left_out;  // what the file defines and nothing uses
 };
 

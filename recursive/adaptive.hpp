@@ -10,10 +10,14 @@
 // An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the determinant
 // as it was. It is found where the determinant dips: where it is, in the middle, of another sign or less than
 // half of what it is at either end, the step is halved until it is no more, or the point is found.
+//
+// Curves have knots, which no step goes over: it ends there (landing.hpp), and the next one begins with the derivative
+// that the path has behind. Where the determinant changes its sign with the piece, the path turns back at the knot.
 #pragma once
 
 #include <algorithm>
 
+#include "recursive/landing.hpp"
 #include "recursive/settle.hpp"
 
 namespace elastocheck::recursive {
@@ -77,14 +81,41 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
     Real size = 0;
     // The factors are still those that settling ended with.
     differentiate(s, going, node);
+    const int orientation = node.orientation;
+    Real h = end / 8;
+    int changes = 0;  // of pieces since the last step
+    // Factors and derivative of the node along the present pieces.
+    const auto begin_anew = [&]() -> Outcome {
+        go_to(s, going.place(node.p));
+        external_force<Real>(s.model, s.branch, s.inputs, node.q, s.applied);
+        if (const Outcome outcome = factorise_at(s, node.q, node.lambda); outcome != Outcome::converged)
+            return outcome;
+        differentiate(s, going, node);
+        curvature.setZero();
+        lambda_curvature.setZero();
+        return node.orientation == orientation ? Outcome::converged : Outcome::limit_point;
+    };
+    if (!s.curves.empty()) {
+        take_pieces(s, going, node, h * Real(1e-3), q);
+        if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
+    }
     Real log_here = log_determinant(s.system.lu);
     keep(node.q, node.lambda, 0);
 
-    Real h = end / 8;
     while (reached <= last) {
         next.p = std::abs(end - node.p) < std::abs(h) * Real(1.1) ? end : node.p + h;
+        Meeting<Real> met;
+        Trial<Real> trial = step_to_knot(s, going, node, curvature, lambda_curvature, next, q, met,
+                                         [&](const Node<Real>& one, const Node<Real>& other, Real t,
+                                             State<Real>& at) { between(one, other, t, at, lambda); });
         const Real step = next.p - node.p;
-        Trial<Real> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+        if (step == Real(0)) {  // it stands on a knot
+            piece_of(s, *met.curve) += met.side;
+            if (++changes > 2 * static_cast<int>(s.curves.size())) return Outcome::limit_point;
+            if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
+            log_here = log_determinant(s.system.lu);
+            continue;
+        }
         Real error = std::numeric_limits<Real>::infinity();
         if (trial.verdict == Verdict::believed) {
             const Real log_next = log_determinant(s.system.lu);
@@ -110,6 +141,13 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath
                 std::swap(node, next);
                 log_here = log_next;
                 s.a = node.p;
+                changes = 0;
+                if (met.curve && reached <= last) {
+                    take_pieces(s, going, node, h * Real(1e-3), q);
+                    if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
+                    log_here = log_determinant(s.system.lu);
+                    continue;  // with the size that the knot has cut short
+                }
             }
         }
         using std::pow;

@@ -73,24 +73,26 @@ MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
 std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
                                        const State<double>& q) {
     const Axial<double> g = deformation<double>(e, q);
-    if (!(hessian<double>(e.law, [&] { return g.length - rest.free_length; }) > 0)) return {};
+    // A curve may fall: that is noticed as well. An open stop is not.
+    if (hessian<double>(e.law, [&] { return g.length - rest.free_length; }) == 0) return {};
     Vector6<double> row;
     row << g.D / g.length, Vector3d::Zero();
     return {row};
 }
 std::vector<Vector6<double>> root_rows(const Bushing& e, const Rest<double>&, const State<double>& q) {
     const Spatial<double> g = deformation<double>(e, q);
-    const Matrix6<double> K = hessian<double>(e.law, [&] { return g.e; });
-    const Vector6<double> S = K.diagonal().cwiseMax(0).cwiseSqrt();
+    const Matrix3<double> A = axes<double>(e, q);
+    const Matrix6<double> K = hessian<double>(e.law, [&] { return strain<double>(e, g); });
+    const Vector6<double> S = K.diagonal().cwiseAbs().cwiseSqrt();
     const Vector6<double> inverse = S.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
     const Matrix6<double> C = inverse.asDiagonal() * K * inverse.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Matrix6<double>> eigen(C);
     std::vector<Vector6<double>> rows;
     for (int k = 0; k < 6; ++k) {
-        if (!(eigen.eigenvalues()[k] > stiffness_threshold)) continue;
+        if (!(std::abs(eigen.eigenvalues()[k]) > stiffness_threshold)) continue;
         const Vector6<double> own = (S.asDiagonal() * eigen.eigenvectors().col(k)).normalized();
         Vector6<double> row;
-        row << g.A_i * own.head<3>(), g.A_i * own.tail<3>();
+        row << A * own.head<3>(), A * own.tail<3>();
         rows.push_back(row);
     }
     return rows;

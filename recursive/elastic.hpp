@@ -18,10 +18,16 @@
 // The levers s_i, s_j are the paper's, each to its own attachment point. Where the two points have drifted
 // apart by D this leaves out the moment D × F that the law has: part of the published method's formulation
 // gap, kept on purpose.
+//
+// What the paper does not know contributes to its method in this same form, as an extension: a curve its slope
+// at the deformation of the moment, a frame in the middle its own axes A_f in place of A_i. Angles that differ
+// for finite rotations only, forces that are not conjugate and a moment that is left out are no matter of
+// increments between unloaded markers: there K stays as it is, and they are in the forces.
 #pragma once
 
 #include "recursive/inputs.hpp"
 #include "recursive/law.hpp"
+#include "recursive/measure.hpp"
 
 namespace elastocheck::recursive {
 
@@ -50,27 +56,44 @@ Axial<Real> deformation(const AxialSpring& e, const State<Real>& q) {
     return g;
 }
 
-template <class Real>
-Vector3<Real> logarithm(const Matrix3<Real>& R);
-
-// Two markers: e = (d, θ).
+// Two markers: e = (d, θ), D = p_j - p_i, B = A_iᵀ A_j.
 template <class Real>
 struct Spatial {
     Vector3<Real> s_i, s_j, D;
-    Matrix3<Real> A_i;
+    Matrix3<Real> A_i, B;
     Vector6<Real> e;
+
+    Vector3<Real> d() const { return e.template head<3>(); }
+    Vector3<Real> theta() const { return e.template tail<3>(); }
 };
+inline bool in_the_middle(const Bushing& e) { return e.formulation.frame == Formulation::Frame::middle; }
+
 template <class Real>
 Spatial<Real> deformation(const Bushing& e, const State<Real>& q) {
     Spatial<Real> g{q[e.i.body].lever(e.i.s_local),
                     q[e.j.body].lever(e.j.s_local),
                     {},
                     q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix(),
+                    {},
                     {}};
     g.D = q[e.j.body].r + g.s_j - q[e.i.body].r - g.s_i;
     const Matrix3<Real> A_j = q[e.j.body].A * e.j.A_local.cast<Real>().toRotationMatrix();
-    g.e << g.A_i.transpose() * g.D, logarithm<Real>(g.A_i.transpose() * A_j);
+    g.B = g.A_i.transpose() * A_j;
+    g.e << g.A_i.transpose() * g.D, angles_of<Real>(e.formulation.angles, g.B);
+    if (in_the_middle(e)) g.e.template head<3>() = middle<Real>(g.B).S.transpose() * g.d();
     return g;
+}
+// A_f, the axes that d is measured in.
+template <class Real>
+Matrix3<Real> axes(const Bushing& e, const State<Real>& q) {
+    if (!in_the_middle(e)) return q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
+    const Spatial<Real> g = deformation<Real>(e, q);
+    return g.A_i * middle<Real>(g.B).S;
+}
+// e - e₀, what the law answers to.
+template <class Real>
+Vector6<Real> strain(const Bushing& e, const Spatial<Real>& g) {
+    return g.e - e.undeformed.cast<Real>();
 }
 
 // ---- K of eq. (19): the Hessian of the law, turned to ground axes, at the two levers.
@@ -84,22 +107,24 @@ ElementStiffness<Real> element_stiffness(const AxialSpring& e, const Rest<Real>&
                              Matrix6<Real>::Zero(),
                              false};
     const Vector3<Real> D = q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i, n = D.normalized();
-    const Real rate = hessian<Real>(e.law, [&] { return D.norm() - rest.free_length; });
+    const Real rate = hessian<Real>(
+        e.law, [&] { return D.norm() - rest.free_length; }, rest.piece[0]);
     k.K.template topLeftCorner<3, 3>() = rate * n * n.transpose();  // (8), (10): one axis, along the spring
     return k;
 }
 
 template <class Real>
-ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>&, const State<Real>& q) {
+ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& rest, const State<Real>& q) {
     ElementStiffness<Real> k{
         e.i.body, e.j.body,         q[e.i.body].lever(e.i.s_local), q[e.j.body].lever(e.j.s_local),
         {},       rotational(e.law)};
-    const Matrix3<Real> A_i = q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
-    const Matrix6<Real> K_local = hessian<Real>(e.law, [&] { return deformation<Real>(e, q).e; });
+    const Matrix3<Real> A = axes<Real>(e, q);
+    const Matrix6<Real> K_local = hessian<Real>(
+        e.law, [&] { return strain<Real>(e, deformation<Real>(e, q)); }, rest.piece);
     for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b)  // K_T = A_i K_T' A_iᵀ, K_R = A_i K_R' A_iᵀ (10)-(11)
+        for (int b = 0; b < 2; ++b)  // K_T = A_f K_T' A_fᵀ, K_R = A_f K_R' A_fᵀ (10)-(11)
             k.K.template block<3, 3>(3 * a, 3 * b).noalias() =
-                A_i * K_local.template block<3, 3>(3 * a, 3 * b) * A_i.transpose();
+                A * K_local.template block<3, 3>(3 * a, 3 * b) * A.transpose();
     return k;
 }
 
@@ -147,50 +172,30 @@ Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const Sta
     return K;
 }
 
-// ---- The law itself: f_elast(q) = ∂U/∂q, which K Δq linearises at an unloaded design position.
+// ---- The law itself: f_elast(q), ∂U/∂q where there is a U, which K Δq linearises at an unloaded design position.
 //
 // Spring:  f = u'(ℓ - ℓ₀) n along its axis n.
-// Bushing: with (F', M') = ∂u/∂e + preload in marker axes, F = A_i F' and δd = A_iᵀ (δp_j - δp_i - δπ_i × D),
-// D = p_j - p_i,
-//   on j: ( F, s_j × F + M )   on i: ( -F, -(s_i + D) × F - M )   M = A_i J(θ)⁻ᵀ M'
-// where δθ = J(θ)⁻¹ A_iᵀ (δπ_j - δπ_i), J the left Jacobian of the rotation group:
-//   J(θ)⁻¹ = I - ½ θ̃ + c(θ) θ̃²,  c = (1 - (θ/2) cot(θ/2)) / θ².
-
-// The rotation vector θ of R, |θ| ≤ π.
-template <class Real>
-Vector3<Real> logarithm(const Matrix3<Real>& R) {
-    using std::atan2;
-    Eigen::Quaternion<Real> p(R);
-    if (p.w() < 0) p.coeffs() = -p.coeffs();
-    const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit
-    // there.
-    const Real factor =
-        sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
-    return factor * p.vec();
-}
-
-// J(θ)⁻¹, the inverse left Jacobian.
-template <class Real>
-Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
-    using std::tan;
-    const Real t2 = theta.squaredNorm();
-    // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it nothing
-    // cancels badly.
-    Real c;
-    if (t2 < Real(1e-3)) {
-        c = Real(1) / 12 + t2 * (Real(1) / 720 + t2 * (Real(1) / 30240 + t2 * (Real(1) / 1209600)));
-    } else {
-        const Real half = std::sqrt(t2) / 2;
-        c = (1 - half / tan(half)) / t2;
-    }
-    const Matrix3<Real> t = tilde(theta);
-    return Matrix3<Real>::Identity() - t / 2 + c * (t * t);
-}
+// Bushing: with the stress σ = (F', M') = ∂u/∂e + preload at e - e₀, and e a function of x and B (measure.hpp), the
+// force F = A_i F_x and the moment M = A_i M_φ that do work on (δx, δφ) are
+//
+//   E = ∂e/∂(x, φ),   (F_x, M_φ) = Eᵀ σ         conjugate: the forces of U. With the frame on i
+//                                                E = ⎡ I  0 ⎤,  so that F = A_i F', M = A_i Hᵀ M'
+//                                                    ⎣ 0  H ⎦
+//   (F_x, M_φ) = σ                               not conjugate
+//
+//   on j: ( F, s_j × F + M )   on i: ( -F, -(s_i + D) × F - M ),  D = p_j - p_i
+//
+// In the middle, d = Sᵀ x and δd = Sᵀ δx + d̃ P δφ add F' to the moment:
+//
+//   E = ⎡ Sᵀ  d̃ P ⎤      F_x = S F'      M_φ = Hᵀ M' - Pᵀ (d × F')
+//       ⎣ 0    H  ⎦
+//
+// which is the share of D × F that is j's. Where the moment of the offset is left out, it goes with the rest, and
+// the force on i acts at p_i:  M_φ = Hᵀ M',  on i: ( -F, -s_i × F - M ).
 
 // The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and where its line of action
-// passes: levers from both origins to p_j (bushing: the frame rides on i, so it is p_j for both) or to either
-// end of a spring.
+// passes: levers from both origins to p_j (bushing, both to the same unless its offset's moment is left out) or to
+// either end of a spring.
 template <class Real>
 struct ElementForce {
     Vector3<Real> F, M;
@@ -200,21 +205,29 @@ struct ElementForce {
 template <class Real>
 ElementForce<Real> element_force(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
     const Axial<Real> g = deformation<Real>(e, q);
-    return {gradient<Real>(e.law, g.length - rest.free_length) / g.length * g.D, Vector3<Real>::Zero(), g.s_i,
-            g.s_j};
+    return {gradient<Real>(e.law, g.length - rest.free_length, rest.piece[0]) / g.length * g.D,
+            Vector3<Real>::Zero(), g.s_i, g.s_j};
 }
 
-// The force (F, M) that the stress (F', M') in marker axes is.
+// (F, M) of the stress σ.
 template <class Real>
-ElementForce<Real> force_of_stress(const Spatial<Real>& g, const Vector6<Real>& stress) {
-    const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(g.e.template tail<3>());
-    return {g.A_i * stress.template head<3>(), g.A_i * (J_inverse.transpose() * stress.template tail<3>()),
-            g.s_i + g.D, g.s_j};
+ElementForce<Real> force_of_stress(const Bushing& e, const Spatial<Real>& g, const Vector6<Real>& stress) {
+    const Vector3<Real> theta = g.theta();
+    Vector3<Real> F = stress.template head<3>(), M = stress.template tail<3>();
+    if (e.formulation.conjugate) M = jacobian<Real>(e.formulation.angles, g.B, theta).transpose() * M;
+    if (in_the_middle(e)) {
+        const Middle<Real> frame = middle<Real>(g.B);
+        if (e.formulation.offset_moment) M -= jacobian<Real>(frame).transpose() * g.d().cross(F);
+        F = frame.S * F;
+    }
+    Vector3<Real> lever_i = g.s_i;
+    if (e.formulation.offset_moment) lever_i += g.D;
+    return {g.A_i * F, g.A_i * M, lever_i, g.s_j};
 }
 template <class Real>
 ElementForce<Real> element_force(const Bushing& e, const Rest<Real>& rest, const State<Real>& q) {
     const Spatial<Real> g = deformation<Real>(e, q);
-    return force_of_stress<Real>(g, gradient<Real>(e.law, g.e) + rest.preload);
+    return force_of_stress<Real>(e, g, gradient<Real>(e.law, strain<Real>(e, g), rest.piece) + rest.preload);
 }
 template <class Real>
 ElementForce<Real> element_force(const ElasticKind& kind, const Rest<Real>& rest, const State<Real>& q) {
@@ -225,12 +238,13 @@ ElementForce<Real> element_force(const ElasticKind& kind, const Rest<Real>& rest
 template <class Real>
 ElementForce<Real> force_of_free_length(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
     const Axial<Real> g = deformation<Real>(e, q);
-    const Real rate = hessian<Real>(e.law, [&] { return g.length - rest.free_length; });
+    const Real rate = hessian<Real>(
+        e.law, [&] { return g.length - rest.free_length; }, rest.piece[0]);
     return {-rate / g.length * g.D, Vector3<Real>::Zero(), g.s_i, g.s_j};
 }
 template <class Real>
 ElementForce<Real> force_of_preload(const Bushing& e, const Vector6<Real>& change, const State<Real>& q) {
-    return force_of_stress<Real>(deformation<Real>(e, q), change);
+    return force_of_stress<Real>(e, deformation<Real>(e, q), change);
 }
 
 // The bodies an element acts between.
@@ -251,7 +265,7 @@ void add_element_force(BodyId i, BodyId j, const ElementForce<Real>& e, Vector<R
     }
 }
 
-// f_elast(q) = ∂U/∂q [6nb], moments about the bodies' origins, ground axes.
+// f_elast(q) [6nb], moments about the bodies' origins, ground axes.
 template <class Real>
 void elastic_force(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, Vector<Real>& f) {
     f.setZero(coordinates(model));

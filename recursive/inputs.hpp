@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "recursive/law.hpp"
 #include "recursive/overloaded.hpp"
-#include "recursive/state.hpp"
 
 namespace elastocheck::recursive {
 
@@ -19,6 +19,7 @@ template <class Real>
 struct Rest {
     Real free_length = 0;                           // ℓ₀ of an AxialSpring [m]
     Vector6<Real> preload = Vector6<Real>::Zero();  // of a Bushing [N, N·m]
+    Pieces piece = everywhere;                      // of its curves, a spring's first: no driver moves them
 };
 
 template <class Real>
@@ -45,13 +46,12 @@ Real offset_of(const ConstraintKind& kind) {
 template <class Real>
 Rest<Real> rest_of(const ElasticKind& kind) {
     using R = Rest<Real>;
-    return std::visit(overloaded{
-                          [](const AxialSpring& e) { return R{static_cast<Real>(e.free_length)}; },
-                          [](const Bushing& e) {
-                              return R{0, e.preload.cast<Real>()};
-                          },
-                      },
-                      kind);
+    return std::visit(
+        overloaded{
+            [](const AxialSpring& e) { return R{.free_length = static_cast<Real>(e.free_length)}; },
+            [](const Bushing& e) { return R{.preload = e.preload.cast<Real>()}; },
+        },
+        kind);
 }
 
 template <class Real>
@@ -104,6 +104,15 @@ inline void check(const Model& model, const Branch& branch) {
                        },
                    },
                    driver.what);
+    for (const auto& element : model.elastics) {
+        const auto* bushing = std::get_if<Bushing>(&element.kind);
+        if (bushing == nullptr) continue;
+        const Formulation& f = bushing->formulation;
+        require(f.frame != Formulation::Frame::on_j,
+                "a bushing's frame is on j, which compile() turns round");
+        require(f.conjugate || f.frame == Formulation::Frame::on_i,
+                "a bushing's forces are not conjugate, which is defined with its frame on i only");
+    }
     require(stands_on(model, branch),
             "the model does not stand on it, or it does not begin at 0 (on_branch, ways)");
 }

@@ -1,4 +1,5 @@
-// The external force vector f_ext of eq. (3): dead forces and moments on the bodies' origins.
+// The external force vector f_ext of eq. (3): forces and moments on the bodies' origins. A follower keeps its
+// components in body axes, F = A F', M = A M'.
 #pragma once
 
 #include "recursive/inputs.hpp"
@@ -16,6 +17,17 @@ void add_load(const DeadForce& force, Real factor, const State<Real>& q, Vector<
 template <class Real>
 void add_load(const DeadMoment& moment, Real factor, const State<Real>&, Vector<Real>& f_ext) {
     f_ext.template segment<3>(6 * moment.body + 3) += factor * moment.m.cast<Real>();
+}
+template <class Real>
+void add_load(const FollowerForce& force, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
+    const BodyId b = force.at.body;
+    const Vector3<Real> f = factor * q[b].lever(force.f_local);
+    f_ext.template segment<3>(6 * b) += f;
+    f_ext.template segment<3>(6 * b + 3) += q[b].lever(force.at.s_local).cross(f);
+}
+template <class Real>
+void add_load(const FollowerMoment& moment, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
+    f_ext.template segment<3>(6 * moment.body + 3) += factor * q[moment.body].lever(moment.m_local);
 }
 template <class Real>
 void add_load(const LoadKind& load, Real factor, const State<Real>& q, Vector<Real>& f_ext) {

@@ -7,6 +7,7 @@
 #include "recursive/analysis.hpp"
 #include "recursive/assembly.hpp"
 #include "recursive/drive.hpp"
+#include "recursive/knots.hpp"
 #include "recursive/method.hpp"
 #include "recursive/reactions.hpp"
 
@@ -42,7 +43,36 @@ inline constexpr double closed = 1e-9;
 inline constexpr double largest_turn = 1;
 // One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
 inline constexpr int swings = 2;
+// A step over a kink goes too far or not far enough, the next one makes up for it: neither is to be compared
+// with the one before.
+inline constexpr int kinked = 2;
 }  // namespace guard
+
+// Whether a held idle mode moves an end of the element.
+template <class Real>
+bool is_moved(const SaddlePoint<Real>& system, const ElasticKind& element, int mode) {
+    const auto moves = [&](BodyId b) { return b != ground && system.moves(6 * b, mode) != Real(0); };
+    const auto [i, j] = bodies_of(element);
+    return moves(i) || moves(j);
+}
+
+// Whether the element may push where its stiffness notices nothing: by its preload, where a curve has force and no
+// rate, where its forces are of no energy. What K Δq alone makes of the others does no such work; with their true
+// forces they may, once their two points have drifted apart.
+inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
+    const bool driven = std::ranges::any_of(branch.drivers, [k](const Driver& driver) {
+        const auto* preload = std::get_if<Preload>(&driver.what);
+        return preload != nullptr && preload->elastic == k;
+    });
+    return driven || std::visit(overloaded{
+                                    [](const AxialSpring& e) { return std::holds_alternative<Curve>(e.law); },
+                                    [](const Bushing& e) {
+                                        return !e.preload.isZero(0) || !has_energy(e.formulation) ||
+                                               std::holds_alternative<PerAxis>(e.law);
+                                    },
+                                },
+                                element);
+}
 
 // Everything a step touches, allocated once.
 template <class Real>
@@ -70,7 +100,16 @@ struct March {
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
     int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
-    int swings = 0;       // steps in a row that reversed the one before and were larger
+    Real missed = 0;  // what qⁿ may be from equilibrium: what W Δqⁿ⁻¹ differed from the one before it by [m]
+    int swings = 0;  // steps in a row that reversed the one before and were larger
+
+    // Elastic elements on bodies that idle modes move, and those of them that push even where K knows of nothing.
+    std::vector<std::size_t> at_idle, pushing;
+
+    std::vector<CurvePlace> curves;
+    std::vector<int> sides, sides_ahead;  // of their kinks that q is on, that some other configuration is on
+    std::vector<std::array<Real, 4>> along;  // deflections at four places of the way
+    int kinked = 0;                          // steps to come that are not to be compared with the one before
 
     March(const Model& model_, const Branch& branch_, const Analysis& analysis)
         : model(model_),
@@ -90,10 +129,48 @@ struct March {
         x.setZero(n + m);
         if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
         set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
+        for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+            const ElasticKind& kind = model.elastics[k].kind;
+            bool moved = false;
+            for (int c = 0; c < system.idle; ++c) moved = moved || is_moved(system, kind, c);
+            if (moved) at_idle.push_back(k);
+            if (moved && may_push(branch, kind, static_cast<int>(k))) pushing.push_back(k);
+        }
+        curves = curves_of(model);
+        sides.assign(curves.size(), 0);
+        sides_ahead = sides;
+        along.resize(curves.size());
+        check_followers(analysis.system.lu.order.pattern);
     }
     int n() const { return system.n; }
     int m() const { return system.m; }
+
+  private:
+    // What is not in the pattern would silently be no part of the matrix.
+    void check_followers(const Pattern& pattern) const {
+        for (const auto& driver : branch.drivers) {
+            const auto* load = std::get_if<Load>(&driver.what);
+            const auto* follower = load ? std::get_if<FollowerForce>(&load->kind) : nullptr;
+            if (follower && !has_entry(pattern, 6 * follower->at.body, 6 * follower->at.body + 3))
+                throw std::invalid_argument("the analysis is of a model without the branch's load '" +
+                                            load->name + "'");
+        }
+    }
 };
+
+// Whether the step that has just led to q went over a kink; the next ones are judged accordingly.
+template <class Real>
+bool pass_kinks(March<Real>& s) {
+    if (!find_sides<Real>(s.model, s.inputs, s.q, s.curves, s.sides)) return false;
+    s.kinked = guard::kinked;
+    return true;
+}
+// Whether there is a kink between where the step began and q.
+template <class Real>
+bool beyond_a_kink(March<Real>& s, const State<Real>& q) {
+    s.sides_ahead = s.sides;
+    return find_sides<Real>(s.model, s.inputs, q, s.curves, s.sides_ahead);
+}
 
 // The inputs become those of (t, a).
 template <class Real>
@@ -122,16 +199,14 @@ Real size_of_force(const March<Real>& s, const Vector<Real>& force) {
 template <class Real>
 Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     const auto& system = s.system;
-    const auto moves = [&](BodyId b, int c) { return b != ground && system.moves(6 * b, c) != Real(0); };
     Real worst = 0;
     for (int c = 0; c < system.idle; ++c) {
         Real energy = 0, single = 0;
-        for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
-            const auto [i, j] = bodies_of(s.model.elastics[k].kind);
-            if (!moves(i, c) && !moves(j, c)) continue;
+        for (const std::size_t k : s.at_idle) {
+            if (!is_moved(system, s.model.elastics[k].kind, c)) continue;
             const auto e = element_stiffness<Real>(s.model.elastics[k].kind, s.inputs.rest[k], q);
-            const Real k_T = e.K.template topLeftCorner<3, 3>().trace(),
-                       k_R = e.K.template bottomRightCorner<3, 3>().trace();
+            const Vector6<Real> rates = e.K.diagonal().cwiseAbs();  // a curve may fall
+            const Real k_T = rates.template head<3>().sum(), k_R = rates.template tail<3>().sum();
             Vector6<Real> de = Vector6<Real>::Zero();
             const auto end = [&](BodyId b, const Vector3<Real>& lever, Real sign) {
                 if (b == ground) return;
@@ -146,7 +221,7 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
             end(e.j, e.s_j, +1);
             energy += de.dot(e.K * de);
         }
-        if (single > 0) worst = std::max(worst, std::sqrt(std::max(energy, Real(0)) / single));
+        if (single > 0) worst = std::max(worst, std::sqrt(std::abs(energy) / single));
     }
     for (int c = system.idle; c < system.borders(); ++c) {
         const auto y = system.held.col(c).tail(system.m);
@@ -182,8 +257,11 @@ template <class Real>
 bool has_diverged(March<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
     const Real size = weighted.matrix().squaredNorm(), size_before = s.last.squaredNorm();
-    const bool swung = (weighted * s.last.array()).sum() < 0 && size > size_before;
-    const bool too_long = s.consistent && size_before > 0 &&
+    if (s.consistent) s.missed = (weighted - s.last.array()).matrix().norm();
+    const bool comparable = s.kinked == 0;
+    if (!comparable) --s.kinked;
+    const bool swung = comparable && (weighted * s.last.array()).sum() < 0 && size > size_before;
+    const bool too_long = comparable && s.consistent && size_before > 0 &&
                           disagree(s, (weighted - s.last.array()).matrix().squaredNorm(), size, size_before);
     s.swings = swung ? s.swings + 1 : 0;
     s.last = weighted;
@@ -202,10 +280,33 @@ Outcome judge(const March<Real>& s, const State<Real>& q, Real pivot_ratio) {
     const Real blur = s.Phi.norm() / static_cast<Real>(std::min(1.0, s.length));
     if (!(strain_of_held(s, q) <= rounding + Real(guard::idle_strain) + Real(guard::strain_per_error) * blur))
         return Outcome::singular;
-    if (!(load_on_idle_modes(s, s.applied, size_of_force(s, s.applied)) <=
-          rounding + Real(guard::share_per_error) * blur))
-        return Outcome::loaded_idle_mode;
     return Outcome::converged;
+}
+
+// Whether s.applied and the elements at q push an idle mode. The border of (24) would take up what they do, as a joint
+// does: an equilibrium that is none. `missed` is how far q may be from equilibrium [m], which blurs as |Φ| does.
+template <class Real>
+Outcome judge_push(March<Real>& s, const State<Real>& q, Real missed) {
+    if (s.system.idle == 0) return Outcome::converged;
+    Real blur = s.Phi.norm(), whole = size_of_force(s, s.applied), share = 0;
+    if (s.consistent ? s.at_idle.empty() : s.pushing.empty()) {
+        share = load_on_idle_modes(s, s.applied, whole);
+    } else {
+        s.force.setZero();
+        for (const std::size_t k : s.consistent ? s.at_idle : s.pushing) {
+            const ElasticKind& element = s.model.elastics[k].kind;
+            const auto [i, j] = bodies_of(element);
+            add_element_force<Real>(i, j, element_force<Real>(element, s.inputs.rest[k], q), s.force);
+        }
+        whole += size_of_force(s, s.force);
+        s.force = s.applied - s.force;
+        share = load_on_idle_modes(s, s.force, whole);
+        blur += missed;
+    }
+    const Real rounding = Real(guard::rounding) * std::numeric_limits<Real>::epsilon();
+    blur /= static_cast<Real>(std::min(1.0, s.length));
+    return share <= rounding + Real(guard::share_per_error) * blur ? Outcome::converged
+                                                                   : Outcome::loaded_idle_mode;
 }
 
 // Assembles and factorises the method's matrix at (q, λ) with the present inputs, and judges it.

@@ -13,6 +13,16 @@
 //
 // A method that starts each step from the true residual does not accumulate: its error at a point is the
 // error of the last step, so an order p in one step is the order p at the end.
+//
+// Curves have knots. A step of equal size that goes over one ends, at that one point, with an error of order
+//
+//   rung                  slope jumps (a stop closes)    curvature jumps (a table)
+//   balanced, tangent     1                              2
+//   chord                 1                              3, its second solve knows the piece behind
+//   midpoint              1                              2
+//
+// and two steps later has its own again. In published and closed, which add up what each step stored, the error
+// of the step stays: order 1, added to the gap. Adaptive ends a step on every knot (landing.hpp) and loses nothing.
 #pragma once
 
 #include <array>
@@ -30,7 +40,9 @@ struct Follow {
     bool lever =
         false;  // the stored force of an element acts at the present position of its attachment points
     bool axis = false;  // ... and points where the element's law says now, as large as it says
-    bool load = true;   // the load already applied acts at the present position of its point
+    bool load =
+        true;  // the load already applied acts at the present position of its point; a follower turns with
+               // its body, since f_ext of (28) is that of the present configuration
 
     friend bool operator==(const Follow&, const Follow&) = default;
 };

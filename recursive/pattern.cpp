@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "recursive/overloaded.hpp"
+
 namespace elastocheck::recursive {
 namespace {
 
@@ -107,8 +109,22 @@ void touch(Touched& t, const DirectionAtAngle& c, int k) {
 Pattern pattern(const Model& model) {
     const int n = coordinates(model), size = n + constraint_rows(model);
     Touched t{n, size, std::vector<char>(static_cast<std::size_t>(size * size), 0)};
-    for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a dead force on the body
+    for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a load on the body
     for (const auto& elastic : model.elastics) std::visit([&](const auto& e) { touch(t, e); }, elastic.kind);
+    const auto touch_load = [&](const LoadKind& load) {
+        std::visit(overloaded{
+                       [](const DeadForce&) {},
+                       [](const DeadMoment&) {},
+                       // It turns with its body.
+                       [&](const FollowerForce& f) { t.block(t.r(f.at.body), t.pi(f.at.body)); },
+                       [](const FollowerMoment&) {},
+                   },
+                   load);
+    };
+    for (const auto& load : model.static_loads) touch_load(load.kind);
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (const auto* load = std::get_if<Load>(&driver.what)) touch_load(load->kind);
     int row = 0;
     for (const auto& constraint : model.constraints) {
         std::visit([&](const auto& c) { touch(t, c, row); }, constraint.kind);

@@ -24,7 +24,9 @@ bool pushes_idle_mode(const March<Real>& s) {
 // only (u_i·w = 0 has two).
 template <class Real>
 bool stayed_open(const March<Real>& s, Real share) {
-    const Real open = s.Phi_d.norm(), rounding = Real(10 * guard::closed);
+    const Real open = s.Phi_d.norm();
+    const Real rounding = std::max(Real(10 * guard::closed), 100 * std::numeric_limits<Real>::epsilon() *
+                                                                 static_cast<Real>(std::max(1.0, s.length)));
     Vector<Real> Phi = constraint_values<Real>(s.model, s.inputs, s.q);
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
@@ -37,7 +39,9 @@ bool stayed_open(const March<Real>& s, Real share) {
 // What settling came to, where the joints were open: that they cannot be closed explains the rest.
 template <class Real>
 Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
-    if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode) return outcome;
+    if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
+        outcome == Outcome::iteration_limit)
+        return outcome;
     const bool was_open = s.Phi_d.norm() > Real(0);
     if (outcome != Outcome::converged) return was_open ? Outcome::inconsistent_constraints : outcome;
     // What linear steps open that was closed is their error, not the joints'.
@@ -94,7 +98,6 @@ Outcome settle_truly(March<Real>& s) {
     go_to(s, {0, 0});
     drive_at(s, Drive::start, Real(1), s.q);
     if (!s.upper.isZero(0) || !s.lower.isZero(0)) {
-        s.applied.setZero();  // as drawn nothing pushes; pushes_idle_mode has seen what will
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
         differentiate(s, going, node);

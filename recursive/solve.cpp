@@ -53,7 +53,9 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
         case Outcome::converged:
         case Outcome::not_finite:
         case Outcome::iteration_limit:
-        case Outcome::branch_lost: break;
+        case Outcome::branch_lost:
+        case Outcome::not_conservative:      // of the energy
+        case Outcome::outside_table: break;  // found in compare/
     }
     return detail;
 }

@@ -8,7 +8,7 @@
 // the order is chosen once, and afterwards only what can be other than zero is touched. Chosen is, step by
 // step, the pivot that fills in least (Markowitz: smallest (entries in its row - 1)(entries in its column -
 // 1)) among those no smaller than a tenth of their column. The choice stands while no multiplier of L exceeds
-// a hundred; when one does, the order is chosen anew from the values of the moment.
+// a hundred (or what the caller bears); when one does, the order is chosen anew from the values of the moment.
 //
 // Values are those of the pattern's entries, in its order.
 #pragma once
@@ -29,6 +29,11 @@ struct Pattern {
 
     std::size_t entries() const { return row.size(); }
 };
+inline bool has_entry(const Pattern& pattern, int i, int j) {
+    const auto column = pattern.row.begin() + pattern.first[static_cast<std::size_t>(j)];
+    return std::binary_search(column, pattern.row.begin() + pattern.first[static_cast<std::size_t>(j) + 1],
+                              i);
+}
 
 // The order of elimination, and what it fills in. W is the matrix in the order of the pivots, row by row.
 struct Elimination {
@@ -54,7 +59,8 @@ struct SparseLU {
     int orders = 0;                       // how often the order was chosen here
     int orientation = 0;                  // sign of the determinant of the last matrix factorised
 
-    static constexpr double least_pivot = 0.1, largest_multiplier = 100;
+    static constexpr double least_pivot = 0.1;
+    double largest_multiplier = 100;  // until the order is chosen anew
     std::size_t size() const { return static_cast<std::size_t>(order.pattern.size); }
 };
 

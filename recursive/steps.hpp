@@ -111,6 +111,8 @@ Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
     store_driven(s, method.follow, drive, amount);
     if (!method.closed) go_to(s, here);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
+    if (!method.closed) go_to(s, next);
+    if (const Outcome outcome = judge_push(s, s.q, Real(0)); outcome != Outcome::converged) return outcome;
     s.upper = s.applied - s.stored;
     if (method.closed) {
         s.lower = -s.Phi;
@@ -124,13 +126,16 @@ Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
     if (!s.x.allFinite()) return Outcome::not_finite;
     if (has_diverged(s)) return Outcome::diverged;
     advance(s.q, s.dq);
-    go_to(s, next);
     s.a = next.a;
+    pass_kinks(s);
     store(s, method.follow);
     return Outcome::converged;
 }
 
 // The same with the consistent tangent ∂G/∂q in place of K, and the true forces.
+//
+// A matrix tells about its own side of a kink. Over one, the step is made with the matrix of qⁿ alone: with that of
+// the other side, half a step ahead or once more, it would be thrown back before the kink, each time anew.
 template <class Real>
 Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     const int n = s.n(), m = s.m();
@@ -138,6 +143,7 @@ Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     go_to(s, next);
     external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);  // what idle modes are checked against
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
+    if (const Outcome outcome = judge_push(s, s.q, s.missed); outcome != Outcome::converged) return outcome;
     // A determinant that has changed its sign since a = 0 went through zero on the way: there the branch
     // turned back, divided, or lost its stability.
     if (s.system.lu.orientation != s.orientation) return Outcome::singular;
@@ -148,20 +154,25 @@ Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
         // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix from half a step ahead.
         s.dq = s.x.head(n) / 2;
         advance(s.q, s.dq);
-        s.lambda_half = s.lambda + s.x.tail(m) / 2;
-        if (const Outcome outcome = factorise_at(s, s.q, s.lambda_half); outcome != Outcome::converged)
-            return outcome;
-        s.q = s.before;
-        back_substitute(s);
-        const Real change = (s.x.head(n) - 2 * s.dq).cwiseProduct(s.system.weight.head(n)).squaredNorm();
-        if (disagree(s, change, size_of_solution(s), Real(0))) return Outcome::diverged;
+        if (beyond_a_kink(s, s.q)) {
+            s.q = s.before;
+        } else {
+            s.lambda_half = s.lambda + s.x.tail(m) / 2;
+            if (const Outcome outcome = factorise_at(s, s.q, s.lambda_half); outcome != Outcome::converged)
+                return outcome;
+            s.q = s.before;
+            back_substitute(s);
+            const Real change = (s.x.head(n) - 2 * s.dq).cwiseProduct(s.system.weight.head(n)).squaredNorm();
+            if (disagree(s, change, size_of_solution(s), Real(0))) return Outcome::diverged;
+        }
     }
     s.lambda += s.x.tail(m);
     s.dq = s.x.head(n);
     if (!s.x.allFinite()) return Outcome::not_finite;
     if (has_diverged(s)) return Outcome::diverged;
     advance(s.q, s.dq);
-    if (method.solve == Consistent::Solve::corrected) {
+    const bool kinked = pass_kinks(s);
+    if (method.solve == Consistent::Solve::corrected && !kinked) {
         residual_at(s, s.q, s.lambda);
         back_substitute(s);
         if (!s.x.allFinite()) return Outcome::not_finite;
@@ -169,15 +180,25 @@ Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
         s.dq = s.x.head(n);
         advance(s.q, s.dq);
         s.lambda += s.x.tail(m);
+        pass_kinks(s);
     }
     s.a = next.a;
     return Outcome::converged;
+}
+
+// Where a step led is judged by the next one, the last by this: whether what is held is idle there, and nothing pushes it.
+template <class Real>
+Outcome check_what_is_held(March<Real>& s) {
+    if (s.pushing.empty()) return Outcome::converged;
+    if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
+    return judge_push(s, s.q, s.consistent ? s.missed : Real(0));
 }
 
 // What the step just taken missed, with its own factors: the next step would have shown it, after the last
 // one nothing else does.
 template <class Real>
 Outcome check_last_step(March<Real>& s) {
+    if (s.kinked > 0) return Outcome::converged;  // there is nothing to compare it with
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
     return disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0)) ? Outcome::diverged

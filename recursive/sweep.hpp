@@ -32,13 +32,15 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
             ++reached;
         };
         keep(0);
+        pass_kinks(s);  // where it settled
+        s.kinked = 0;
         for (int k = 1; k <= N; ++k) {
             stopped = branch.to * k / N;
             if (const Outcome o = step(s, method, {1, static_cast<Real>(stopped)}); o != Outcome::converged)
                 return o;
             if (static_cast<long>(k) * points % N == 0) keep(stopped);
         }
-        return Outcome::converged;
+        return check_what_is_held(s);
     };
     constexpr double settling = std::numeric_limits<double>::quiet_NaN();
     return std::visit(

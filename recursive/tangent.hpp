@@ -73,8 +73,9 @@ void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variati
 template <class Real, class Target>
 void add_tangent(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
     const auto [s_i, s_j, D, length] = deformation<Real>(e, q);
-    const Real stretch = length - rest.free_length, t = gradient<Real>(e.law, stretch),
-               rate = hessian<Real>(e.law, [x = stretch] { return x; });
+    const Real stretch = length - rest.free_length, t = gradient<Real>(e.law, stretch, rest.piece[0]),
+               rate = hessian<Real>(
+                   e.law, [x = stretch] { return x; }, rest.piece[0]);
     const Vector3<Real> n = D / length, F = t * n;
     const Matrix3<Real> along = n * n.transpose();
     const Variation<Real> dF = (rate * along + t / length * (Matrix3<Real>::Identity() - along)) *
@@ -85,58 +86,78 @@ void add_tangent(const AxialSpring& e, const Rest<Real>& rest, const State<Real>
               target);
 }
 
-// ∂(J(θ)⁻ᵀ m)/∂θ. With J⁻ᵀ = I + ½ θ̃ + c θ̃² and ∇c = h θ:
-//   δ(J⁻ᵀ m) = ½ δθ × m + c (δθ × (θ × m) + θ × (δθ × m)) + h (θ·δθ) θ × (θ × m)
+// ∂e/∂(x, φ) [6 × 6], E of elastic.hpp.
 template <class Real>
-Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m) {
-    using std::sin;
-    using std::sqrt;
-    using std::tan;
-    const Real t2 = theta.squaredNorm();
-    Real c, h;
-    if (t2 < Real(1e-3)) {
-        c = Real(1) / 12 + t2 * (Real(1) / 720 + t2 * (Real(1) / 30240 + t2 * (Real(1) / 1209600)));
-        h = Real(1) / 360 + t2 * (Real(1) / 7560 + t2 * (Real(1) / 201600 + t2 * (Real(1) / 5987520)));
-    } else {
-        const Real t = sqrt(t2), u = t / 2;
-        c = (1 - u / tan(u)) / t2;
-        h = ((u / (sin(u) * sin(u)) - 1 / tan(u)) / (2 * t) - 2 * c) / t2;
+Matrix6<Real> strain_rate(const Bushing& e, const Spatial<Real>& g, const Matrix3<Real>& H) {
+    Matrix6<Real> E = Matrix6<Real>::Zero();
+    E.template topLeftCorner<3, 3>().setIdentity();
+    E.template bottomRightCorner<3, 3>() = H;
+    if (in_the_middle(e)) {
+        const Middle<Real> frame = middle<Real>(g.B);
+        E.template topLeftCorner<3, 3>() = frame.S.transpose();
+        E.template topRightCorner<3, 3>() = tilde(g.d()) * jacobian<Real>(frame);
     }
-    const Vector3<Real> turned = theta.cross(m);
-    return -tilde(m) / 2 - c * (tilde(turned) + tilde(theta) * tilde(m)) +
-           h * theta.cross(turned) * theta.transpose();
+    return E;
 }
 
-// Bushing: F = A_i F', M = A_i J(θ)⁻ᵀ M', (F', M') = ∂u/∂e + preload, δ(F', M') = ∂²u/∂e² δe;
-//   on j: (F, s_j × F + M)      on i: -(F, ρ × F + M),   ρ = p_j - r_i
-//   δd = A_iᵀ (δp_j - δr_i - δπ_i × ρ),   δθ = J(θ)⁻¹ A_iᵀ (δπ_j - δπ_i)
+// How the forces F_x, M_φ of a constant stress σ turn: ∂(F_x, M_φ)/∂(x, φ) [6 × 6]. With the frame on i only the
+// moment does, ∂(Hᵀ M')/∂φ. In the middle, with δS = S δη̃, δη = P δφ and Pᵀ = ½ S (I + t̃),
+//
+//   δ(S F') = -S F̃' δη
+//   δ(Pᵀ k) = ½ S ( -κ̃ δη - k̃ δt + (I + t̃) δk ),   κ = k + t × k,   k = d × F',   δk = -F̃' δd
+template <class Real>
+Matrix6<Real> turning_stress(const Bushing& e, const Spatial<Real>& g, const Matrix3<Real>& H,
+                             const Matrix6<Real>& E, const Vector6<Real>& stress) {
+    const Vector3<Real> F = stress.template head<3>(), M = stress.template tail<3>(), theta = g.theta();
+    Matrix6<Real> N = Matrix6<Real>::Zero();
+    if (e.formulation.conjugate)
+        N.template bottomRightCorner<3, 3>() = turning_moment<Real>(e.formulation.angles, g.B, theta, H, M);
+    if (!in_the_middle(e)) return N;
+    const Middle<Real> frame = middle<Real>(g.B);
+    const Matrix3<Real> P = jacobian<Real>(frame), I = Matrix3<Real>::Identity(), t = tilde(frame.t);
+    N.template topRightCorner<3, 3>() -= frame.S * tilde(F) * P;
+    if (!e.formulation.offset_moment) return N;
+    const Vector3<Real> k = g.d().cross(F), turned = k + frame.t.cross(k);
+    const Matrix3<Real> dt = (I + t + frame.t * frame.t.transpose()) * P / 2;  // ∂t/∂φ
+    N.template bottomRightCorner<3, 3>() += frame.S * (tilde(turned) * P + tilde(k) * dt) / 2;
+    N.template bottomRows<3>() += frame.S * (I + t) * tilde(F) * E.template topRows<3>() / 2;
+    return N;
+}
+
+// Bushing: F = A_i F_x, M = A_i M_φ, the two functions of x and B;
+//   on j: (F, s_j × F + M)      on i: -(F, ρ × F + M),   ρ = p_j - r_i, or s_i without the moment of the offset
+//   δx = A_iᵀ (δp_j - δr_i - δπ_i × (s_i + D)),   δφ = A_iᵀ (δπ_j - δπ_i)
 template <class Real, class Target>
 void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
     const Spatial<Real> g = deformation<Real>(e, q);
-    const auto& [s_i, s_j, D, A_i, strain] = g;
-    const Vector3<Real> rho = s_i + D;
-    const Vector3<Real> theta = strain.template tail<3>();
-    const Matrix6<Real> K = hessian<Real>(e.law, [&] { return g.e; });
-    const Vector6<Real> stress = gradient<Real>(e.law, strain) + rest.preload;
-    const Matrix3<Real> J_inverse = inverse_left_jacobian<Real>(theta);
-    const Vector3<Real> F = A_i * stress.template head<3>();
-    const Vector3<Real> M = A_i * (J_inverse.transpose() * stress.template tail<3>());
+    const auto& [s_i, s_j, D, A_i, B, measured] = g;
+    const Vector3<Real> rho = s_i + D, theta = g.theta();
+    const Vector6<Real> answered = strain<Real>(e, g);
+    const Matrix6<Real> K = hessian<Real>(
+        e.law, [&] { return answered; }, rest.piece);
+    const Vector6<Real> stress = gradient<Real>(e.law, answered, rest.piece) + rest.preload;
+    const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, B, theta);
+    const Matrix6<Real> E = strain_rate<Real>(e, g, H);
+    const ElementForce<Real> force = force_of_stress<Real>(e, g, stress);
+
+    // ∂(F_x, M_φ)/∂(x, φ): what does work on e does it through E; F_x alone where the offset's moment is left out.
+    Matrix6<Real> through = E;
+    if (!e.formulation.conjugate) through.setIdentity();
+    if (!e.formulation.offset_moment) through.template topRightCorner<3, 3>().setZero();
+    const Matrix6<Real> T = through.transpose() * K * E + turning_stress<Real>(e, g, H, E, stress);
 
     const Variation<Real> dp_j = of_point<Real>(1, s_j), dpi_i = of_rotation<Real>(0);
     const Variation<Real> drho = dp_j - of_origin<Real>(0);
-    const Variation<Real> dd = A_i.transpose() * (drho + tilde(rho) * dpi_i);
-    const Variation<Real> dtheta = J_inverse * A_i.transpose() * (of_rotation<Real>(1) - dpi_i);
-    const Variation<Real> dstress_F =
-        K.template topRows<3>().template leftCols<3>() * dd + K.template topRightCorner<3, 3>() * dtheta;
-    const Variation<Real> dstress_M =
-        K.template bottomLeftCorner<3, 3>() * dd + K.template bottomRightCorner<3, 3>() * dtheta;
-    const Variation<Real> dF = A_i * dstress_F - tilde(F) * dpi_i;
-    const Variation<Real> dM = A_i * (J_inverse.transpose() * dstress_M +
-                                      turning_moment<Real>(theta, stress.template tail<3>()) * dtheta) -
-                               tilde(M) * dpi_i;
-    add<Real>(e.j.body, e.i.body, e.j.body, dF, of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF) + dM,
+    Eigen::Matrix<Real, 6, 12> motion;  // (δx, δφ)
+    motion << A_i.transpose() * (drho + tilde(rho) * dpi_i), A_i.transpose() * (of_rotation<Real>(1) - dpi_i);
+    const Eigen::Matrix<Real, 6, 12> change = T * motion;
+    const Variation<Real> dF = A_i * change.template topRows<3>() - tilde(force.F) * dpi_i;
+    const Variation<Real> dM = A_i * change.template bottomRows<3>() - tilde(force.M) * dpi_i;
+    add<Real>(e.j.body, e.i.body, e.j.body, dF,
+              of_cross<Real>(s_j, of_direction<Real>(1, s_j), force.F, dF) + dM, target);
+    const Variation<Real> dlever_i = e.formulation.offset_moment ? drho : of_direction<Real>(0, s_i);
+    add<Real>(e.i.body, e.i.body, e.j.body, -dF, -(of_cross<Real>(force.lever_i, dlever_i, force.F, dF) + dM),
               target);
-    add<Real>(e.i.body, e.i.body, e.j.body, -dF, -(of_cross<Real>(rho, drho, F, dF) + dM), target);
 }
 
 // λ[n  s_i × n; -n  -s_j × n] and its relatives (constraints.hpp), with λ n = F turning as the constraint
@@ -210,6 +231,19 @@ void add_load_stiffness(const DeadForce& force, Real factor, const State<Real>& 
 }
 template <class Real, class Target>
 void add_load_stiffness(const DeadMoment&, Real, const State<Real>&, Target&) {}
+// Followers turn: -δf = f̃ δπ for the force, for its moment s × f as for any moment.
+template <class Real, class Target>
+void add_load_stiffness(const FollowerForce& force, Real factor, const State<Real>& q, Target& target) {
+    const BodyId b = force.at.body;
+    const Vector3<Real> f = factor * q[b].lever(force.f_local);
+    target.template block<3, 3>(6 * b, 6 * b + 3) += tilde(f);
+    target.template block<3, 3>(6 * b + 3, 6 * b + 3) += tilde<Real>(q[b].lever(force.at.s_local).cross(f));
+}
+template <class Real, class Target>
+void add_load_stiffness(const FollowerMoment& moment, Real factor, const State<Real>& q, Target& target) {
+    const BodyId b = moment.body;
+    target.template block<3, 3>(6 * b + 3, 6 * b + 3) += tilde<Real>(factor * q[b].lever(moment.m_local));
+}
 
 }  // namespace detail
 

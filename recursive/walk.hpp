@@ -64,10 +64,14 @@ Outcome correct(March<Real>& s, const Going<Real>& going, State<Real>& q, Vector
                 Real& size) {
     go_to(s, going.place(p));
     external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);  // what idle modes are checked against
+    if (const Real held = 1 - s.place.t; held != Real(0)) s.applied -= held * s.R_d;
     if (const Outcome outcome = factorise_at(s, q, lambda); outcome != Outcome::converged) return outcome;
     residual_at(s, q, lambda);
     back_substitute(s);
     if (!s.x.allFinite()) return Outcome::not_finite;
+    if (const Outcome outcome = judge_push(s, q, std::sqrt(size_of_solution(s)));
+        outcome != Outcome::converged)
+        return outcome;
     size = share<Real>(going, s.x.head(s.n()));
     s.dq = s.x.head(s.n());
     advance(q, s.dq);

@@ -19,6 +19,7 @@
 #include "models/compile.hpp"
 #include "models/overloaded.hpp"
 #include "models/reader/sections.hpp"
+#include "models/reader/terms.hpp"
 #include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
@@ -27,57 +28,12 @@ namespace {
 constexpr int most_steps = 1'000'000;
 constexpr double most_poses = 1e7;  // of one branch: steps times bodies
 
-bool is_moment(const Load& load) {
-    return std::visit(
-        overloaded{[](const DeadForce&) { return false; }, [](const DeadMoment&) { return true; }},
-        load.kind);
-}
-
 bool is_zero(const Load& load) {
     return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },
-                                 [](const DeadMoment& l) { return l.m.isZero(0); }},
+                                 [](const DeadMoment& l) { return l.m.isZero(0); },
+                                 [](const FollowerForce& l) { return l.f_local.isZero(0); },
+                                 [](const FollowerMoment& l) { return l.m_local.isZero(0); }},
                       load.kind);
-}
-
-// One of the things that a field lists: a name, and the number beside it in a map.
-struct Term {
-    std::string name;
-    Cursor at;
-    bool has_number = false;
-
-    double number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
-};
-
-// A name, a list of names or a map of names to numbers; each name once. `what` completes "the name of ...".
-std::vector<Term> terms(const Cursor& at, const std::string& what) {
-    std::vector<Term> terms;
-    if (at.value->kind == Value::Kind::map) {
-        for (std::size_t k = 0; k < at.value->keys.size(); ++k) {
-            const std::string& name = at.value->keys[k];
-            terms.push_back({name, at.at(at.value->items[k], child_path(at.path, name)), true});
-        }
-    } else {
-        for (const Cursor& item : at.is_list() ? at.items() : std::vector<Cursor>{at}) {
-            const std::string& name = item.text("the name of " + what);
-            if (std::ranges::any_of(terms, [&](const Term& term) { return term.name == name; }))
-                item.fail(fmt::format("{} is listed twice", quote(name)));
-            terms.push_back({name, item});
-        }
-    }
-    if (terms.empty()) at.fail(fmt::format("empty; {} is needed", what));
-    return terms;
-}
-
-using Loads = std::map<std::string, Load>;
-
-const Load& look_up_load(const Term& term, const Loads& loads) {
-    if (const auto found = loads.find(term.name); found != loads.end()) return found->second;
-    std::vector<std::string> names;
-    for (const auto& entry : loads) names.push_back(entry.first);
-    if (names.empty())
-        term.at.fail(fmt::format("no load is called {}; the scene has no loads", quote(term.name)));
-    term.at.fail(
-        fmt::format("no load is called {}{}", quote(term.name), did_you_mean(term.name, names, "defined")));
 }
 
 // The parameter's unit, and what it is in SI.
@@ -92,6 +48,16 @@ double weight_of(const Term& term, const char* what) {
     return weight;
 }
 
+// The moment as what is per unit of a force.
+void in_arms(Load& load, const Unit& arm) {
+    const auto convert = [&](Eigen::Vector3d& m) {
+        m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
+    };
+    std::visit(overloaded{[](DeadForce&) {}, [&](DeadMoment& l) { convert(l.m); }, [](FollowerForce&) {},
+                          [&](FollowerMoment& l) { convert(l.m_local); }},
+               load.kind);
+}
+
 Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& loads, Branch& branch) {
     std::vector<Load> chosen;
     for (const Term& term : terms(at, "a load")) {
@@ -101,8 +67,7 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
     if (std::ranges::all_of(chosen, is_zero)) at.fail("zero in every component; a branch needs a load");
     const bool only_moments = std::ranges::all_of(chosen, is_moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-        if (auto* moment = std::get_if<DeadMoment>(&chosen[k].kind); moment && !only_moments)
-            moment->m = moment->m.unaryExpr([&](double x) { return units.arm.si(x); }).eval();
+        if (!only_moments) in_arms(chosen[k], units.arm);
         branch.drivers[k].what = chosen[k];
     }
     return only_moments ? Parameter{ParameterUnit::newton_metre, units.moment}
@@ -127,23 +92,8 @@ Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Bran
 void read_static_loads(const Cursor& at, const Units& units, const Loads& loads, Branch& branch) {
     for (const Term& term : terms(at, "a load")) {
         const Load& load = look_up_load(term, loads);
-        const Unit& unit = is_moment(load) ? units.moment : units.force;
-        branch.drivers.push_back({.what = load, .start = unit.si(term.number(unit.name)), .rate = 0});
+        branch.drivers.push_back({.what = load, .start = held_value(term, load, units), .rate = 0});
     }
-}
-
-// Whether two drivers move the same number. Loads, and preloads along different axes, add up.
-bool is_same(const Driven& a, const Driven& b) {
-    if (a.index() != b.index()) return false;
-    return std::visit(
-        overloaded{[](const Load&) { return false; },
-                   [&](const Motion& m) { return m.joint == std::get<Motion>(b).joint; },
-                   [&](const FreeLength& l) { return l.elastic == std::get<FreeLength>(b).elastic; },
-                   [&](const Preload& p) {
-                       const auto& other = std::get<Preload>(b);
-                       return p.elastic == other.elastic && p.direction == other.direction;
-                   }},
-        a);
 }
 
 void read_hold(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
@@ -229,7 +179,9 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
         overloaded{
             [&](const Load& load) {
                 const BodyId on = std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
-                                                        [](const DeadMoment& l) { return l.body; }},
+                                                        [](const DeadMoment& l) { return l.body; },
+                                                        [](const FollowerForce& l) { return l.at.body; },
+                                                        [](const FollowerMoment& l) { return l.body; }},
                                              load.kind);
                 const std::string body = "body '" + scene.bodies[static_cast<std::size_t>(on)].name + "'";
                 if (is_zero(load)) return fmt::format("load '{}' is zero", load.name);
@@ -256,8 +208,11 @@ void require_moving(const Cursor& section, const Scene& scene) {
     }
 }
 
-void note_unused_loads(const Cursor& section, const Loads& loads, Scene& scene) {
+void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& loads, Scene& scene) {
     std::set<std::string> used;
+    if (const auto trim = file.optional("trim"))
+        if (const auto under = trim->optional("under"))
+            for (const Term& term : terms(*under, "a load")) used.insert(term.name);
     for (const Branch& branch : scene.branches)
         for (const Driver& driver : branch.drivers)
             if (const auto* load = std::get_if<Load>(&driver.what)) used.insert(load->name);
@@ -275,7 +230,8 @@ void read_branches(const Cursor& file, const Units& units, const std::map<std::s
         scene.branches.push_back(read_branch(name, at, units, loads, drivables, scene));
     if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
     require_moving(section, scene);
-    if (const auto load_section = file.optional("loads")) note_unused_loads(*load_section, loads, scene);
+    if (const auto load_section = file.optional("loads"))
+        note_unused_loads(file, *load_section, loads, scene);
 }
 
 }  // namespace elastocheck::reader

@@ -2,9 +2,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
+#include "models/overloaded.hpp"
+#include "models/reader/curves.hpp"
 #include "models/reader/sections.hpp"
 
 namespace elastocheck::reader {
@@ -23,17 +27,17 @@ Vector3d rates(const Cursor& at, const Unit& unit) {
 
 // ---- The frame of a bushing.
 
-using Frame = Matrix3d;  // columns: the frame's axes in ground axes
+using Axes = Matrix3d;  // columns: the frame's axes in ground axes
 
 struct FrameField {
-    Frame axes = Frame::Identity();
+    Axes axes = Axes::Identity();
     std::optional<int> only_axis;  // if only this one was given, the other two are any perpendicular pair
 };
 
 // The right-handed frame with the axes a and b (0 x, 1 y, 2 z) along e_a and e_b.
-Frame completed(int a, const Vector3d& e_a, int b, const Vector3d& e_b) {
+Axes completed(int a, const Vector3d& e_a, int b, const Vector3d& e_b) {
     const double sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
-    Frame frame;
+    Axes frame;
     frame.col(a) = e_a;
     frame.col(b) = e_b;
     frame.col(3 - a - b) = sign * e_a.cross(e_b);
@@ -115,33 +119,81 @@ Matrix6 read_stiffness(const Cursor& at, const Units& units) {
     return K;
 }
 
-Matrix6 read_K(const Cursor& bushing, const Units& units) {
-    const auto translational = bushing.optional("rates");
-    const auto rotational = bushing.optional("rotational_rates");
-    const auto full = bushing.optional("stiffness");
-    if (full && (translational || rotational))
-        full->fail("given together with rates; allowed: stiffness, or rates and/or rotational_rates");
-    if (full) return read_stiffness(*full, units);
-    if (!translational && !rotational)
-        bushing.fail("no stiffness; allowed: rates and/or rotational_rates, or stiffness");
+// ---- The law: a stiffness, or one law for each axis where some have curves.
+
+constexpr const char* axis_names[] = {"x", "y", "z", "rx", "ry", "rz"};
+
+Matrix6 read_rates(const Cursor& bushing, const Units& units) {
     Matrix6 K = Matrix6::Zero();
-    if (translational) K.diagonal().head<3>() = rates(*translational, units.rate);
-    if (rotational) K.diagonal().tail<3>() = rates(*rotational, units.rotational_rate);
+    if (const auto k = bushing.optional("rates")) K.diagonal().head<3>() = rates(*k, units.rate);
+    if (const auto k = bushing.optional("rotational_rates"))
+        K.diagonal().tail<3>() = rates(*k, units.rotational_rate);
     return K;
 }
 
-Vector6 read_preload(const Cursor& bushing, const Units& units) {
-    Vector6 preload = Vector6::Zero();
-    if (const auto force = bushing.optional("preload")) preload.head<3>() = vector(*force, units.force);
-    if (const auto moment = bushing.optional("preload_moment"))
-        preload.tail<3>() = vector(*moment, units.moment);
-    return preload;
+// On axes with a curve it stands in place of the rate.
+PerAxis read_curves(const Cursor& at, const Matrix6& K, const Definitions& defs) {
+    at.only_keys({std::begin(axis_names), std::end(axis_names)});
+    if (at.value->keys.empty()) at.fail("empty; a curve for one of the axes is needed");
+    PerAxis law;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        law.axis[k] = LinearRate{K(i, i)};
+        if (const auto curve = at.optional(axis_names[k]))
+            law.axis[k] = read_curve(*curve, k < 3 ? of_lengths(defs.units) : of_angles(defs.units), defs);
+    }
+    return law;
 }
 
-// Whether the bushing stays the same when its frame turns about `axis`.
+SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
+    const bool has_rates = bushing.optional("rates") || bushing.optional("rotational_rates");
+    const auto full = bushing.optional("stiffness"), curves = bushing.optional("curves");
+    if (full && has_rates)
+        full->fail("given together with rates; allowed: stiffness, or rates and/or rotational_rates");
+    if (full && curves)
+        curves->fail("given together with stiffness; allowed: curves, with or without rates, or stiffness");
+    if (full) return LinearStiffness{read_stiffness(*full, defs.units)};
+    if (!has_rates && !curves)
+        bushing.fail("no stiffness; allowed: rates, rotational_rates and/or curves, or stiffness");
+    const Matrix6 K = read_rates(bushing, defs.units);
+    if (curves) return read_curves(*curves, K, defs);
+    return LinearStiffness{K};
+}
+
+// Three numbers of a translation and three of a rotation, zero where they are not given.
+Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, const char* theta,
+                  const Unit& unit_theta) {
+    Vector6 pair = Vector6::Zero();
+    if (const auto given = bushing.optional(d)) pair.head<3>() = vector(*given, unit_d);
+    if (const auto given = bushing.optional(theta)) pair.tail<3>() = vector(*given, unit_theta);
+    return pair;
+}
+
+// The first of each is what a bushing has unless it says otherwise.
+Formulation read_formulation(const Cursor& at) {
+    at.only_keys({"frame", "angles", "conjugate", "offset_moment"});
+    using Frame = Formulation::Frame;
+    using Angles = Formulation::Angles;
+    Formulation result;
+    if (const auto frame = at.optional("frame"))
+        result.frame = std::array{Frame::on_i, Frame::on_j,
+                                  Frame::middle}[frame->one_of("a frame", {"i", "j", "middle"})];
+    if (const auto angles = at.optional("angles"))
+        result.angles = std::array{Angles::rotation_vector, Angles::cardan, Angles::projected}[angles->one_of(
+            "a measure of rotation", {"rotation_vector", "cardan", "projected"})];
+    if (const auto conjugate = at.optional("conjugate")) result.conjugate = conjugate->yes_or_no();
+    if (const auto moment = at.optional("offset_moment")) result.offset_moment = moment->yes_or_no();
+    if (!result.conjugate && result.frame == Frame::middle)
+        at.require("conjugate")
+            .fail("false, which is not defined with the frame in the middle; allowed there: true");
+    return result;
+}
+
+// ---- Whether one axis says enough about the frame.
+
 // A quarter turn is enough to tell: a tensor of second order or a vector that
 // survives it survives any turn. It only swaps entries, so nothing is rounded.
-bool is_round_about(int axis, const Matrix6& K, const Vector6& preload) {
+Matrix6 quarter_turn(int axis) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     Matrix3d turn = Matrix3d::Zero();
     turn(axis, axis) = 1;
@@ -149,30 +201,63 @@ bool is_round_about(int axis, const Matrix6& K, const Vector6& preload) {
     turn(b, c) = -1;
     Matrix6 turn_both = Matrix6::Zero();
     turn_both.topLeftCorner<3, 3>() = turn_both.bottomRightCorner<3, 3>() = turn;
+    return turn_both;
+}
+
+// The rates of the law, or none where it has a curve across the axis: a sum of laws of two components is the same
+// all round where they are one square law.
+std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
+    const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
+        Matrix6 K = Matrix6::Zero();
+        for (int k = 0; k < 6; ++k) {
+            const auto* linear = std::get_if<LinearRate>(&u.axis[static_cast<std::size_t>(k)]);
+            if (!linear && k % 3 != axis) return std::nullopt;
+            K(k, k) = linear ? linear->k : 0;
+        }
+        return K;
+    };
+    return std::visit(
+        overloaded{[](const LinearStiffness& u) { return std::optional<Matrix6>(u.K); }, of_axes}, law);
+}
+
+// Refuses a frame of this axis alone, unless the bushing stays the same when it turns about the axis.
+void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) {
+    const auto refuse = [&](const char* why) {
+        frame.fail(fmt::format("one axis is not enough, as {}; give a second one", why));
+    };
+    const Matrix6 turn = quarter_turn(axis);
     const auto is_same = [](const auto& x, const auto& y) {
         return ((x - y).array().abs() <= round_off * x.array().abs().max(y.array().abs())).all();
     };
-    return is_same(K, turn_both * K * turn_both.transpose()) && is_same(preload, turn_both * preload);
+    const auto is_round = [&](const Vector6& v) { return is_same(v, turn * v); };
+    const auto K = rates_round(axis, bushing.law);
+    if (!K) refuse("a curve across it is not the same all round");
+    if (!is_same(*K, turn * *K * turn.transpose()) || !is_round(bushing.preload))
+        refuse("the rates or the preload across it are not the same all round");
+    if (!is_round(bushing.undeformed)) refuse("the undeformed position is off it");
+    if (bushing.formulation.angles != Formulation::Angles::rotation_vector)
+        refuse("cardan and projected angles need all three");
 }
 
 }  // namespace
 
 Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys(
-        {"bodies", "at", "frame", "rates", "rotational_rates", "stiffness", "preload", "preload_moment"});
+    at.only_keys({"bodies", "at", "frame", "rates", "rotational_rates", "stiffness", "curves", "preload",
+                  "preload_moment", "undeformed", "undeformed_angles", "formulation"});
     const auto [i, j] = body_pair(at.require("bodies"), defs);
     const Vector3d p = hardpoint(at.require("at"), defs);
     const auto frame_field = at.optional("frame");
     const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
-    const Matrix6 K = read_K(at, defs.units);
-    const Vector6 preload = read_preload(at, defs.units);
-    if (frame.only_axis && !is_round_about(*frame.only_axis, K, preload))
-        frame_field->fail(
-            "one axis is not enough, as the rates or the preload across it are not the same all round; "
-            "give a second one");
     const Eigen::Quaterniond A = Eigen::Quaterniond(frame.axes).normalized();
     const auto marker = [&](BodyId body) { return Marker{body, point_of(body, p, defs).s_local, A}; };
-    return {name, Bushing{.i = marker(i), .j = marker(j), .law = LinearStiffness{K}, .preload = preload}};
+    const Units& units = defs.units;
+    Bushing bushing{.i = marker(i), .j = marker(j), .law = read_spatial_law(at, defs)};
+    bushing.preload = read_pair(at, "preload", units.force, "preload_moment", units.moment);
+    bushing.undeformed = read_pair(at, "undeformed", units.length, "undeformed_angles", units.angle);
+    if (const auto formulation = at.optional("formulation"))
+        bushing.formulation = read_formulation(*formulation);
+    if (frame.only_axis) require_round_about(*frame_field, *frame.only_axis, bushing);
+    return {name, bushing};
 }
 
 }  // namespace elastocheck::reader

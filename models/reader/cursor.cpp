@@ -94,9 +94,8 @@ std::vector<Cursor::Named> Cursor::entries() const {
 std::vector<Cursor> Cursor::items() const {
     std::vector<Cursor> items;
     for (std::size_t k = 0; k < value->items.size(); ++k) {
-        const bool is_vector = value->items.size() == 3;
         items.push_back(at(value->items[k], path));
-        items.back().item = item + '.' + (is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1));
+        items.back().item = item + '.' + place_in(*value, k);
     }
     return items;
 }

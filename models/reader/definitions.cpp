@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "models/reader/beams.hpp"
 #include "models/reader/look_up.hpp"
 
 namespace elastocheck::reader {
@@ -60,7 +61,7 @@ void read_bodies(const Cursor& section, Definitions& defs) {
     defs.body_ids["ground"] = ground;
     for (const auto& [name, at] : section.entries()) {
         if (name == "ground") at.fail("ground is always there and cannot be defined; choose another name");
-        at.only_keys({"origin"});
+        at.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
         const Vector3d origin = hardpoint(at.require("origin"), defs);
         defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
         defs.bodies.push_back({name, {.r = origin, .p = Eigen::Quaterniond::Identity()}});
@@ -103,6 +104,7 @@ Definitions read_definitions(const Cursor& scene) {
     if (const auto mirror = scene.optional("mirror")) defs.mirror = read_mirror(*mirror, scene);
     read_points(scene.require("points"), defs);
     read_bodies(scene.require("bodies"), defs);
+    add_beam_bodies(scene, defs);
     return defs;
 }
 

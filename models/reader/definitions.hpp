@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@ struct Unit {
     std::string name;
     double divide = 1, multiply = 1;
     double si(double x) const { return x / divide * multiply; }
+    double written(double si) const { return si * divide / multiply; }
 };
 
 struct Units {
@@ -36,6 +38,7 @@ struct Definitions {
     std::map<std::string, BodyId> body_ids;         // with ground
     std::vector<Body> bodies;                       // twins behind the others
     std::vector<BodyId> twin_of;                    // of each body; itself where it is shared
+    std::optional<std::filesystem::path> folder;    // where the files that the scene names are
 };
 
 inline constexpr std::size_t most_bodies = 10'000;

@@ -65,37 +65,50 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
     }
 }
 
-void add_elements(const Scene& scene, const Units& units, const std::set<std::string>& twins,
-                  Drivables& result) {
-    for (int k = 0; k < static_cast<int>(scene.elastics.size()); ++k) {
-        const Elastic& elastic = scene.elastics[static_cast<std::size_t>(k)];
-        const auto spring = [&](const AxialSpring& e) {
-            const std::string name = "springs." + elastic.name;
-            const double rate = std::visit(overloaded{[](const LinearRate& u) { return u.k; }}, e.law);
-            if (rate == 0) {
-                for (const char* field : {".free_length", ".preload"})
-                    result.not_driven[name + field] = "of a spring of zero rate, which it does not move";
-                return;
-            }
-            result.table[name + ".free_length"] = {ParameterUnit::metre, units.length, FreeLength{k}, 1,
-                                                   std::nullopt};
-            // P = k (ℓ₀ - ℓ) at the design length: a preload is a free length.
-            result.table[name + ".preload"] = {ParameterUnit::newton, units.force, FreeLength{k}, 1 / rate,
-                                               std::nullopt};
-        };
-        const auto bushing = [&](const Bushing&) {
-            for (int axis = 0; axis < 6; ++axis) {
-                Vector6 direction = Vector6::Unit(axis);
-                if (twins.contains(elastic.name)) direction = reflected(direction);
-                const bool is_force = axis < 3;
-                result.table[fmt::format("bushings.{}.{}.{}", elastic.name,
-                                         is_force ? "preload" : "preload_moment", "xyz"[axis % 3])] = {
-                    is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
-                    is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};
-            }
-        };
-        std::visit(overloaded{spring, bushing}, elastic.kind);
+// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is a free length.
+void add_spring(int k, const std::string& name, const AxialSpring& spring, const Units& units,
+                Drivables& result) {
+    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
+        result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
+    };
+    std::visit(overloaded{[&](const LinearRate& u) {
+                              for (const char* field : {".free_length", ".preload"})
+                                  if (u.k == 0)
+                                      result.not_driven[name + field] =
+                                          "of a spring of zero rate, which it does not move";
+                              if (u.k == 0) return;
+                              add(".free_length", ParameterUnit::metre, units.length, 1);
+                              add(".preload", ParameterUnit::newton, units.force, 1 / u.k);
+                          },
+                          [&](const Curve&) {
+                              add(".free_length", ParameterUnit::metre, units.length, 1);
+                              result.not_driven[name + ".preload"] =
+                                  "of a spring with a curve, where it is not in proportion to any length; "
+                                  "allowed: its free_length";
+                          }},
+               spring.law);
+}
+
+// A torsion spring is preloaded about its axis alone.
+void add_bushing(int k, const NamedElement& element, const Units& units, Drivables& result) {
+    const bool is_torsion = element.path.starts_with("torsion_springs.");
+    for (int axis = is_torsion ? 5 : 0; axis < 6; ++axis) {
+        Vector6 direction = Vector6::Unit(axis);
+        if (element.is_twin) direction = reflected(direction);
+        const bool is_force = axis < 3;
+        const std::string field = is_force ? ".preload" : ".preload_moment";
+        const std::string letter = is_torsion ? "" : fmt::format(".{}", "xyz"[axis % 3]);
+        result.table[element.path + field + letter] = {
+            is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
+            is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};
     }
+}
+
+void add_elements(const Scene& scene, const Units& units, const NamedElements& elements, Drivables& result) {
+    for (const auto& [k, element] : elements)
+        std::visit(overloaded{[&](const AxialSpring& e) { add_spring(k, element.path, e, units, result); },
+                              [&](const Bushing&) { add_bushing(k, element, units, result); }},
+                   scene.elastics[static_cast<std::size_t>(k)].kind);
 }
 
 // A jack holds the wheel centre, or the contact patch, at a height: the ground point that it has at the design
@@ -140,12 +153,25 @@ std::optional<Joint> drive_of(const Joint& joint) {
 }
 
 Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
-                    const std::set<std::string>& twins) {
+                    const NamedElements& elements) {
     Drivables result;
     add_jacks(scene, units, result);
     add_joints(scene, units, drives, result);
-    add_elements(scene, units, twins, result);
+    add_elements(scene, units, elements, result);
     return result;
+}
+
+bool is_same(const Driven& a, const Driven& b) {
+    if (a.index() != b.index()) return false;
+    return std::visit(
+        overloaded{[](const Load&) { return false; },
+                   [&](const Motion& m) { return m.joint == std::get<Motion>(b).joint; },
+                   [&](const FreeLength& l) { return l.elastic == std::get<FreeLength>(b).elastic; },
+                   [&](const Preload& p) {
+                       const auto& other = std::get<Preload>(b);
+                       return p.elastic == other.elastic && p.direction == other.direction;
+                   }},
+        a);
 }
 
 int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {

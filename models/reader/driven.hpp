@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "models/reader/cursor.hpp"
@@ -35,13 +34,22 @@ struct Drivables {
 //                           across the axis, y_j = axis × x_j, and x_j's design direction on body i
 std::optional<Joint> drive_of(const Joint& joint);
 
-// `drives` are the positions of the drives that stand already, of held joints; `twins` the names of the mirror's
-// elements, whose preload is driven along the mirror images of their axes.
+// The elements that the file has names for, by their position in Scene::elastics.
+struct NamedElement {
+    std::string path;      // "springs.coil"
+    bool is_twin = false;  // made by the mirror: its preload is driven along the mirror images of its axes
+};
+using NamedElements = std::map<int, NamedElement>;
+
+// `drives` are the positions of the drives that stand already, of held joints.
 Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
-                    const std::set<std::string>& twins);
+                    const NamedElements& elements);
 
 // The quantity called `name`, its joint made if need be. `at` is where the file names it.
 const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables, Scene& scene);
+
+// Whether two drivers move the same number. Loads, and preloads along different axes, add up.
+bool is_same(const Driven& a, const Driven& b);
 
 // Adds a joint whose name must be free.
 int add_joint(const Cursor& at, const Joint& joint, Scene& scene);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "models/curve.hpp"
 #include "models/overloaded.hpp"
 #include "models/reader/definitions.hpp"
 #include "models/reader/words.hpp"
@@ -188,17 +189,25 @@ ElasticKind twin(const ElasticKind& elastic, const Definitions& defs) {
                        return AxialSpring{twin(e.i, defs), twin(e.j, defs), e.law, e.free_length};
                    },
                    [&](const Bushing& e) -> ElasticKind {
-                       const SpatialLaw law =
-                           std::visit(overloaded{[](const LinearStiffness& u) -> SpatialLaw {
+                       const SpatialLaw law = std::visit(
+                           overloaded{[](const LinearStiffness& u) -> SpatialLaw {
                                           Matrix6 K;
                                           for (int c = 0; c < 6; ++c)
                                               K.col(c) = reflected(Vector6(u.K.col(c)));
                                           for (int r = 0; r < 6; ++r)
                                               K.row(r) = reflected(Vector6(K.row(r))).transpose();
                                           return LinearStiffness{K};
+                                      },
+                                      [](PerAxis u) -> SpatialLaw {
+                                          for (int k = 0; k < 6; ++k)
+                                              if (reflected(Vector6(Vector6::Unit(k)))[k] < 0)
+                                                  u.axis[static_cast<std::size_t>(k)] =
+                                                      reversed(u.axis[static_cast<std::size_t>(k)]);
+                                          return u;
                                       }},
-                                      e.law);
-                       return Bushing{twin(e.i, defs), twin(e.j, defs), law, reflected(e.preload)};
+                           e.law);
+                       return Bushing{twin(e.i, defs),      twin(e.j, defs),         law,
+                                      reflected(e.preload), reflected(e.undeformed), e.formulation};
                    }},
         elastic);
 }
@@ -209,6 +218,12 @@ LoadKind twin(const LoadKind& load, const Definitions& defs) {
                                  },
                                  [&](const DeadMoment& l) -> LoadKind {
                                      return DeadMoment{twin(l.body, defs), -reflected(l.m)};
+                                 },
+                                 [&](const FollowerForce& l) -> LoadKind {
+                                     return FollowerForce{twin(l.at, defs), reflected(l.f_local)};
+                                 },
+                                 [&](const FollowerMoment& l) -> LoadKind {
+                                     return FollowerMoment{twin(l.body, defs), -reflected(l.m_local)};
                                  }},
                       load);
 }
@@ -219,7 +234,8 @@ Wheel twin(const Wheel& wheel, const Definitions& defs) {
             .centre_local = twin_place(wheel.body, wheel.centre_local, defs),
             .contact_local = twin_place(wheel.body, wheel.contact_local, defs),
             .spin_axis_local = reflected(wheel.spin_axis_local),
-            .side = -wheel.side};
+            .side = -wheel.side,
+            .tyre_rate = wheel.tyre_rate};
 }
 
 }  // namespace elastocheck::reader

@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
-#include <system_error>
+#include <utility>
 
+#include "models/reader/beams.hpp"
 #include "models/reader/driven.hpp"
 #include "models/reader/mirror.hpp"
 #include "models/reader/sections.hpp"
 #include "models/reader/settings.hpp"
+#include "models/reader/text_file.hpp"
+#include "models/reader/words.hpp"
 #include "models/reader/yaml.hpp"
 
 namespace elastocheck {
@@ -19,6 +23,8 @@ namespace reader {
 namespace {
 
 constexpr int format_version = 1;
+
+using Folder = std::optional<std::filesystem::path>;  // of the scene's file; none where it is text
 
 void check_version(const Cursor& scene) {
     const Cursor version = scene.require("elastocheck");
@@ -65,6 +71,15 @@ Wheel reflected(const Wheel& wheel, const Definitions& defs) { return twin(wheel
 // The entries of a section, and behind them their twins. Sections of what may be on one side only have no check.
 enum class Sides { both, any };
 
+template <class T>
+void append(std::vector<T>& list, T entry) {
+    list.push_back(std::move(entry));
+}
+template <class T>
+void append(std::vector<T>& list, std::vector<T> entries) {
+    std::ranges::move(entries, std::back_inserter(list));
+}
+
 template <class T, class Read>
 void read_section(const Cursor& scene, const char* key, const Definitions& defs, Sides sides,
                   std::vector<T>& list, Read read) {
@@ -72,7 +87,7 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
     if (!section) return;
     if (sides == Sides::both) require_both_sides(*section, defs);
     const std::size_t begin = list.size();
-    for (const auto& [name, at] : section->entries()) list.push_back(read(name, at, defs));
+    for (const auto& [name, at] : section->entries()) append(list, read(name, at, defs));
     const std::size_t end = list.size();
     for (std::size_t k = begin; defs.mirror && k < end; ++k)
         if (const auto name = twin_name(*defs.mirror, list[k].name, *section)) {
@@ -80,6 +95,23 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
             twin_entry.name = *name;
             list.push_back(twin_entry);
         }
+}
+
+// A section of elements that branches speak of by their names there; not of the stops in a spring, say.
+template <class Read>
+void read_elements(const Cursor& scene, const char* key, const Definitions& defs,
+                   std::vector<Elastic>& elastics, NamedElements& named, Read read) {
+    const std::size_t begin = elastics.size();
+    read_section(scene, key, defs, Sides::both, elastics, read);
+    const auto section = scene.optional(key);
+    for (std::size_t k = begin; k < elastics.size(); ++k) {
+        const auto is_twin = [&](const std::string& name) {
+            return defs.mirror && turned(*defs.mirror, name) == elastics[k].name;
+        };
+        const bool is_written = section->optional(elastics[k].name).has_value();
+        if (is_written || std::ranges::any_of(section->value->keys, is_twin))
+            named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name, !is_written};
+    }
 }
 
 // `wheel` is the short form for one that needs no name.
@@ -118,12 +150,25 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
     return drives;
 }
 
-std::set<std::string> twins_of(const Cursor& scene, const char* key, const Definitions& defs) {
-    std::set<std::string> twins;
-    if (const auto section = scene.optional(key); section && defs.mirror)
-        for (const std::string& name : section->value->keys)
-            if (const auto twin = turned(*defs.mirror, name)) twins.insert(*twin);
-    return twins;
+// The names that the reader gives to stops, after what they are written in, must be free.
+void require_own_names(const Cursor& scene, const Definitions& defs, const std::vector<Elastic>& elastics) {
+    for (const char* key : {"springs", "stops"}) {
+        const auto section = scene.optional(key);
+        if (!section) continue;
+        for (const auto& [owner, at] : section->entries())
+            for (const char* field : {"bump_stop", "rebound_stop", "bump", "rebound"}) {
+                const auto stop = at.optional(field);
+                if (!stop) continue;
+                const std::string name = owner + "." + field;
+                const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt;
+                for (const std::string& made : {name, twin.value_or(name)})
+                    if (std::ranges::count(elastics, made, &Elastic::name) > 1)
+                        stop->fail(fmt::format(
+                            "needs an element of its own called {}, but there is one already; call "
+                            "that one something else",
+                            quote(made)));
+            }
+    }
 }
 
 // A number that is read in two places is one number of the file.
@@ -132,23 +177,29 @@ void keep_each_once(std::vector<Number>& numbers) {
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
 }
 
-Scene read_tree(const Cursor& scene) {
+Scene read_tree(const Cursor& scene, const Folder& folder) {
     if (scene.value->kind == Value::Kind::nothing) scene.fail("empty; a scene begins with `elastocheck: 1`");
-    scene.only_keys({"elastocheck", "name", "units", "mirror", "points", "bodies", "joints", "springs",
-                     "bushings", "static_loads", "loads", "branches", "wheel", "wheels", "probes"});
+    scene.only_keys({"elastocheck",  "name",    "units", "mirror",          "gravity",  "points", "bodies",
+                     "joints",       "springs", "stops", "torsion_springs", "bushings", "beams",  "tyres",
+                     "static_loads", "loads",   "trim",  "branches",        "wheel",    "wheels", "probes"});
     check_version(scene);
     Scene result;
     result.source = *scene.file;
     result.name = scene.require("name").text("the name of the scene");
-    const Definitions defs = read_definitions(scene);
+    Definitions defs = read_definitions(scene);
+    defs.folder = folder;
     result.bodies = defs.bodies;
     for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
     read_section(scene, "joints", defs, Sides::both, result.joints, read_joint);
-    read_section(scene, "springs", defs, Sides::both, result.elastics, read_spring);
-    read_section(scene, "bushings", defs, Sides::both, result.elastics, read_bushing);
-    check_all_held(scene, result);
+    NamedElements named;
+    read_elements(scene, "springs", defs, result.elastics, named, read_spring);
+    read_elements(scene, "bushings", defs, result.elastics, named, read_bushing);
+    read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
+    read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
+    require_own_names(scene, defs, result.elastics);
     read_section(scene, "static_loads", defs, Sides::both, result.static_loads, read_static_load);
+    read_gravity(scene, defs, result);
     std::vector<Load> loads;
     read_section(scene, "loads", defs, Sides::any, loads, read_load);
     read_wheels(scene, defs, result.wheels);
@@ -158,14 +209,21 @@ Scene read_tree(const Cursor& scene) {
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
-    Drivables drivable = drivables(result, defs.units, drives, twins_of(scene, "bushings", defs));
+    Drivables drivable = drivables(result, defs.units, drives, named);
+    read_beams(scene, defs, result.elastics);
+    read_tyres(scene, defs, drivable, result);
+    check_all_held(scene, result);
+    read_trim(scene, defs.units, by_name, drivable, result);
     read_branches(scene, defs.units, by_name, drivable, result);
     return result;
 }
 
-Scene read_whole(const Value& tree, const std::string& name) {
+Scene read_whole(std::string_view text, const std::string& name, std::span<const Setting> settings,
+                 const Folder& folder) {
+    Value tree = parse_yaml(text, name);
+    apply(settings, tree, name);
     std::vector<Number> numbers;
-    Scene scene = read_tree({&tree, "", &name, &numbers});
+    Scene scene = read_tree({&tree, "", &name, &numbers}, folder);
     keep_each_once(numbers);
     scene.numbers = std::move(numbers);
     return scene;
@@ -202,23 +260,14 @@ Probe read_probe(const std::string& name, const Cursor& at, const Definitions& d
 }  // namespace reader
 
 Scene parse_scene(std::string_view text, const std::string& name, std::span<const Setting> settings) {
-    reader::Value tree = reader::parse_yaml(text, name);
-    reader::apply(settings, tree, name);
-    return reader::read_whole(tree, name);
+    return reader::read_whole(text, name, settings, std::nullopt);
 }
 
 Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings) {
     const std::string name = file.string();
-    std::error_code ignored;
-    const auto status = std::filesystem::status(file, ignored);
-    if (status.type() == std::filesystem::file_type::not_found) reader::fail(name, 0, "", "no such file");
-    if (is_directory(status)) reader::fail(name, 0, "", "a directory; a scene is one file");
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(reader::largest_text + 1, '\0');  // one more than allowed, for parse_scene to refuse
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream && !stream.eof()) reader::fail(name, 0, "", "cannot be read");
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return parse_scene(text, name, settings);
+    const reader::TextFile read = reader::read_text(file);
+    if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
+    return reader::read_whole(read.text, name, settings, file.parent_path());
 }
 
 }  // namespace elastocheck

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "models/reader/cursor.hpp"
 #include "models/reader/definitions.hpp"
@@ -13,12 +14,25 @@ namespace elastocheck::reader {
 
 Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs);
 bool is_held(const Cursor& joint);  // `held: true`
-Elastic read_spring(const std::string& name, const Cursor& at, const Definitions& defs);
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
+                                 const Definitions& defs);  // and its stops
+std::vector<Elastic> read_stops(const std::string& name, const Cursor& at, const Definitions& defs);
+Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs);
 Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs);
 Load read_load(const std::string& name, const Cursor& at, const Definitions& defs);  // numbers as written
 Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs);  // SI
 Wheel read_wheel(const Cursor& at, const Definitions& defs);
 Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs);
+
+// `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
+void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);
+
+// `tyres`: elements between ground and wheel, and what drives their road. The wheels are there already.
+void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result);
+
+// `trim`. All that can be adjusted, wheels and probes are there already; what it holds joins the static loads.
+void read_trim(const Cursor& scene, const Units& units, const std::map<std::string, Load>& loads,
+               Drivables& drivables, Scene& result);
 
 // The last section: all else that the scene has must be there. Adds the branches, the joints that their drives
 // need, and the loads that no branch uses to what is left out.

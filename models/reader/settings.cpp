@@ -17,9 +17,8 @@ constexpr std::size_t longest_value = 256;
 // The names of a map's or list's entries, as a path has them.
 std::vector<std::string> names_in(const Value& value) {
     if (value.kind == Value::Kind::map) return value.keys;
-    if (value.items.size() == 3) return {"x", "y", "z"};
     std::vector<std::string> names;
-    for (std::size_t k = 1; k <= value.items.size(); ++k) names.push_back(std::to_string(k));
+    for (std::size_t k = 0; k < value.items.size(); ++k) names.push_back(place_in(value, k));
     return names;
 }
 

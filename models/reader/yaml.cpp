@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "models/reader/scene_file.hpp"
+#include "models/reader/text_file.hpp"
 #include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
@@ -189,6 +190,11 @@ void refuse_binary(std::string_view text, const std::string& file) {
 }
 
 }  // namespace
+
+std::string place_in(const Value& list, std::size_t k) {
+    const bool is_vector = list.items.size() == 3 && list.items[0].kind != Value::Kind::list;
+    return is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1);
+}
 
 bool is_utf8(std::string_view text) {
     while (!text.empty()) {

@@ -24,7 +24,8 @@ Value parse_yaml(std::string_view text, const std::string& file);
 
 bool is_utf8(std::string_view text);
 
-inline constexpr std::size_t largest_text = 1 << 20;  // [bytes]
+// What tells an entry of a list in paths, "y" or "4": vectors have x, y, z, all other lists places from 1.
+std::string place_in(const Value& list, std::size_t k);
 
 // Throws SceneError "file:line: field: what"; without the line (0) or the field (empty) where there is none.
 [[noreturn]] void fail(const std::string& file, int line, const std::string& field, const std::string& what);

@@ -1,5 +1,6 @@
 #include "recursive/series/equations.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <stdexcept>
 
@@ -11,6 +12,13 @@ namespace {
 void reserve_arm(Room& room, Arm& arm, BodyId body) {
     arm.body = body;
     reserve(room, arm.s, body == ground);
+}
+void reserve(Room& room, TurnSeries& t, bool constant = false) {
+    const auto each = [&](auto&... all) { (reserve(room, all, constant), ...); };
+    each(t.g, t.h, t.stretch, t.shrink, t.hg, t.C);
+}
+void reserve(Room& room, CubicSeries& t) {
+    for (auto* all : {&t.xi, &t.inner, &t.slope}) reserve(room, *all);
 }
 // A term between two bodies with the series it needs beside its arms.
 template <class Term, class Kind, class... Members>
@@ -28,8 +36,10 @@ ElasticSeries term(Room& room, const AxialSpring& e) {
     T t = between<T>(room, e, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse, &T::stretch,
                      &T::force, &T::tension);
     t.free_length.start = e.free_length;
+    if (std::holds_alternative<Curve>(e.law)) reserve(room, t.cubic);
     return t;
 }
+
 ElasticSeries term(Room& room, const Bushing& e) {
     using T = BushingSeries;
     T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta, &T::relative,
@@ -38,6 +48,31 @@ ElasticSeries term(Room& room, const Bushing& e) {
                      &T::s, &T::phi, &T::psi);
     t.preload.start = e.preload;
     t.rotational = rotational(e.law) || !e.preload.tail<3>().isZero(0);
+    if (const auto* law = std::get_if<PerAxis>(&e.law)) {
+        t.axis = room.take<AxisSeries>(6, {});
+        for (std::size_t k = 0; k < 6; ++k) {
+            reserve(room, t.axis[k].x);
+            reserve(room, t.axis[k].force);
+            if (std::holds_alternative<Curve>(law->axis[k])) reserve(room, t.axis[k].cubic);
+        }
+    }
+    if (e.formulation.frame == Formulation::Frame::middle) {
+        t.middle = room.take<MiddleSeries>(1, {});
+        MiddleSeries& s = *t.middle;
+        reserve(room, s.half);
+        for (auto* all : {&s.squared, &s.size, &s.sum, &s.inverse}) reserve(room, *all);
+        for (auto* all : {&s.d_i, &s.d, &s.F_local, &s.F_i, &s.m, &s.g_m}) reserve(room, *all);
+    }
+    if (e.formulation.angles != Formulation::Angles::rotation_vector) {
+        t.angles = room.take<AnglesSeries>(1, {});
+        reserve(room, t.angles->B);
+        for (auto& s : t.angles->axis) {
+            for (auto* all : {&s.xy, &s.unit}) reserve(room, *all);
+            for (auto* all : {&s.squared, &s.r, &s.inverse, &s.angle, &s.z, &s.factor, &s.moment})
+                reserve(room, *all);
+            for (auto* all : {&s.along, &s.row, &s.share}) reserve(room, *all);
+        }
+    }
     return t;
 }
 
@@ -83,6 +118,19 @@ LoadSeries term(Room&, const DeadMoment& m) {
     t.kind = m;
     return t;
 }
+LoadSeries follower(Room& room, BodyId body, const Eigen::Vector3d& f_local, const Eigen::Vector3d& m_local) {
+    FollowerSeries t;
+    t.f_local = f_local;
+    t.m_local = m_local;
+    reserve(room, t.size);
+    reserve_arm(room, t.f, body);
+    reserve_arm(room, t.m, body);
+    return t;
+}
+LoadSeries term(Room& room, const FollowerForce& f) {
+    return follower(room, f.at.body, f.f_local, f.at.s_local.cross(f.f_local));
+}
+LoadSeries term(Room& room, const FollowerMoment& m) { return follower(room, m.body, V3::Zero(), m.m_local); }
 LoadSeries load(Room& room, const Load& load, const Driven<double>& factor) {
     LoadSeries all = std::visit([&](const auto& kind) { return term(room, kind); }, load.kind);
     std::visit([&](auto& t) { t.factor = factor; }, all);
@@ -133,6 +181,14 @@ void settle_on_constants(DistanceSeries& t) {
 }
 void settle_on_constants(AngleSeries& t) {
     if (t.angle.rate == 0) t.alpha.last = t.cosine.last = t.sine.last = 0;
+}
+
+bool curved(const SpringSeries& t) { return std::holds_alternative<Curve>(t.kind.law); }
+bool curved(const BushingSeries& t) {
+    const auto* law = std::get_if<PerAxis>(&t.kind.law);
+    return law != nullptr && std::ranges::any_of(law->axis, [](const ScalarLaw& axis) {
+               return std::holds_alternative<Curve>(axis);
+           });
 }
 
 // ---- Where things are at τ = 0.
@@ -187,10 +243,14 @@ void place(AngleSeries& t, const State<double>& q) {
 }
 void place(ForceSeries& t, const State<double>& q) { place(t.at, q, t.kind.at.s_local); }
 void place(MomentSeries&, const State<double>&) {}
+void place(FollowerSeries& t, const State<double>& q) {
+    place(t.f, q, t.f_local);
+    place(t.m, q, t.m_local);
+}
 
 // ---- Coefficient k.
 
-void move(Order o, BodySeries& b) {
+void move(Order o, TurnSeries& b) {
     product(o, b.g, b.g, b.stretch, dot);
     if (o.k == 0) b.stretch.c[0] += 1;
     reciprocal(o, b.stretch, b.shrink);
@@ -235,11 +295,41 @@ T coefficient(const Equations& e, const Driven<T>& driven, int k) {
 
 // ---- One function a law: ∂u/∂x of the deformation x, ∂u/∂e of the deformations e.
 
-void law_gradient(Order o, const LinearRate& law, const Scalar& x, Scalar& f) {
+void law_gradient(Order o, const LinearRate& law, CubicSeries&, const Scalar& x, Scalar& f) {
     linear(o, f, [&](auto of) { return law.k * of(x); });
 }
-void law_gradient(Order o, const LinearStiffness& law, const Vector6Series& e, Vector6Series& f) {
-    linear(o, f, [&](auto of) -> Vector6<double> { return law.K * of(e); });
+void law_gradient(Order o, const Curve&, CubicSeries& t, const Scalar& x, Scalar& f) {
+    const auto& c = t.c;
+    linear(o, t.xi, [&](auto of) { return of(x); });
+    if (o.k == 0) t.xi.c[0] -= t.about;
+    if (c[2] == 0 && c[3] == 0) {
+        linear(o, f, [&](auto of) { return c[1] * of(t.xi); });
+    } else {
+        linear(o, t.inner, [&](auto of) { return c[3] * of(t.xi); });
+        if (o.k == 0) t.inner.c[0] += c[2];
+        product(o, t.inner, t.xi, t.slope, std::multiplies<>());
+        if (o.k == 0) t.slope.c[0] += c[1];
+        product(o, t.slope, t.xi, f, std::multiplies<>());
+    }
+    if (o.k == 0) f.c[0] += c[0];
+}
+void law_gradient(Order o, const ScalarLaw& law, CubicSeries& cubic, const Scalar& x, Scalar& f) {
+    std::visit([&](const auto& kind) { law_gradient(o, kind, cubic, x, f); }, law);
+}
+void law_gradient(Order o, const LinearStiffness& law, BushingSeries& t) {
+    linear(o, t.gradient, [&](auto of) -> Vector6<double> { return law.K * of(t.e); });
+}
+void law_gradient(Order o, const PerAxis& law, BushingSeries& t) {
+    for (std::size_t k = 0; k < 6; ++k) {
+        AxisSeries& axis = t.axis[k];
+        linear(o, axis.x, [&](auto of) { return of(t.e)[static_cast<Eigen::Index>(k)]; });
+        law_gradient(o, law.axis[k], axis.cubic, axis.x, axis.force);
+    }
+    linear(o, t.gradient, [&](auto of) {
+        Vector6<double> f;
+        for (int k = 0; k < 6; ++k) f[k] = of(t.axis[k].force);
+        return f;
+    });
 }
 
 // ---- One function a geometry.
@@ -254,7 +344,7 @@ void evaluate(Equations& e, SpringSeries& t, Order o) {
     reciprocal(o, t.length, t.inverse);
     linear(o, t.stretch, [&](auto of) { return of(t.length) - t.free_length.rate * of(e.a); });
     if (o.k == 0) t.stretch.c[0] -= t.free_length.start;
-    std::visit([&](const auto& law) { law_gradient(o, law, t.stretch, t.force); }, t.kind.law);
+    law_gradient(o, t.kind.law, t.cubic, t.stretch, t.force);
     product(o, t.force, t.inverse, t.tension, std::multiplies<>());
     product(o, t.tension, t.D, t.F, scale);
     if (o.pass == Pass::change) return;
@@ -262,8 +352,8 @@ void evaluate(Equations& e, SpringSeries& t, Order o) {
     push(e, o.k, t.i.body, -1, t.i.s, t.F);
 }
 
-// u = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u
-void evaluate_rotation(Equations& e, BushingSeries& t, Order o) {
+// p = (W, V), the quaternion of B = A_iᵀ A_j of any length.
+void evaluate_relative(Equations& e, BushingSeries& t, Order o) {
     const BodySeries &b_i = e[t.i.body], &b_j = e[t.j.body];
     product(o, b_i.g, b_j.g, t.dot_g, dot);
     if (o.k == 0) t.dot_g.c[0] += 1;
@@ -275,6 +365,12 @@ void evaluate_rotation(Equations& e, BushingSeries& t, Order o) {
     });
     linear(o, t.W, [&](auto of) { return of(t.relative)[0]; });
     linear(o, t.V, [&](auto of) -> V3 { return of(t.relative).template tail<3>(); });
+}
+
+// ---- One function a measure of rotation: θ, then M = Hᵀ M' where δθ = H ω, both in axes of i.
+
+// u = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u
+void rotation_vector(BushingSeries& t, Order o) {
     reciprocal(o, t.W, t.inverse);
     product(o, t.inverse, t.V, t.u, scale);
     product(o, t.u, t.u, t.s, dot);
@@ -286,20 +382,151 @@ void evaluate_rotation(Equations& e, BushingSeries& t, Order o) {
     compose(o, t.s, t.psi);
     product(o, t.phi.f, t.u, t.theta, [](double phi, const V3& u) -> V3 { return 2 * phi * u; });
 }
-
-// M = A_i J(θ)⁻ᵀ M',  J(θ)⁻ᵀ = I + F_1 ũ + F_3 ũ²
-void evaluate_moment(Equations& e, BushingSeries& t, Order o) {
-    linear(o, t.moment_local, [&](auto of) -> V3 { return of(t.stress).template tail<3>(); });
+// J(θ)⁻ᵀ = I + F_1 ũ + F_3 ũ²
+void moment_of_rotation_vector(BushingSeries& t, Order o) {
     product(o, t.u, t.moment_local, t.u_M, cross);
     product(o, t.u, t.u_M, t.u_u_M, cross);
     product(o, t.phi.f, t.u_M, t.spread_1, scale);
     product(o, t.psi.f, t.u_u_M, t.spread_2, scale);
     linear(o, t.moment_i,
            [&](auto of) -> V3 { return t.E_i * (of(t.moment_local) + of(t.spread_1) + of(t.spread_2)); });
+}
+
+// p·p B(p), as a bilinear map of p with itself
+Matrix3<double> rotation_of(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
+    const V3 v = a.tail<3>(), w = b.tail<3>();
+    return (a[0] * b[0] - v.dot(w)) * Matrix3<double>::Identity() + 2 * v * w.transpose() +
+           2 * a[0] * tilde<double>(w);
+}
+void angle(Order o, PlaneAngleSeries& t) {
+    product(o, t.xy, t.xy, t.squared,
+            [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.dot(b); });
+    square_root(o, t.squared, t.r);
+    reciprocal(o, t.r, t.inverse);
+    product(o, t.inverse, t.xy, t.unit,
+            [](double a, const Eigen::Vector2d& b) -> Eigen::Vector2d { return a * b; });
+    arc(o, t.unit, t.angle);
+}
+// row = fixed + z/r (cos · of_cosine + sin · of_sine)
+void row_of(Order o, PlaneAngleSeries& t, const V3& fixed, const V3& of_cosine, const V3& of_sine) {
+    product(o, t.z, t.inverse, t.factor, std::multiplies<>());
+    linear(o, t.along, [&](auto of) -> V3 { return of(t.unit).x() * of_cosine + of(t.unit).y() * of_sine; });
+    product(o, t.factor, t.along, t.row, scale);
+    if (o.k == 0) t.row.c[0] += fixed;
+}
+// B = R_x R_y R_z. With c, s of the first angle:
+//   ω = θ_x' (1, 0, 0) + θ_y' (0, c, s) + θ_z' (sin θ_y, -s cos θ_y, c cos θ_y)
+//   H = (1, s tan θ_y, -c tan θ_y;  0, c, s;  0, -s / cos θ_y, c / cos θ_y)
+void cardan(BushingSeries& t, Order o) {
+    auto& [x, y, z] = t.angles->axis;
+    const Matrix3Series& B = t.angles->B;
+    linear(o, x.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), -of(B)(1, 2)}; });
+    linear(o, x.z, [&](auto of) { return of(B)(0, 2); });
+    angle(o, x);  // r = p·p cos θ_y
+    linear(o, y.xy, [&](auto of) -> Eigen::Vector2d { return {of(x.r), of(B)(0, 2)}; });
+    angle(o, y);  // r = p·p
+    linear(o, z.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(0, 0), -of(B)(0, 1)}; });
+    angle(o, z);
+    row_of(o, x, V3::UnitX(), -V3::UnitZ(), V3::UnitY());
+    linear(o, y.row, [&](auto of) -> V3 { return {0, of(x.unit).x(), of(x.unit).y()}; });
+    product(o, y.r, x.inverse, z.factor, std::multiplies<>());
+    linear(o, z.along, [&](auto of) -> V3 { return {0, -of(x.unit).y(), of(x.unit).x()}; });
+    product(o, z.factor, z.along, z.row, scale);
+}
+// H = (1, s_x B_02/r_x, -c_x B_02/r_x;  -s_y B_12/r_y, 1, -c_y B_12/r_y;  -c_z B_20/r_z, -s_z B_20/r_z, 1)
+// from δB = ω̃ B, r the length of the two entries that the angle is made of.
+void projected(BushingSeries& t, Order o) {
+    auto& [x, y, z] = t.angles->axis;
+    const Matrix3Series& B = t.angles->B;
+    linear(o, x.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), -of(B)(1, 2)}; });
+    linear(o, y.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), of(B)(0, 2)}; });
+    linear(o, z.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(0, 0), of(B)(1, 0)}; });
+    linear(o, x.z, [&](auto of) { return of(B)(0, 2); });
+    linear(o, y.z, [&](auto of) { return of(B)(1, 2); });
+    linear(o, z.z, [&](auto of) { return of(B)(2, 0); });
+    for (auto* each : {&x, &y, &z}) angle(o, *each);
+    row_of(o, x, V3::UnitX(), -V3::UnitZ(), V3::UnitY());
+    row_of(o, y, V3::UnitY(), -V3::UnitZ(), -V3::UnitX());
+    row_of(o, z, V3::UnitZ(), -V3::UnitX(), -V3::UnitY());
+}
+void plane_angles(BushingSeries& t, Order o) {
+    product(o, t.relative, t.relative, t.angles->B, rotation_of);
+    if (t.kind.formulation.angles == Formulation::Angles::cardan)
+        cardan(t, o);
+    else
+        projected(t, o);
+    const auto& [x, y, z] = t.angles->axis;
+    linear(o, t.theta, [&](auto of) -> V3 { return {of(x.angle), of(y.angle), of(z.angle)}; });
+}
+// Σ row_n M'_n
+void moment_of_plane_angles(BushingSeries& t, Order o) {
+    for (std::size_t n = 0; n < 3; ++n) {
+        PlaneAngleSeries& each = t.angles->axis[n];
+        linear(o, each.moment, [&](auto of) { return of(t.moment_local)[static_cast<Eigen::Index>(n)]; });
+        product(o, each.moment, each.row, each.share, scale);
+    }
+    const auto& [x, y, z] = t.angles->axis;
+    linear(o, t.moment_i, [&](auto of) -> V3 { return t.E_i * (of(x.share) + of(y.share) + of(z.share)); });
+}
+
+// ---- The frame on i: d = d_i.
+
+void deformation_on_i(BushingSeries& t, Order o) {
+    linear(o, t.e, [&](auto of) -> Vector6<double> {
+        Vector6<double> deformation;
+        deformation << t.E_i.transpose() * of(t.strain), of(t.theta);
+        return deformation;
+    });
+}
+void force_on_i(BushingSeries& t, Order o) {
+    linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(t.stress).template head<3>(); });
+}
+
+// ---- The frame in the middle: d = B^-½ d_i.
+
+void middle_deformation(BushingSeries& t, Order o) {
+    MiddleSeries& s = *t.middle;
+    product(o, t.relative, t.relative, s.squared,
+            [](const Eigen::Vector4d& a, const Eigen::Vector4d& b) { return a.dot(b); });
+    square_root(o, s.squared, s.size);
+    linear(o, s.sum, [&](auto of) { return of(s.size) + of(t.W); });
+    reciprocal(o, s.sum, s.inverse);
+    product(o, s.inverse, t.V, s.half.g, scale);
+    move(o, s.half);
+    linear(o, s.d_i, [&](auto of) -> V3 { return t.E_i.transpose() * of(t.strain); });
+    product(o, s.half.C, s.d_i, s.d, apply_transposed);
+    linear(o, t.e, [&](auto of) -> Vector6<double> {
+        Vector6<double> deformation;
+        deformation << of(s.d), of(t.theta);
+        return deformation;
+    });
+}
+// B^½ turns by ω_½ = (I + B^½)⁻¹ ω = ½ (I - g̃) ω while B turns by ω, so that with F_i = B^½ F'
+//   F'·δd = F_i·(δd_i + d_i × ω_½) = F_i·δd_i + ½ (m + g × m)·ω,   m = F_i × d_i
+// which is j's share of the moment of the offset: left out with the whole.
+void middle_force(BushingSeries& t, Order o) {
+    MiddleSeries& s = *t.middle;
+    linear(o, s.F_local, [&](auto of) -> V3 { return of(t.stress).template head<3>(); });
+    product(o, s.half.C, s.F_local, s.F_i, apply);
+    product(o, s.F_i, s.d_i, s.m, cross);
+    product(o, s.half.g, s.m, s.g_m, cross);
+    linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(s.F_i); });
+}
+
+// M on j, its opposite on i: what does work on θ, and on d where the frame turns with j.
+void evaluate_moment(Equations& e, BushingSeries& t, Order o) {
+    linear(o, t.moment_local, [&](auto of) -> V3 { return of(t.stress).template tail<3>(); });
+    if (!t.rotational || !t.kind.formulation.conjugate)
+        linear(o, t.moment_i, [&](auto of) -> V3 { return t.E_i * of(t.moment_local); });
+    else
+        t.angles != nullptr ? moment_of_plane_angles(t, o) : moment_of_rotation_vector(t, o);
+    if (t.middle != nullptr && t.kind.formulation.offset_moment)
+        add_linear(o, t.moment_i,
+                   [&](auto of) -> V3 { return t.E_i * (of(t.middle->m) + of(t.middle->g_m)) / 2; });
     product(o, e[t.i.body].C, t.moment_i, t.M, apply);
 }
 
-// F = A_i F',  (F', M') = ∂u/∂e + preload,  e = (d, θ)
+// F = A_f F',  (F', M') = ∂u/∂e(e - e₀) + preload,  e = (d, θ)
 void evaluate(Equations& e, BushingSeries& t, Order o) {
     const BodySeries &b_i = e[t.i.body], &b_j = e[t.j.body];
     turn(o, e, t.i);
@@ -307,23 +534,21 @@ void evaluate(Equations& e, BushingSeries& t, Order o) {
     linear(o, t.rho, [&](auto of) -> V3 { return of(b_j.r) + of(t.j.s) - of(b_i.r); });
     linear(o, t.D, [&](auto of) -> V3 { return of(t.rho) - of(t.i.s); });
     product(o, b_i.C, t.D, t.strain, apply_transposed);
-    if (t.rotational) evaluate_rotation(e, t, o);
-    linear(o, t.e, [&](auto of) -> Vector6<double> {
-        Vector6<double> deformation;
-        deformation << t.E_i.transpose() * of(t.strain), of(t.theta);
-        return deformation;
-    });
-    std::visit([&](const auto& law) { law_gradient(o, law, t.e, t.gradient); }, t.kind.law);
+    if (t.twists()) evaluate_relative(e, t, o);
+    if (t.rotational) t.angles != nullptr ? plane_angles(t, o) : rotation_vector(t, o);
+    t.middle != nullptr ? middle_deformation(t, o) : deformation_on_i(t, o);
+    if (o.k == 0) t.e.c[0] -= t.kind.undeformed;
+    std::visit([&](const auto& law) { law_gradient(o, law, t); }, t.kind.law);
     linear(o, t.stress,
            [&](auto of) -> Vector6<double> { return of(t.gradient) + of(e.a) * t.preload.rate; });
     if (o.k == 0) t.stress.c[0] += t.preload.start;
-    linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(t.stress).template head<3>(); });
+    t.middle != nullptr ? middle_force(t, o) : force_on_i(t, o);
     product(o, b_i.C, t.force_i, t.F, apply);
-    if (t.rotational) evaluate_moment(e, t, o);
+    if (t.twists()) evaluate_moment(e, t, o);
     if (o.pass == Pass::change) return;
     push(e, o.k, t.j.body, +1, t.j.s, t.F);
-    push(e, o.k, t.i.body, -1, t.rho, t.F);
-    if (!t.rotational) return;
+    push(e, o.k, t.i.body, -1, t.kind.formulation.offset_moment ? t.rho : t.i.s, t.F);
+    if (!t.twists()) return;
     twist(e, o.k, t.j.body, +1, t.M);
     twist(e, o.k, t.i.body, -1, t.M);
 }
@@ -418,17 +643,25 @@ void evaluate(Equations& e, MomentSeries& t, Order o) {
     if (o.pass == Pass::change) return;
     e.G.segment<3>(6 * t.kind.body + 3) -= coefficient(e, t.factor, o.k) * t.kind.m;
 }
+void evaluate(Equations& e, FollowerSeries& t, Order o) {
+    turn(o, e, t.f);
+    turn(o, e, t.m);
+    follow(o, e, t.factor, t.size);
+    if (o.pass == Pass::change) return;
+    const BodyId b = t.f.body;
+    e.G.segment<3>(6 * b) -= convolution(o.k, t.size, t.f.s, scale);
+    e.G.segment<3>(6 * b + 3) -= convolution(o.k, t.size, t.m.s, scale);
+}
 
 }  // namespace
 
 Equations equations(const Model& model, const Branch& branch, int order, Drive drive_) {
-    Equations e{Room(order), drive_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Equations e{Room(order), drive_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, false};
     Room& room = e.room;
     e.slots.resize(model.bodies.size() + 1);
     for (std::size_t b = 0; b < e.slots.size(); ++b) {
-        BodySeries& body = e.slots[b];
-        const auto reserve_each = [&](auto&... all) { (reserve(room, all, b == 0), ...); };
-        reserve_each(body.r, body.g, body.h, body.stretch, body.shrink, body.hg, body.C);
+        reserve(room, e.slots[b].r, b == 0);
+        reserve(room, e.slots[b], b == 0);
     }
     e.lambda.resize(static_cast<std::size_t>(constraint_rows(model)));
     for (auto& lambda : e.lambda) reserve(room, lambda);
@@ -445,11 +678,23 @@ Equations equations(const Model& model, const Branch& branch, int order, Drive d
     for (const auto& driver : branch.drivers)
         std::visit([&](const auto& what) { drive(e, model, driver, what); }, driver.what);
     for (auto& constraint : e.constraints) std::visit([](auto& t) { settle_on_constants(t); }, constraint);
+    e.curved = std::ranges::any_of(e.elastics, [](const ElasticSeries& elastic) {
+        return std::visit([](const auto& t) { return curved(t); }, elastic);
+    });
     e.G.setZero(coordinates(model));
     e.Phi.setZero(constraint_rows(model));
     e.G_d = e.G;
     e.Phi_d = e.Phi;
     return e;
+}
+
+CubicSeries& cubic_of(Equations& e, std::size_t elastic, int axis) {
+    if (auto* spring = std::get_if<SpringSeries>(&e.elastics[elastic])) return spring->cubic;
+    return std::get<BushingSeries>(e.elastics[elastic]).axis[axis].cubic;
+}
+double deformation(const Equations& e, std::size_t elastic, int axis, int k) {
+    if (const auto* spring = std::get_if<SpringSeries>(&e.elastics[elastic])) return at(spring->stretch, k);
+    return at(std::get<BushingSeries>(e.elastics[elastic]).axis[axis].x, k);
 }
 
 void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, double a) {

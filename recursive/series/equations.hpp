@@ -10,12 +10,16 @@
 // that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
 // all.
 //
+// A curve is a polynomial on each of its pieces: the equations know one of them at a time, as if it went on for
+// ever (pieces.hpp says which, and for how long).
+//
 // What a branch drives (loads, offsets, free lengths, preloads) is linear in the parameter: coefficient k of
 // it is a rate times a_k. While what is held settles, the parameter is t, and the starts of the drivers take
 // the place of their rates (inputs.hpp). A term keeps the kind that it is the series of, so that one visit of
 // the terms is all there is.
 #pragma once
 
+#include <array>
 #include <variant>
 
 #include "recursive/drive.hpp"
@@ -32,10 +36,14 @@ struct Driven {
     T rate = Series<T>::zero();
 };
 
-struct BodySeries {
-    Vector3Series r, g, h;
+// A rotation by its Gibbs vector.
+struct TurnSeries {
+    Vector3Series g, h;
     Scalar stretch, shrink;  // 1 + g·g, 1 / (1 + g·g)
     Matrix3Series hg, C;     // h gᵀ, C(g)
+};
+struct BodySeries : TurnSeries {
+    Vector3Series r;
 };
 
 // A vector fixed in a body.
@@ -45,27 +53,68 @@ struct Arm {
     Vector3Series s;        // C fixed
 };
 
+// A curve on one piece: f = c_0 + ξ (c_1 + ξ (c_2 + ξ c_3)), ξ = x - about.
+struct CubicSeries {
+    double about = 0;
+    std::array<double, 4> c{};
+    Scalar xi, inner, slope;  // ξ, c_2 + ξ c_3, c_1 + ξ (c_2 + ξ c_3)
+};
+
 struct SpringSeries {
     AxialSpring kind;
     Driven<double> free_length;
     Arm i, j;
     Vector3Series D, F;
     Scalar length_squared, length, inverse, stretch, force, tension;  // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
+    CubicSeries cubic;                                                // where the law is a curve
+};
+
+// One deformation of a bushing whose law goes by axes.
+struct AxisSeries {
+    Scalar x, force;    // a component of e - e₀, u'(x)
+    CubicSeries cubic;  // where the law is a curve
+};
+
+// d measured half way from the axes of i to those of j (Formulation::Frame::middle): B^½ has the Gibbs vector
+// tan(|θ|/4) θ/|θ| = V / (|p| + W), p = (W, V) the relative quaternion.
+struct MiddleSeries {
+    Scalar squared, size, sum, inverse;          // p·p, |p|, |p| + W, 1 / (|p| + W)
+    TurnSeries half;                             // B^½
+    Vector3Series d_i, d, F_local, F_i, m, g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
+};
+
+// One of the three angles of B that are no rotation vector: that of a vector in a plane, with its row of H,
+// δθ = H ω, ω the rotation of j relative to i in axes of i:  row = fixed + z/r · along.
+struct PlaneAngleSeries {
+    Vector2Series xy, unit;  // r (cos, sin), (cos, sin)
+    Scalar squared, r, inverse, angle, z, factor, moment;
+    Vector3Series along, row, share;
+};
+struct AnglesSeries {
+    Matrix3Series B;  // times p·p
+    std::array<PlaneAngleSeries, 3> axis;
 };
 
 struct BushingSeries {
     Bushing kind;
     Driven<Vector6<double>> preload;
-    bool rotational = true;  // whether any moment M' = ∂U/∂θ is there; else only d is followed
+    bool rotational = true;  // whether any moment M' = ∂U/∂θ is there; else θ is not followed
     Arm i, j;
-    Matrix3<double> E_i;          // axes of marker i at τ = 0
-    Eigen::Matrix4d to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion of A_iᵀ A_j, any length
+    Matrix3<double> E_i;  // axes of marker i at τ = 0
+    Eigen::Matrix4d
+        to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion p of B = A_iᵀ A_j, any length
     Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, force_i,
         moment_i, F, M;
     Series<Eigen::Vector4d> relative;
-    Vector6Series e, gradient, stress;  // (d, θ), ∂u/∂e, ∂u/∂e + preload
+    Vector6Series e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
     Scalar dot_g, W, inverse, s;
     Composition phi, psi;
+    // Only where the law and the formulation ask for them.
+    AxisSeries* axis = nullptr;  // [6]
+    MiddleSeries* middle = nullptr;
+    AnglesSeries* angles = nullptr;
+
+    bool twists() const { return rotational || middle != nullptr; }  // whether M is there
 };
 
 struct CoincidentSeries {
@@ -114,11 +163,18 @@ struct MomentSeries {
     DeadMoment kind;
     Driven<double> factor;
 };
+// A follower turns with its body, and so does its moment about the origin, s × f or m.
+struct FollowerSeries {
+    V3 f_local, m_local;
+    Driven<double> factor;
+    Scalar size;
+    Arm f, m;
+};
 
 using ElasticSeries = std::variant<SpringSeries, BushingSeries>;
 using ConstraintSeries =
     std::variant<CoincidentSeries, PlaneSeries, PerpendicularSeries, DistanceSeries, AngleSeries>;
-using LoadSeries = std::variant<ForceSeries, MomentSeries>;
+using LoadSeries = std::variant<ForceSeries, MomentSeries, FollowerSeries>;
 
 // Everything that has coefficients, allocated once for a model on a branch.
 struct Equations {
@@ -133,6 +189,7 @@ struct Equations {
     Vector<double> G, Phi;          // coefficient k after pass `known` [6nb], [m]
     // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d take the place of G and Φ; d: as drawn.
     Vector<double> G_d, Phi_d;  // [6nb], [m]
+    bool curved = false;        // whether any law is a curve
 
     int order() const { return room.order; }
     const BodySeries& operator[](BodyId b) const { return slots[static_cast<std::size_t>(b + 1)]; }
@@ -140,6 +197,11 @@ struct Equations {
 };
 
 Equations equations(const Model& model, const Branch& branch, int order, Drive drive = Drive::rate);
+
+// Where the deformation x_axis of an element is a curve's (a spring has axis 0 alone): the cubic it is on, and
+// the coefficients of the deformation.
+CubicSeries& cubic_of(Equations& e, std::size_t elastic, int axis);
+double deformation(const Equations& e, std::size_t elastic, int axis, int k);
 
 // Puts τ = 0 at (q, λ, a): coefficients 0 of the unknowns, and what is fixed in the bodies.
 void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, double a);

@@ -55,7 +55,7 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
             }
             c.x.col(k) = s.x;
         }
-        if (k == e.order()) break;
+        if (k == e.order() && !e.curved) break;  // whose deformations are looked at for knots
         assign(e, k, s.x, c.load[k]);
         evaluate(e, {k, Pass::change});
     }

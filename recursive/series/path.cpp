@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "recursive/series/expand.hpp"
+#include "recursive/series/pieces.hpp"
 #include "recursive/settle.hpp"
 
 namespace elastocheck::recursive::series {
@@ -52,7 +53,10 @@ struct Walk {
     const Options& options;
     Equations e;
     Coefficients c;
+    std::vector<Followed>& curves;
+    Near near;
     double to;             // of the parameter
+    double first;          // a_1 of the next expansion; by arc length its sign, where `ahead` is zero
     double per_unit;       // metres that an error of one unit of the parameter counts as
     Vector<double> ahead;  // x'(τ) of the motion before: which way is on
     double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
@@ -60,16 +64,24 @@ struct Walk {
     Vector<double> x;  // where on the polynomial
     Path path;
 
-    Walk(March<double>& s_, const Options& options_, Drive drive)
+    Walk(March<double>& s_, std::vector<Followed>& curves_, const Options& options_, Drive drive)
         : s(s_),
           options(options_),
           e(equations(s.model, s.branch, options.order, drive)),
           c(reserve_coefficients(s, options.order)),
+          curves(curves_),
+          near{s.length, 0.1 * options.tolerance, 10 * options.tolerance},
           to(drive == Drive::start ? 1 : s.branch.to),
+          first(to),
           per_unit(s.length / std::abs(to)),
           ahead(Vector<double>::Zero(s.n() + s.m())) {
         e.G_d = -s.R_d;
         e.Phi_d = s.Phi_d;
+        for (const auto& curve : curves) follow(curve);
+    }
+    void follow(const Followed& curve) {
+        follow_on(curve, e);
+        follow_on(curve, s.inputs);
     }
     bool by_arc() const { return options.arc_length && e.drive == Drive::rate; }
     double at() const { return parameter(s, e.drive); }
@@ -90,12 +102,12 @@ bool contradicts(March<double>& s) {
     return !(largest_violation(s) <= 1e-9 * std::max(1.0, s.length));
 }
 
-// s.applied, which idle modes are checked against: all that acts at the end of the way.
-void apply_all(Walk& w) {
-    const double here = w.at();
-    w.go_to(w.to);
+// Whether what acts at the present place pushes what is held.
+Outcome judge_push_here(Walk& w, double missed) {
+    if (w.s.system.idle == 0) return Outcome::converged;
     external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
-    w.go_to(here);
+    w.s.applied -= (1 - w.s.place.t) * w.s.R_d;
+    return judge_push(w.s, w.s.q, missed);
 }
 
 // Newton at the present place, with factors that serve the next expansion. The first correction is the error
@@ -107,7 +119,6 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
-        apply_all(w);
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
         double slid = 0;
@@ -132,6 +143,8 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         }
         if (!s.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
+        if (const Outcome outcome = judge_push_here(w, std::max(size, slid)); outcome != Outcome::converged)
+            return outcome;
         if (k == 0) error = std::max(size, slid);
         if (!(size < before)) break;  // as near as rounding lets it
         before = size;
@@ -151,32 +164,60 @@ std::vector<Pose> poses_of(const State<double>& q) {
     return poses;
 }
 
-// Up to which τ the present expansion is to be used, and whether the branch ends there.
+// A knot that a curve goes over, by its number among the curves.
+struct Crossing {
+    std::size_t curve = 0;
+    int direction = 0;
+};
+
+// Up to which τ the present expansion is to be used, whether the branch ends there, and what is gone over there.
 struct End {
     double tau = 0;
     bool last = false;
+    std::vector<Crossing> over;
+    std::vector<Crossing>
+        at_once;  // by what leaves its piece where it begins: the expansion is not valid at all
 };
+
+// Draws the end nearer to where the first deformation leaves its piece.
+void stop_at_knots(const Walk& w, End& end) {
+    const double reach = end.tau;
+    std::vector<std::pair<Crossing, Leaving>> met;
+    for (std::size_t k = 0; k < w.curves.size(); ++k)
+        if (const auto there = leaving(w.e, w.curves[k], reach, w.near)) {
+            met.push_back({{k, there->direction}, *there});
+            if (there->at_once) end.at_once.push_back(met.back().first);
+            if (there->tau < end.tau) end = {there->tau, false, {}, std::move(end.at_once)};
+        }
+    // Two may meet their knots at once.
+    for (const auto& [crossing, there] : met)
+        if (there.tau <= end.tau || meets(w.e, w.curves[crossing.curve], crossing.direction, end.tau, w.near))
+            end.over.push_back(crossing);
+}
 
 // How far the expansion at the parameter a_0 carries; an outcome where there is no way on.
 Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
-    end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false};
+    end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false, {}, {}};
     if (std::isnan(end.tau)) return Outcome::not_finite;
+    const double reached = end.tau;
     if (w.by_arc()) {
         end.tau = std::min(end.tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
         if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
-            end = {*met, true};
+            end = {*met, true, {}, {}};
+        stop_at_knots(w, end);
         return Outcome::converged;
     }
     const double rest = (w.to - a_0) / w.to;
-    if (end.tau >= rest) {
-        end = {rest, true};
-    } else if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
+    if (end.tau >= rest) end = {rest, true, {}, {}};
+    stop_at_knots(w, end);
+    if (end.last || !end.over.empty() || !end.at_once.empty()) return Outcome::converged;
+    if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
         // A branch point straight ahead that comes nearer however far one has come is a limit point.
         w.path.limits.push_back(a_0 + singularity.radius * w.to);
         return Outcome::limit_point;
-    } else if (end.tau < 1e-9 && singularity.radius < 1e-6) {
-        return Outcome::branch_lost;  // but not for an order that is too low for its tolerance
     }
+    if (reached < 1e-9 && singularity.radius < 1e-6)
+        return Outcome::branch_lost;  // but not for an order that is too low for its tolerance
     return Outcome::converged;
 }
 
@@ -215,7 +256,10 @@ Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged)
             return outcome;
         ++w.path.rejected;
         const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order() + 1));
-        end = {end.tau * (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5), false};
+        end = {end.tau * (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5),
+               false,
+               {},
+               {}};
     }
     return Outcome::branch_lost;
 }
@@ -238,11 +282,22 @@ void look_for_turns(Walk& w, double reach) {
 
 // Begins at the design position, where the analysis has the factors.
 Outcome begin_at_design(Walk& w, const Analysis& analysis) {
-    w.go_to(1);
-    if (w.e.drive == Drive::start && pushes_idle_mode(w.s)) return Outcome::loaded_idle_mode;
     w.go_to(0);
-    apply_all(w);
-    return judge(w.s, w.s.q, analysis.pivot_ratio);
+    // Each curve on one of its pieces: at a knot the analysis may have taken the other.
+    if (!w.curves.empty()) {
+        begin(w.e, w.s.q, w.s.lambda, w.at());
+        evaluate(w.e, {0, Pass::known});
+    }
+    for (auto& curve : w.curves) {
+        find_piece(w.e, curve);
+        w.follow(curve);
+    }
+    w.go_to(w.to);  // all that acts at the end of the way
+    if (w.e.drive == Drive::start ? pushes_idle_mode(w.s) : judge_push_here(w, 0) != Outcome::converged)
+        return Outcome::loaded_idle_mode;
+    w.go_to(0);
+    if (w.curves.empty()) return judge(w.s, w.s.q, analysis.pivot_ratio);
+    return factorise_at(w.s, w.s.q, w.s.lambda);
 }
 
 // The sign of the determinant here; `rises` tells which way the parameter goes. By arc length the two are
@@ -257,25 +312,78 @@ double rises_ahead(const Walk& w) {
     return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
 }
 
+// Every curve goes over to the neighbouring piece. The factors are renewed where a slope jumps: there the motion
+// breaks, too. By arc length it goes on to the side on which the determinant's product with a' stays what it is.
+Outcome go_over(Walk& w, const std::vector<Crossing>& over) {
+    bool jumps = false;
+    for (const auto& [k, direction] : over) {
+        jumps = step_over(w.curves[k], direction) || jumps;
+        w.follow(w.curves[k]);
+    }
+    if (!jumps) return Outcome::converged;
+    const Outcome outcome = factorise_at(w.s, w.s.q, w.s.lambda);
+    if (w.by_arc() && !w.path.expansions.empty()) {
+        w.ahead.setZero();
+        w.first = w.s.system.lu.orientation == w.side ? std::abs(w.to) : -std::abs(w.to);
+    }
+    return outcome;
+}
+
+// Expands where the march is, on the pieces that the motion goes into: a deformation that begins at a knot and
+// leaves its piece at once belongs to the other. Each answer may change the motion, and with it the next one;
+// what has been tried goes over one by one (as pivots do in a linear complementarity problem, which this is).
+// Where no choice agrees with its own motion, the path turns back at the knot.
+Outcome set_out(Walk& w, Singularity& singularity, End& end) {
+    const auto pieces = [&] {
+        std::vector<Piece> all;
+        for (const auto& curve : w.curves) all.push_back(curve.piece);
+        return all;
+    };
+    std::vector<std::vector<Piece>> tried;
+    for (;;) {
+        expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
+        singularity = nearest_singularity(w.s, w.c);
+        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
+        if (end.at_once.empty()) return Outcome::converged;
+        tried.push_back(pieces());
+        const auto would_repeat = [&] {
+            auto next = pieces();
+            for (const auto& [k, direction] : end.at_once) next[k] += direction;
+            return std::ranges::find(tried, next) != tried.end();
+        };
+        if (would_repeat()) end.at_once.resize(1);
+        if (would_repeat()) {
+            w.path.limits.push_back(w.at());
+            return Outcome::limit_point;
+        }
+        if (const Outcome o = go_over(w, end.at_once); o != Outcome::converged) return o;
+    }
+}
+
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
-    w.side = side(w, w.to);
     while (static_cast<int>(w.path.expansions.size()) < w.options.expansions) {
         const State<double> from = s.q;
-        expand(s, w.e, w.c, w.to, w.by_arc(), w.ahead);
-        const Singularity singularity = nearest_singularity(s, w.c);
+        Singularity singularity;
         End end;
         Certificate judged;
-        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o = set_out(w, singularity, end); o != Outcome::converged) return o;
+        // Going over a knot must not have turned the determinant over, either.
+        if (const int here = side(w, w.to); w.path.expansions.empty())
+            w.side = here;
+        else if (here != w.side && !w.by_arc())
+            return Outcome::singular;
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
         // A polynomial goes straight on where the path divides, and a branch goes on unstable: the
         // determinant has gone through zero between here and there.
         if (side(w, rises_ahead(w)) != w.side) return Outcome::singular;
         if (w.by_arc()) look_for_turns(w, end.tau);
-        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau, singularity, judged});
+        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
+                                     static_cast<int>(end.over.size()), singularity, judged});
         if (end.last) return Outcome::converged;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
+        if (const Outcome o = go_over(w, end.over); o != Outcome::converged) return o;
     }
     return Outcome::iteration_limit;
 }
@@ -299,7 +407,10 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
         case Outcome::singular:
             return at +
                    ": the matrix is singular here or was on the way: the branch divides, or loses its "
-                   "stability";
+                   "stability" +
+                   (diagnosis.null_space.cols() > 0
+                        ? ", or what was idle or redundant at the design position no longer is"
+                        : "");
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         case Outcome::loaded_idle_mode:
             return at + ": the load pushes what nothing resists: " + idle_modes(diagnosis);
@@ -318,6 +429,8 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     check(model, branch);
     March<double> s(model, branch, analysis);
     s.consistent = true;
+    s.system.lu.largest_multiplier = 1e4;  // Newton's corrections at every end make up for the digits
+    std::vector<Followed> curves = curves_of(model);
     const auto finish = [&](Walk& w, Outcome outcome) {
         w.path.outcome = outcome;
         if (outcome != Outcome::converged) w.path.detail = words(w, outcome, analysis.diagnosis);
@@ -330,17 +443,17 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     // the way to one begins there; where it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
         s.Phi_d = analysis.Phi_d;  // to the last digit: the series is exact, from an equilibrium that is
-        Walk settling(s, options, Drive::start);
+        Walk settling(s, curves, options, Drive::start);
         if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
         const Outcome walked = walk(settling);
         if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
         if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged) return finish(settling, o);
-        Walk w(s, options, Drive::rate);
+        Walk w(s, curves, options, Drive::rate);
         w.go_to(0);
         return finish(w, walk(w));
     }
-    Walk w(s, options, Drive::rate);
+    Walk w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged) return finish(w, o);
     return finish(w, walk(w));
 }

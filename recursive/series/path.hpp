@@ -41,6 +41,7 @@ struct Expansion {
     Eigen::MatrixXd x;        // (r_k, 2 g_k; λ_k) for k = 0 ... p: [(6nb + m) × (p+1)]; r_0 = 2 g_0 = 0
     Eigen::VectorXd load;     // a_k
     double reach = 0;         // used for 0 ≤ τ ≤ reach
+    int knots = 0;            // of curves that are met there, and gone over
     Singularity singularity;
     Certificate certificate;
 

@@ -58,6 +58,7 @@ struct Series {
     }
 };
 using Scalar = Series<double>;
+using Vector2Series = Series<Eigen::Vector2d>;
 using Vector3Series = Series<Vector3<double>>;
 using Vector6Series = Series<Vector6<double>>;
 using Matrix3Series = Series<Matrix3<double>>;
@@ -122,6 +123,18 @@ void linear(Order o, Series<C>& c, Map map) {
     }
 }
 
+// Adds one to what c is already.
+template <class C, class Map>
+void add_linear(Order o, Series<C>& c, Map map) {
+    if (o.pass == Pass::known) {
+        at(c, o.k) += map([&](const auto& s) { return at(s, o.k); });
+    } else {
+        const C more = map([](const auto& s) { return s.change; });
+        c.change += more;
+        at(c, o.k) += more;
+    }
+}
+
 // c = 1 / a:  Σ a_i c_{k-i} = 0
 inline void reciprocal(Order o, const Scalar& a, Scalar& c) {
     if (o.pass == Pass::change) {
@@ -168,6 +181,23 @@ inline void cosine_sine(Order o, const Scalar& alpha, Scalar& c, Scalar& s) {
         }
         at(c, o.k) = of_c / o.k;
         at(s, o.k) = of_s / o.k;
+    }
+}
+
+// α of u = (cos α, sin α):  α' = u × u'
+inline void arc(Order o, const Vector2Series& u, Scalar& alpha) {
+    const auto across = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return a.x() * b.y() - a.y() * b.x();
+    };
+    if (o.pass == Pass::change) {
+        alpha.change = across(u.c[0], u.change);
+        at(alpha, o.k) += alpha.change;
+    } else if (o.k == 0) {
+        alpha.c[0] = std::atan2(u.c[0].y(), u.c[0].x());
+    } else {
+        double sum = 0;
+        for (int i = 1; i <= o.k; ++i) sum += i * across(at(u, o.k - i), at(u, i));
+        at(alpha, o.k) = sum / o.k;
     }
 }
 

@@ -2,9 +2,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <vector>
 
+#include "reference/energy/overloaded.hpp"
 #include "reference/energy/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -16,6 +20,54 @@ using Eigen::VectorXd;
 constexpr double rank_threshold = 1e-9;  // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
 constexpr double difference = 1e-5;      // of ξ, central
 constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
+
+// The bodies that an element or a constraint of either connects, each with itself; ground is none.
+std::vector<std::vector<BodyId>> neighbours(const Model& model) {
+    std::vector<std::vector<BodyId>> of(model.bodies.size());
+    for (std::size_t b = 0; b < of.size(); ++b) of[b].push_back(static_cast<BodyId>(b));
+    const auto connect = [&](BodyId a, BodyId b) {
+        if (a == ground || b == ground || a == b) return;
+        auto& list = of[static_cast<std::size_t>(a)];
+        if (std::ranges::find(list, b) == list.end()) list.push_back(b);
+    };
+    const auto connect_all = [&](std::initializer_list<BodyId> bodies) {
+        for (const BodyId a : bodies)
+            for (const BodyId b : bodies) connect(a, b);
+    };
+    for (const auto& elastic : model.elastics)
+        std::visit([&](const auto& e) { connect_all({e.i.body, e.j.body}); }, elastic.kind);
+    for (const auto& constraint : model.constraints)
+        std::visit(overloaded{[&](const PointInPlane& c) {
+                                  connect_all({c.i.body, c.j.body, c.normal_j.body});
+                              },
+                              [&](const DirectionAtAngle& c) {
+                                  connect_all({c.i.body, c.j.body, c.y_j.body});
+                              },
+                              [&](const auto& c) {
+                                  connect_all({c.i.body, c.j.body});
+                              }},
+                   constraint.kind);
+    return of;
+}
+
+// Bodies without a common neighbour: moved together, each gradient entry tells of one of them only. A chain of any
+// length takes three groups.
+std::vector<std::vector<BodyId>> groups_apart(const std::vector<std::vector<BodyId>>& neighbours_of) {
+    std::vector<std::vector<BodyId>> groups;
+    std::vector<std::vector<bool>> touched;  // by each group: its bodies' neighbours
+    for (std::size_t b = 0; b < neighbours_of.size(); ++b) {
+        std::size_t g = 0;
+        const auto apart = [&](BodyId other) { return !touched[g][static_cast<std::size_t>(other)]; };
+        while (g < groups.size() && !std::ranges::all_of(neighbours_of[b], apart)) ++g;
+        if (g == groups.size()) {
+            groups.emplace_back();
+            touched.emplace_back(neighbours_of.size(), false);
+        }
+        groups[g].push_back(static_cast<BodyId>(b));
+        for (const BodyId other : neighbours_of[b]) touched[g][static_cast<std::size_t>(other)] = true;
+    }
+    return groups;
+}
 
 }  // namespace
 
@@ -56,23 +108,36 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
                    constraints(model, prescribed, chart));
 }
 
+int hessian_evaluations(const Model& model) {
+    return 12 * static_cast<int>(groups_apart(neighbours(model)).size());
+}
+
 MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                  const std::vector<Pose>& centre, const VectorXd& lambda) {
     const int n = coordinates(model);
     const VectorXd S = scales.coordinates(n);
     const VectorXd lambda_D = scales.rows(model).cwiseProduct(lambda) * scales.energy();  // SI
     Chart chart = chart_about(centre);
-    const auto gradient_at = [&](int i, double xi) -> VectorXd {
+    const auto gradient_at = [&](const std::vector<BodyId>& bodies, int axis, double xi) -> VectorXd {
         VectorXd x = VectorXd::Zero(n);
-        x[i] = S[i] * xi;
+        for (const BodyId b : bodies) x[6 * b + axis] = S[6 * b + axis] * xi;
         move_to(chart, x);
         return gradient_at_centre_stress(model, prescribed, chart) +
                constraints(model, prescribed, chart).Phi_q.transpose() * lambda_D;
     };
-    MatrixXd geometric(n, n);
-    for (int i = 0; i < n; ++i)
-        geometric.col(i) =
-            (gradient_at(i, difference) - gradient_at(i, -difference)) / (2 * difference * S[i]);
+    const auto neighbours_of = neighbours(model);
+    MatrixXd geometric = MatrixXd::Zero(n, n);
+    for (const auto& bodies : groups_apart(neighbours_of)) {
+        for (int axis = 0; axis < 6; ++axis) {
+            const VectorXd change =
+                (gradient_at(bodies, axis, difference) - gradient_at(bodies, axis, -difference)) /
+                (2 * difference);
+            for (const BodyId b : bodies)
+                for (const BodyId other : neighbours_of[static_cast<std::size_t>(b)])
+                    geometric.block<6, 1>(6 * other, 6 * b + axis) =
+                        change.segment<6>(6 * other) / S[6 * b + axis];
+        }
+    }
     move_to(chart, VectorXd::Zero(n));
     const MatrixXd H = stiffness(model, prescribed, chart) + 0.5 * (geometric + geometric.transpose());
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();

@@ -29,6 +29,7 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
 // last digits.
 Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                         const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
+int hessian_evaluations(const Model& model);  // of a gradient, for one Hessian
 
 // A dead moment has no symmetric stiffness: with a small rotation φ of its body, the balance of moments
 // changes by ½ φ × m more than the gradient of the chart's potential does. In ξ [6nb × 6nb].

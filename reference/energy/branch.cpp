@@ -6,8 +6,8 @@
 //
 // Along a smooth curve these fall with the first, first and second power of Δa, but not from one curve to
 // another. The new pose must be a minimum (no mode of negative stiffness), the stiffnesses must have come as
-// foreseen (stability.hpp) and no bushing may have gone through half a turn, where its law ends. If any of
-// this fails the step is halved.
+// foreseen (stability.hpp) and no bushing may have turned through where its law ends. If any of this fails the
+// step is halved. Where a curve has a kink t jumps: the step over it counts once it is too short to matter.
 //
 // The tangent, by differentiating Φ(ξ; a) = 0 and Zᵀ ∂(V + λᵀΦ)/∂ξ = 0 with J = ∂Φ/∂ξ, J Z = 0, W = Zᵀ H Z:
 //
@@ -30,7 +30,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int halvings = 12;               // of a step, one after the other
+// Of a step, one after the other. Where a stop closes the tangent jumps, and no step over it fits both: it is taken once
+// it is negligible, which from the whole span takes some twenty.
+constexpr int halvings = 26;
 constexpr double resolution = 1e-9;        // of the parameter: smallest step
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 constexpr double look =
@@ -89,11 +91,12 @@ bool is_continuous(const VectorXd& actual, const VectorXd& t_0, const VectorXd& 
            largest(actual - 0.5 * (t_0 + t_1)) <= std::max(0.1 * largest(t_0), negligible);
 }
 
-// On the same sheet of the logarithm as before.
+// On the same sheet of the logarithm and of the angles as before: elsewhere one of them has come or gone by half a turn
+// or more.
 bool bushings_continue(const Path& path, const State& from, const State& to) {
     const Eigen::Matrix3Xd change =
         rotations(path.model, path.turning, to.poses) - rotations(path.model, path.turning, from.poses);
-    return change.cols() == 0 || change.colwise().norm().maxCoeff() <= std::numbers::pi;
+    return change.cols() == 0 || change.colwise().norm().maxCoeff() <= std::numbers::pi / 2;
 }
 
 // A motion that nothing resists, pushed by what is prescribed at a.
@@ -126,7 +129,7 @@ Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expec
     if (!is_near(actual, expected)) return lost(attempt, jumped);
     if (attempt.failure) return attempt;
     if (!is_continuous(actual, expected, tangent(path, to) * (a - from.a))) return lost(attempt, jumped);
-    if (!within_half_turn(path.model, path.turning, to.poses)) return lost(attempt, turned_over);
+    if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, turned_over);
     if (!bushings_continue(path, from, to)) return lost(attempt, turned_over);
     if (to.modes.unstable()) return lost(attempt, unstable);
     if (std::abs(a - from.a) > look * path.span && !as_foreseen(walk.record, a, to.modes))
@@ -159,7 +162,7 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
     state.at = balance(path.model, prescribed, path.scales, chart_about(poses));
     state.H = hessian(path.model, prescribed, path.scales, poses, state.at.lambda);
     state.modes = modes_of(state.at, state.H);
-    path.counts.evaluations += 1 + 2 * coordinates(path.model);
+    path.counts.evaluations += 1 + hessian_evaluations(path.model);
     path.counts.factorisations += 1;
     return state;
 }

@@ -12,7 +12,8 @@
 namespace elastocheck::reference::energy {
 
 // Why a branch ends, half a sentence.
-inline constexpr const char* turned_over = "a bushing has turned by half a turn, where its law ends";
+inline constexpr const char* turned_over =
+    "a bushing has turned to where its law ends, half a turn or what its angles allow";
 
 struct Failure {
     Outcome outcome;

@@ -42,6 +42,10 @@ constexpr int same_point =
     20;  // calls at one point in a row: SLSQP's step has vanished, it would go on for ever
 constexpr int patience = 5;        // evaluations without improvement, within the tolerance
 constexpr int long_patience = 20;  // and before that: a chart of large steps ends at the roundoff of these
+// A chart that has come so much closer than its centre was, and still needs more evaluations than this, is left: the
+// Hessian of the next chart takes one step where SLSQP's own learns slowly (long chains, stops that close).
+constexpr double closer = 1e-3;
+constexpr int long_enough = 8;
 
 MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& modes) {
     const auto resisting = modes.resisting();
@@ -80,6 +84,7 @@ struct Problem {
     MatrixXd c_y_t{};  // (∂c/∂y)ᵀ [size of y × rank]
 
     Minimisation best;
+    double excess_at_centre = std::numeric_limits<double>::quiet_NaN();
     int since_best = 0;
     int repeats = 0;  // calls at the same y
 };
@@ -134,8 +139,11 @@ void evaluate(Problem& p, const VectorXd& y) {
     } else {
         ++p.since_best;
     }
+    if (p.best.evaluations == 1) p.excess_at_centre = e;
     const bool good = p.best.excess <= p.tolerance;
-    if (p.best.excess <= aim * p.tolerance || p.since_best >= (good ? patience : long_patience) ||
+    const bool left =
+        p.best.evaluations >= long_enough && p.best.excess <= closer * p.excess_at_centre && !good;
+    if (left || p.best.excess <= aim * p.tolerance || p.since_best >= (good ? patience : long_patience) ||
         p.best.evaluations >= p.evaluation_limit || !std::isfinite(p.best.excess))
         if (p.opt) nlopt_force_stop(p.opt);
 }

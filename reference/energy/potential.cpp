@@ -5,6 +5,7 @@
 
 #include "reference/energy/laws.hpp"
 #include "reference/energy/overloaded.hpp"
+#include "reference/energy/relative_rotation.hpp"
 #include "reference/energy/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -18,8 +19,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// The last bits of a rotation by π - this [rad] still tell its axis' sign, which the logarithm depends on.
-constexpr double closest_to_half_turn = 1e-3;
+// This far [rad] from where a law ends, the last bits of a rotation still tell the side it lies on: of a rotation by
+// π - this the axis' sign, which the logarithm depends on.
+constexpr double closest_to_the_end = 1e-3;
 
 // The geometry of one element in its chart: what deforms, by how much, and how that depends on the poses.
 template <int N>
@@ -47,15 +49,17 @@ Deformation<1> deformation(const AxialSpring& spring, const Chart& chart) {
     return e;
 }
 
-// d = A_Iᵀ D, θ = log(A_Iᵀ A_J), A the markers' axes. A small rotation turns A_I by δA_I = δπ_i × A_I, so
+// d = A_fᵀ D, θ as the formulation has it, A_f the frame's axes, A_I and A_J the markers'. A small rotation turns the
+// frame by δπ_f, of which the share P goes with j (0: the frame rides on i):
 //
-//   δd = A_Iᵀ (δp_J - δp_I + D × δπ_i)
-//   δθ = J⁻¹(θ) A_Iᵀ (δπ_j - δπ_i)
+//   δπ_f = δπ_i + P (δπ_j - δπ_i)
+//   δd = A_fᵀ (δp_J - δp_I + D × δπ_f)
+//   δθ = S A_Iᵀ (δπ_j - δπ_i),   S = J⁻¹(θ) for the rotation vector (relative_rotation.hpp)
 //
-// and the changes since the centre, with A_I = (1 + T_i) A_Ic and q = q_Icᴴ (1 + Δ_i)ᴴ (1 + Δ_j) q_Jc the
+// and the changes since the centre, with A_I = (1 + T_i) A_Ic, A_f = A_I C and q = q_Icᴴ (1 + Δ_i)ᴴ (1 + Δ_j) q_Jc the
 // relative quaternion:
 //
-//   d - d_c = A_Iᵀ ΔD + (T_i A_Ic)ᵀ D_c,   q - q_c = q_Icᴴ (Δ_iᴴ + Δ_j + Δ_iᴴ Δ_j) q_Jc.
+//   d - d_c = A_fᵀ ΔD + ΔA_fᵀ D_c,   ΔA_f = T_i A_Ic C + A_Ic ΔC,   q - q_c = q_Icᴴ (Δ_iᴴ + Δ_j + Δ_iᴴ Δ_j) q_Jc.
 Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
     const Placement& body_i = chart[bushing.i.body];
     const Placement& body_j = chart[bushing.j.body];
@@ -76,18 +80,30 @@ Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
         q_c.coeffs() *= -1;
         dq.coeffs() *= -1;
     }
-    const LogChange log = log_change(q_c, dq);
-    const Matrix3d G = inverse_turn_jacobian(log.theta_c + log.dtheta) * A.transpose();
+    const Matrix3d A_Jc = q_j.toRotationMatrix(), dA_J = body_j.turn * A_Jc;
+    const RelativeRotation B{q_c, dq, q_c.toRotationMatrix(), A.transpose() * dA_J + dA.transpose() * A_Jc};
+    const AngleChange theta = angles(bushing.formulation.angles, B);
+    const Matrix3d G = theta.slope * A.transpose();
+
+    Matrix3d A_fc = A_c, dA_f = dA, P = Matrix3d::Zero();
+    if (bushing.formulation.frame == Formulation::Frame::middle) {
+        const HalfWay half = half_way(B);
+        A_fc = A_c * (half.C - half.dC);
+        dA_f = dA * half.C + A_c * half.dC;
+        P = A * half.share * A.transpose();
+    }
+    const Matrix3d A_f = A_fc + dA_f;
+    const Matrix3d D_j = skew(D) * P, D_i = skew(D) - D_j;
 
     Deformation<6> e;
     e.i = bushing.i.body;
     e.j = bushing.j.body;
-    e.e_c << A_c.transpose() * D_c, log.theta_c;
-    e.delta << A.transpose() * dD + dA.transpose() * D_c, log.dtheta;
-    // ⎡ -A_Iᵀ   A_Iᵀ (ũ_I + D̃) ⎤   ⎡ A_Iᵀ   -A_Iᵀ ũ_J    ⎤
-    // ⎣   0      -J⁻¹ A_Iᵀ      ⎦   ⎣  0      J⁻¹ A_Iᵀ    ⎦
-    e.E_i << -A.transpose(), A.transpose() * skew(i.lever + D), Matrix3d::Zero(), -G;
-    e.E_j << A.transpose(), -A.transpose() * skew(j.lever), Matrix3d::Zero(), G;
+    e.e_c << A_fc.transpose() * D_c, theta.theta_c;
+    e.delta << A_f.transpose() * dD + dA_f.transpose() * D_c, theta.dtheta;
+    // ⎡ -A_fᵀ   A_fᵀ (ũ_I + D̃ (1 - P)) ⎤   ⎡ A_fᵀ   A_fᵀ (D̃ P - ũ_J) ⎤
+    // ⎣   0      -S A_Iᵀ               ⎦   ⎣  0      S A_Iᵀ          ⎦
+    e.E_i << -A_f.transpose(), A_f.transpose() * (skew(i.lever) + D_i), Matrix3d::Zero(), -G;
+    e.E_j << A_f.transpose(), A_f.transpose() * (D_j - skew(j.lever)), Matrix3d::Zero(), G;
     return e;
 }
 
@@ -113,7 +129,7 @@ Element<1> element(const AxialSpring& spring, const Prescribed& prescribed, int 
 Element<6> element(const Bushing& bushing, const Prescribed& prescribed, int k, const Chart& chart) {
     const Deformation<6> e = deformation(bushing, chart);
     const Vector6 b = bushing.preload + prescribed.preload.col(k);
-    return {e, loaded<6>(values(bushing.law, e.e_c, e.delta), b, e.delta)};
+    return {e, loaded<6>(values(bushing.law, e.e_c - bushing.undeformed, e.delta), b, e.delta)};
 }
 
 // f(k, element) for every element, in the model's order.
@@ -232,35 +248,53 @@ double stress_size(const Model& model, const Prescribed& prescribed, const Chart
 std::vector<int> turning_bushings(const Model& model, const Course& course) {
     std::vector<int> which;
     for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
-        const auto driven = [&](const Prescribed& p) { return !p.preload.col(k).tail<3>().isZero(0); };
-        const bool turns = std::visit(overloaded{[](const AxialSpring&) { return false; },
-                                                 [&](const Bushing& b) {
-                                                     return resists_rotation(b.law) ||
-                                                            !b.preload.tail<3>().isZero(0) ||
-                                                            driven(course.start) || driven(course.rate);
-                                                 }},
-                                      model.elastics[static_cast<std::size_t>(k)].kind);
-        if (turns) which.push_back(k);
+        const auto turns = [&](const Bushing& b) {
+            Vector6 sigma = b.preload.cwiseAbs() + course.start.preload.col(k).cwiseAbs() +
+                            course.rate.preload.col(k).cwiseAbs();
+            const bool d_turns = b.formulation.frame == Formulation::Frame::middle;
+            return resists_rotation(b.law) || !sigma.tail<3>().isZero(0) ||
+                   (d_turns && (resists(b.law) || !sigma.isZero(0)));
+        };
+        const auto* bushing = std::get_if<Bushing>(&model.elastics[static_cast<std::size_t>(k)].kind);
+        if (bushing && turns(*bushing)) which.push_back(k);
     }
     return which;
 }
 
-Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
+namespace {
+
+// f(bushing, its relative rotation) for each of these.
+template <class F>
+void for_each_rotation(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses,
+                       F f) {
     const auto axes = [&](const Marker& m) {
         return m.body == ground ? m.A_local : poses[static_cast<std::size_t>(m.body)].p * m.A_local;
     };
-    Matrix3Xd theta(3, static_cast<Eigen::Index>(bushings.size()));
-    int column = 0;
     for (const int k : bushings) {
         const auto& b = std::get<Bushing>(model.elastics[static_cast<std::size_t>(k)].kind);
-        theta.col(column++) = rotation_vector(axes(b.i).conjugate() * axes(b.j));
+        f(b, axes(b.i).conjugate() * axes(b.j));
     }
+}
+
+}  // namespace
+
+Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
+    Matrix3Xd theta(3, 2 * static_cast<Eigen::Index>(bushings.size()));
+    int column = 0;
+    for_each_rotation(model, bushings, poses, [&](const Bushing& b, const Quaterniond& q) {
+        const bool half_way = b.formulation.frame == Formulation::Frame::middle;
+        theta.col(column++) = angles_of(b.formulation.angles, q);
+        theta.col(column++) = half_way ? rotation_vector(q) : Vector3d::Zero();
+    });
     return theta;
 }
 
-bool within_half_turn(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
-    const Matrix3Xd theta = rotations(model, bushings, poses);
-    return theta.cols() == 0 || theta.colwise().norm().maxCoeff() <= std::numbers::pi - closest_to_half_turn;
+bool within_laws(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses) {
+    bool within = true;
+    for_each_rotation(model, bushings, poses, [&](const Bushing& b, const Quaterniond& q) {
+        within = within && way_to_the_end(b.formulation, q) >= closest_to_the_end;
+    });
+    return within;
 }
 
 }  // namespace elastocheck::reference::energy

@@ -3,7 +3,7 @@
 //   V(x; a) = Σ U(e(x); a) - Σ f(a)·p(x) - Σ m(a)·φ,   U(e; a) = u(e - e₀(a)) + b(a)ᵀ e
 //
 // e(x) is an element's deformation: ℓ of a spring, (d, θ) of a bushing; u its law (laws.hpp), e₀ the spring's
-// free length, b the preload. Nothing is assembled from forces: a gradient is Eᵀ ∂U/∂e with E = ∂e/∂x.
+// free length or the bushing's undeformed offset, b the preload. Nothing is assembled from forces: a gradient is Eᵀ ∂U/∂e with E = ∂e/∂x.
 #pragma once
 
 #include "reference/energy/chart.hpp"
@@ -41,11 +41,13 @@ double stress_size(const Model& model, const Prescribed& prescribed, const Chart
 // The bushings whose energy depends on their rotation somewhere along the branch.
 std::vector<int> turning_bushings(const Model& model, const Course& course);
 
-// Their rotations at these poses [3 × their number].
+// Their rotations at these poses, principal values: the angles, and the rotation vector of those with the frame in the
+// middle (others: zero) [3 × twice their number].
 Eigen::Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings,
                            const std::vector<Pose>& poses);
 
-// Whether all of these are short of half a turn, where e(x) is no longer differentiable.
-bool within_half_turn(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses);
+// Whether all of these are short of where their formulation stops being differentiable (way_to_the_end in
+// relative_rotation.hpp).
+bool within_laws(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses);
 
 }  // namespace elastocheck::reference::energy

@@ -13,7 +13,9 @@ void add(Prescribed& to, const LoadKind& load, double factor) {
                           [&](const DeadMoment& moment) {
                               if (moment.body != ground)
                                   to.moments.push_back({moment.body, factor * moment.m});
-                          }},
+                          },
+                          // Nothing with these is solved, and no forces are judged: conservative.hpp.
+                          [](const FollowerForce&) {}, [](const FollowerMoment&) {}},
                load);
 }
 

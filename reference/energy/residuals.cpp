@@ -5,6 +5,7 @@
 
 #include "models/branch.hpp"
 #include "reference/energy/balance.hpp"
+#include "reference/energy/conservative.hpp"
 #include "reference/energy/solve.hpp"
 
 namespace elastocheck::reference::energy {
@@ -45,7 +46,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     // A pose's p is a direction too: it must be a unit quaternion.
     for (const auto& pose : state.poses)
         worst.direction = max_or_nan(worst.direction, std::abs(pose.p.norm() - 1));
-    if (!within_half_turn(model, turning_bushings(model, course), state.poses))
+    if (without_potential(model, branch) || !within_laws(model, turning_bushings(model, course), state.poses))
         worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {
         const VectorXd left = at.left.segment<6>(6 * static_cast<int>(b));

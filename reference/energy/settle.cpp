@@ -89,7 +89,7 @@ std::optional<Failure> settle(const Path& path, State& state) {
     state = state_at(path, 0, design_poses(path.model));
     if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
         return Failure{Outcome::not_finite, "the design pose has no finite potential"};
-    if (!within_half_turn(path.model, path.turning, state.poses))
+    if (!within_laws(path.model, path.turning, state.poses))
         return Failure{Outcome::branch_lost, turned_over};
     if (is_stationary(path, state) && !state.modes.unstable()) return {};
 

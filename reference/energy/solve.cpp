@@ -7,6 +7,7 @@
 
 #include "models/branch.hpp"
 #include "reference/energy/branch.hpp"
+#include "reference/energy/conservative.hpp"
 #include "reference/energy/reactions.hpp"
 #include "reference/energy/settle.hpp"
 
@@ -68,6 +69,11 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         throw std::invalid_argument("the model does not stand on branch '" + branch.name +
                                     "', or it goes two ways");
     EquilibriumPath result;
+    if (const auto what = without_potential(model, branch)) {
+        result.outcome = Outcome::not_conservative;
+        result.detail = fmt::format("branch '{}': {}", branch.name, *what);
+        return result;
+    }
     const auto fail = [&](const Failure& failure, const std::string& where, const std::string& reached) {
         result.outcome = failure.outcome;
         result.detail = fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);

@@ -14,7 +14,7 @@
 namespace elastocheck::reference::energy {
 
 struct Options {
-    double tolerance = 1e-10;  // on the projected gradient and the constraints, scaled; never a solver's word
+    double tolerance = 1e-12;  // on the projected gradient and the constraints, scaled; never a solver's word
     int evaluation_limit = 2000;  // per equilibrium, asked for or internal
     int recentre_limit = 20;      // charts, likewise
 };
@@ -28,11 +28,13 @@ struct Options {
 //
 // Outcomes, each with the branch and the value of its parameter in `detail`:
 //   converged                 every value has its equilibrium
-//   branch_lost               the curve ends, or stops being one of minima, whatever minima there may be
-//   elsewhere inconsistent_constraints  the joints cannot be closed, held and driven as they are; a joint is
-//   named loaded_idle_mode          a motion that nothing resists is pushed not_finite                a NaN
-//   or infinity, in the model, the values or on the way iteration_limit           Options' limits were met
-//   first
+//   branch_lost               the curve ends, or stops being one of minima, whatever minima there may be elsewhere; or a
+//                             bushing turns to where its law ends
+//   inconsistent_constraints  the joints cannot be closed, held and driven as they are; a joint is named
+//   loaded_idle_mode          a motion that nothing resists is pushed
+//   not_finite                a NaN or infinity, in the model, the values or on the way
+//   iteration_limit           Options' limits were met first
+//   not_conservative          a follower load or a bushing's formulation has no potential: nothing was solved; it is named
 //
 // Reactions of joints that repeat each other are not unique; these share the load with the smallest norm. The
 // reaction of a driven joint is what its drive exerts: the jack's force, the rack's, the steering moment.
@@ -46,7 +48,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
 // How well a state, from any leg, satisfies this leg's conditions at its value of the parameter: the
 // constraints, and the gradient of the potential left over after the best multipliers. `direction` includes
 // that orientations are unit quaternions, and a driven angle's is 2 where it lies the other way round. What
-// cannot be judged is NaN: states that are no numbers, and forces once a bushing has turned by half a turn.
+// cannot be judged is NaN: states that are no numbers, forces once a bushing has turned to where its law ends, and
+// forces wherever `solve` would say not_conservative: constraints are judged there as everywhere.
 // Pre: as for `solve`.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 

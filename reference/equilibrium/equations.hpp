@@ -28,6 +28,17 @@ struct Interaction {
     Vec3<T> at = Vec3<T>::Constant(T(0.0));      // x [m]
 };
 
+// What an element does to each of its bodies: opposed, unless its formulation says that its force acts on each
+// body at another point.
+template <class T>
+struct OnBoth {
+    Interaction<T> i, j;
+};
+template <class T>
+OnBoth<T> opposed(const Interaction<T>& on_i) {
+    return {on_i, {-on_i.force, -on_i.moment, on_i.at}};
+}
+
 // ---- Points and directions of a body
 
 template <class T>
@@ -42,58 +53,106 @@ Vec3<T> direction(const Frame<T>& body, const Eigen::Vector3d& u_local) {
 
 // ---- Elastic elements: a geometry each, whatever the law
 
+// ℓ - ℓ₀
+template <class T>
+T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j) {
+    using std::sqrt;
+    const Vec3<T> along = position(j, spring.j.s_local) - position(i, spring.i.s_local);
+    return sqrt(dot(along, along)) - free_length;
+}
+
 // A spring pulls its ends together with N = u'(ℓ - ℓ₀) along e = (p_j - p_i) / ℓ.
 template <class T>
-Interaction<T> interaction(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
-                           const Frame<T>& j) {
+OnBoth<T> interaction(const AxialSpring& spring, const T& free_length, int piece, const Frame<T>& i,
+                      const Frame<T>& j) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, spring.i.s_local), p_j = position(j, spring.j.s_local);
     const Vec3<T> along = p_j - p_i;
     const T length = sqrt(dot(along, along));
-    const T pull = gradient(spring.law, T(length - free_length)) / length;
+    const T pull = gradient(spring.law, T(length - free_length), piece) / length;
     Interaction<T> on_i;
     on_i.force = {pull * along[0], pull * along[1], pull * along[2]};
     on_i.at = p_i;
-    return on_i;
+    return opposed(on_i);
 }
 
-// (f, g) = ∂u/∂e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ, in the axes of
-// marker i. Let the bodies move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_i f.
-//
-//   δd = A_iᵀ (δp_j - δp_i - δπ_i × D)   so   f · δd = F · (δp_j - δp_i) - δπ_i · (D × F)
-//   δθ = J⁻¹(θ) A_iᵀ (δπ_j - δπ_i)       so   g · δθ = (A_i m) · (δπ_j - δπ_i)
-//                                             m = J⁻ᵀ g = g + ½ θ × g + c θ × (θ × g)
-//
-// (A_iᵀ A_j becomes exp(A_iᵀ (δπ_j - δπ_i)) A_iᵀ A_j, whence the left Jacobian.) The body feels -∂U: on j the
-// force -F at p_j and the moment -A_i m, on i the force F at p_i with D × F, which is F at p_j, and the
-// moment A_i m. Where neither law nor preload care how the markers are turned against each other
-// (`rotational` is false) they may turn any number of times, and the logarithm, which ends at half a turn, is
-// not asked.
+// What a bushing measures. Where neither law nor preload care how the markers are turned against each other
+// (`rotational` is false) they may turn any number of times, and their angles, which end somewhere, are not
+// asked.
 template <class T>
-Interaction<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational, const Frame<T>& i,
-                           const Frame<T>& j) {
-    const Vec3<T> p_i = position(i, bushing.i.s_local), p_j = position(j, bushing.j.s_local);
-    const Eigen::Quaternion<T> axes_i = product(i.p, bushing.i.A_local),
-                               axes_j = product(j.p, bushing.j.A_local);
-    const Eigen::Quaternion<T> to_i = conjugate(axes_i);
+struct Measured {
+    Vec3<T> p_i, p_j;          // the markers [m]
+    Eigen::Quaternion<T> A_i;  // axes of marker i to ground axes
+    Eigen::Quaternion<T> A_f;  // axes of the frame to ground axes
+    Vec3<T> half_turn;         // t = tan(|θ|/4) θ/|θ|, axes of marker i; the frame in the middle only
+    Angles<T> angles;          // of B = A_iᵀ A_j; rotational only
+    Vec6<T> e;                 // (d [m], θ [rad])
+};
 
-    Logarithm<T> log{Vec3<T>::Constant(T(0.0)), T(0.0)};
-    if (rotational) log = logarithm(product(to_i, axes_j));
-    Vec6<T> e;
-    e << turned(to_i, Vec3<T>(p_j - p_i)), log.theta;
+template <class T>
+Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i, const Frame<T>& j) {
+    Measured<T> m;
+    m.p_i = position(i, bushing.i.s_local), m.p_j = position(j, bushing.j.s_local);
+    m.A_i = product(i.p, bushing.i.A_local);
+    const Eigen::Quaternion<T> B = product(conjugate(m.A_i), product(j.p, bushing.j.A_local));
 
-    const Vec6<T> fg = gradient(bushing.law, e) + preload;
-    Interaction<T> on_i;
-    on_i.force = turned(axes_i, Vec3<T>(fg.template head<3>()));
-    on_i.at = p_j;
-    if (rotational) {
-        const Vec3<T> g = fg.template tail<3>(), theta_g = cross(log.theta, g),
-                      theta2_g = cross(log.theta, theta_g);
-        Vec3<T> m;
-        for (int k = 0; k < 3; ++k) m[k] = g[k] + 0.5 * theta_g[k] + log.c * theta2_g[k];
-        on_i.moment = turned(axes_i, m);
+    m.A_f = m.A_i;
+    if (bushing.formulation.frame == Formulation::Frame::middle) {
+        const HalfTurn<T> half = half_turn(B);
+        m.A_f = product(m.A_i, half.p);
+        m.half_turn = half.t;
     }
-    return on_i;
+    m.angles.theta = Vec3<T>::Constant(T(0.0));
+    if (rotational) m.angles = angles_of(bushing.formulation.angles, B);
+    m.e << turned(conjugate(m.A_f), Vec3<T>(m.p_j - m.p_i)), m.angles.theta;
+    return m;
+}
+
+// (f, g) = ∂u/∂e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ. Let the bodies
+// move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_f f, and let the frame turn by δπ_f.
+//
+//   δd = A_fᵀ (δp_j - δp_i - δπ_f × D)   so   f · δd = F · (δp_j - δp_i) - δπ_f · (D × F)
+//   δθ_k = a_k · A_iᵀ (δπ_j - δπ_i)      so   g · δθ = (A_i m) · (δπ_j - δπ_i),   m = Σ g_k a_k
+//
+// with the axes a_k that the angles turn about (rotations.hpp). The bodies feel -∂U.
+//
+// Frame on i: δπ_f = δπ_i. On j the force -F at p_j and the moment -A_i m; on i the force F at p_i with D × F,
+// which is F at p_j, and the moment A_i m.
+//
+// Frame in the middle: A_f = A_i C, C² = B. With w = A_iᵀ (δπ_j - δπ_i) and δC = c̃ C the turn of C,
+//   δB = w̃ B = c̃ C C + C c̃ C = (c + C c)~ B,   so   c = (I + C)⁻¹ w = ½ (I - t̃) w
+// (Cayley: C = (I + t̃) (I - t̃)⁻¹). So δπ_f = δπ_i + A_i c, and of the moment D × F that δπ_f meets, j gets
+// ½ (I + t̃) D × F with t in ground axes, i the rest: beside F at p_j, i feels A_i m - ½ (D×F + t × (D×F)), and j
+// the opposite.
+//
+// Not conjugate (frame on i): the moment is A_i g, whatever does work. Without offset moment, D × F is on
+// neither body: F acts on each at its own marker.
+template <class T>
+OnBoth<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational,
+                      const ElementPieces& pieces, const Frame<T>& i, const Frame<T>& j) {
+    const Formulation& formulation = bushing.formulation;
+    const Measured<T> at = measured(bushing, rotational, i, j);
+    const Vec6<T> fg = gradient(bushing.law, Vec6<T>(at.e - bushing.undeformed.cast<T>()), pieces) + preload;
+
+    Interaction<T> on_i;
+    on_i.force = turned(at.A_f, Vec3<T>(fg.template head<3>()));
+    on_i.at = at.p_j;
+    if (rotational) {
+        const Vec3<T> g = fg.template tail<3>();
+        Vec3<T> m = g;
+        if (formulation.conjugate) m = at.angles.a[0] * g[0] + at.angles.a[1] * g[1] + at.angles.a[2] * g[2];
+        on_i.moment = turned(at.A_i, m);
+    }
+    if (!formulation.offset_moment) {
+        OnBoth<T> on = opposed(on_i);
+        on.i.at = at.p_i;
+        return on;
+    }
+    if (formulation.frame == Formulation::Frame::middle) {
+        const Vec3<T> offset = cross(Vec3<T>(at.p_j - at.p_i), on_i.force);
+        on_i.moment -= (offset + cross(turned(at.A_i, at.half_turn), offset)) * T(0.5);
+    }
+    return opposed(on_i);
 }
 
 // ---- Constraints
@@ -185,7 +244,7 @@ inline bool is_direction(const ConstraintKind& kind) {
 
 // ---- Loads
 
-// What a dead load of unit factor does to its body: force, and moment about the body's origin.
+// What a load of unit factor does to its body: force, and moment about the body's origin.
 template <class T>
 Interaction<T> on_body(const DeadForce& load, const Frame<T>& body) {
     Interaction<T> on;
@@ -198,6 +257,23 @@ template <class T>
 Interaction<T> on_body(const DeadMoment& load, const Frame<T>& body) {
     Interaction<T> on;
     on.moment = load.m.cast<T>();
+    on.at = body.r;
+    return on;
+}
+
+// A follower turns with its body.
+template <class T>
+Interaction<T> on_body(const FollowerForce& load, const Frame<T>& body) {
+    Interaction<T> on;
+    on.force = direction(body, load.f_local);
+    on.at = position(body, load.at.s_local);
+    return on;
+}
+
+template <class T>
+Interaction<T> on_body(const FollowerMoment& load, const Frame<T>& body) {
+    Interaction<T> on;
+    on.moment = direction(body, load.m_local);
     on.at = body.r;
     return on;
 }
@@ -215,7 +291,9 @@ Pair bodies_of(const Kind& kind) {
 
 inline BodyId body_of(const LoadKind& load) {
     return std::visit(
-        overloaded{[](const DeadForce& l) { return l.at.body; }, [](const DeadMoment& l) { return l.body; }},
+        overloaded{[](const DeadForce& l) { return l.at.body; }, [](const DeadMoment& l) { return l.body; },
+                   [](const FollowerForce& l) { return l.at.body; },
+                   [](const FollowerMoment& l) { return l.body; }},
         load);
 }
 

@@ -102,10 +102,10 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
                                at(0), joints_in(system, Phi))
                          : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
                                        at(walk.here.t), joints_in(system, Phi))};
-    if (const std::string bushing = bushing_at_half_turn(system, walk.here.x); !bushing.empty())
-        return {Outcome::branch_lost,
-                fmt::format("bushing '{}' is turned by half a turn, where its rotation has no value, {}",
-                            bushing, where)};
+    if (const std::string bushing = bushing_without_angles(system, walk.here.x); !bushing.empty())
+        return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};
+    if (trial.verdict == Verdict::past_knot)
+        return {Outcome::iteration_limit, "no step ends at the knot of a law " + where};
     if (trial.verdict == Verdict::out_of_reach)
         return {Outcome::branch_lost, "the branch becomes too steep to be followed " + where};
     if (trial.verdict == Verdict::unsettled)
@@ -113,7 +113,7 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     if (trial.verdict == Verdict::unsolved) {
         if (!std::isfinite(attempt.residual))
             return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
-        const VectorXd left_over = residual(system, loading_at(walk.stage, t), attempt.x);
+        const VectorXd left_over = residual(system, loading_at(walk, t), attempt.x);
         const MatrixXd& U = walk.here.linearised.modes.left;
         constexpr double mostly = 0.9;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())

@@ -1,7 +1,6 @@
 #include "reference/equilibrium/linearisation.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -10,8 +9,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the equilibrated matrix: singular values below this, over the largest, are null. Healthy models stay
-// above 1e-6.
+// Of the equilibrated matrix: what its QR with column pivoting has below this on its diagonal, over the largest,
+// is null. Healthy models stay above 1e-6.
 constexpr double null_threshold = 1e-11;
 
 // Sweeps of the equilibration; each halves the logarithm of what the sizes are apart.
@@ -44,13 +43,25 @@ NullSpaces null_spaces(const MatrixXd& J) {
         D_r.array() *= r.array();
         D_c.array() *= c.array();
     }
-    const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const auto& sigma = svd.singularValues();
+    // A P = Q R with |r_00| ≥ |r_11| ≥ ..., R = [R_1 R_2; 0 ~0]: then A P [-R_1⁻¹ R_2; 1] = 0, and Q's last columns are
+    // what A never reaches. The factors of ten that r_kk may be off a singular value do not matter beside the gap
+    // between healthy and null.
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+    const Index n = A.rows();
+    const auto diagonal = qr.matrixQR().diagonal().cwiseAbs();
     Index rank = 0;
-    while (rank < sigma.size() && sigma[rank] > null_threshold * sigma[0]) ++rank;
-    const Index k = sigma.size() - rank;
-    return {orthonormal(D_c.asDiagonal() * svd.matrixV().rightCols(k)),
-            orthonormal(D_r.asDiagonal() * svd.matrixU().rightCols(k))};
+    while (rank < n && diagonal[rank] > null_threshold * diagonal[0]) ++rank;
+    const Index k = n - rank;
+    if (k == 0) return {MatrixXd(n, 0), MatrixXd(n, 0)};
+    MatrixXd V = MatrixXd::Zero(n, k), last = MatrixXd::Zero(n, k);
+    V.topRows(rank) = -qr.matrixQR()
+                           .topLeftCorner(rank, rank)
+                           .triangularView<Eigen::Upper>()
+                           .solve(MatrixXd(qr.matrixQR().topRightCorner(rank, k)));
+    V.bottomRows(k).setIdentity();
+    last.bottomRows(k).setIdentity();
+    const MatrixXd right = qr.colsPermutation() * V, left = qr.householderQ() * last;
+    return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
 }
 
 void border(Linearisation& at) {

@@ -69,18 +69,29 @@ Scatter differentiated(const System& system, const Loading& loading, const Vecto
     Jet a(loading.a), held(loading.held);
     a.v[the_parameter] = loading.a_rate;
     held.v[the_parameter] = loading.held_rate;
-    assemble<Jet>(system, a, held, Seeds{system, x}, sum);
+    assemble<Jet>(system, a, held, loading.pieces, Seeds{system, x}, sum);
     sum.E -= loading.held * system.at_design;
     sum.E_rate -= loading.held_rate * system.at_design;
     return sum;
 }
 
+// Newton's steps are the same whatever regular matrix the equations are multiplied by; whether a step is an
+// improvement is not. A member that is turned along its tangent by δ is stretched by ½ δ²: measured in forces, a long
+// step makes things worse where members are stiff, and Ceres, which takes none that does, would creep; and what is
+// left along a soft direction does not show beside the round-off of the stiff ones. So what Ceres sees is
+//
+//   r = ⎡ J  U ⎤⁻¹ ⎧ E ⎫
+//       ⎣ Vᵀ 0 ⎦   ⎩ 0 ⎭        [n + k]
+//
+// the corrections that E asks for where the step begins (Deuflhard's natural level function; linearisation.hpp has J
+// and its border). r is zero where E is.
+//
 // The whole system is one residual block: a balance gathers from every element that touches the body.
 class SystemCost final : public ceres::CostFunction {
   public:
-    SystemCost(const System& system, const Loading& loading)
-        : system_(system), loading_(loading), x_(system.unknowns()) {
-        set_num_residuals(system.equations());
+    SystemCost(const System& system, const Loading& loading, const Linearisation& near)
+        : system_(system), loading_(loading), near_(near), x_(system.unknowns()) {
+        set_num_residuals(static_cast<int>(near.bordered.rows()));
         mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(system.bodies), 7);
         if (system.constraint_rows > 0) mutable_parameter_block_sizes()->push_back(system.constraint_rows);
     }
@@ -89,23 +100,36 @@ class SystemCost final : public ceres::CostFunction {
         const auto& sizes = parameter_block_sizes();
         for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
             std::copy_n(parameters[b], sizes[b], x_.data() + at);
-        Eigen::Map<VectorXd> E(residuals, system_.equations());
+        Eigen::Map<VectorXd> r(residuals, num_residuals());
         if (jacobians == nullptr) {
-            E = residual(system_, loading_, x_);
-            return E.allFinite();
+            r = corrections(residual(system_, loading_, x_));
+            return r.allFinite();
         }
         const auto sum = differentiated(system_, loading_, x_);
-        E = sum.E;
+        r = corrections(sum.E);
+        const MatrixXd dr = corrections(sum.dE);
+        largest_ = largest(sum.E);
         for (std::size_t b = 0, at = 0; b < sizes.size(); at += static_cast<std::size_t>(sizes[b]), ++b)
             if (jacobians[b] != nullptr)
-                Eigen::Map<RowMajor>(jacobians[b], system_.equations(), sizes[b]) =
-                    sum.dE.middleCols(static_cast<Eigen::Index>(at), sizes[b]);
-        return E.allFinite() && sum.dE.allFinite();
+                Eigen::Map<RowMajor>(jacobians[b], num_residuals(), sizes[b]) =
+                    dr.middleCols(static_cast<Eigen::Index>(at), sizes[b]);
+        return r.allFinite() && dr.allFinite();
     }
 
+    // Of |E|, where it was differentiated last.
+    double largest_residual() const { return largest_; }
+
   private:
+    MatrixXd corrections(const MatrixXd& E) const {
+        MatrixXd bordered = MatrixXd::Zero(num_residuals(), E.cols());
+        bordered.topRows(E.rows()) = E;
+        return near_.bordered.solve(bordered);
+    }
+
     const System& system_;
     Loading loading_;
+    const Linearisation& near_;
+    mutable double largest_ = 0;
     mutable VectorXd x_;  // room for the unknowns in one piece; a problem is solved by one thread
 };
 
@@ -114,12 +138,13 @@ constexpr double last_correction = 1e-8;
 
 // Goes on until the residual is small and the corrections have died out.
 struct StopAtFloor final : ceres::IterationCallback {
-    explicit StopAtFloor(double limit) : tolerance(limit) {}
+    StopAtFloor(const SystemCost& of, double limit) : cost(of), tolerance(limit) {}
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
         if (now.iteration == 0) return ceres::SOLVER_CONTINUE;
-        const bool done = std::sqrt(2 * now.cost) <= tolerance && now.step_norm <= last_correction;
+        const bool done = cost.largest_residual() <= tolerance && now.step_norm <= last_correction;
         return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
     }
+    const SystemCost& cost;
     double tolerance;
 };
 
@@ -143,17 +168,32 @@ ceres::Solver::Options solver_options(const Options& options) {
     return o;
 }
 
+// A body on its way through x: δ(x, y, z) = ½ (w δπ + δπ × v), δw = -½ v · δπ, as below.
+using Dual = ceres::Jet<double, 1>;
+Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd& dx, BodyId body) {
+    const Frame<double> at = frame_of(system, x, body);
+    Frame<Dual> frame{at.r.cast<Dual>(), at.p.cast<Dual>()};
+    if (body == ground) return frame;
+    const Eigen::Vector3d v = at.p.vec(), turn = dx.segment<3>(6 * body + 3);
+    const Eigen::Vector3d dv = (at.p.w() * turn + cross(turn, v)) / 2;
+    for (int k = 0; k < 3; ++k) frame.r[k].v[0] = system.length * dx[6 * body + k];
+    frame.p.x().v[0] = dv[0], frame.p.y().v[0] = dv[1], frame.p.z().v[0] = dv[2];
+    frame.p.w().v[0] = -v.dot(turn) / 2;
+    return frame;
+}
+
 }  // namespace
 
-Attempt newton(const System& system, const Loading& loading, const VectorXd& start, const Options& options,
-               Counts& counts) {
+Attempt newton(const System& system, const Loading& loading, const VectorXd& start, const Linearisation& near,
+               const Options& options, Counts& counts) {
     Attempt attempt{start, 0, false};
     VectorXd& x = attempt.x;
     ++counts.evaluations;
     attempt.residual = largest(residual(system, loading, start));
-    if (!std::isfinite(attempt.residual)) return attempt;  // Ceres would complain aloud
+    if (!std::isfinite(attempt.residual) || system.equations() == 0)
+        return attempt;  // Ceres would complain aloud
 
-    SystemCost cost(system, loading);
+    SystemCost cost(system, loading, near);
     ceres::ProductManifold<ceres::EuclideanManifold<3>, ceres::EigenQuaternionManifold> rigid_body;
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -168,7 +208,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
     if (system.constraint_rows > 0) blocks.push_back(x.data() + column(system, 0));
     problem.AddResidualBlock(&cost, nullptr, blocks);
 
-    StopAtFloor stop(options.tolerance);
+    StopAtFloor stop(cost, options.tolerance);
     ceres::Solver::Options solver = solver_options(options);
     solver.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
@@ -200,6 +240,29 @@ Derivatives derivatives(const System& system, const Loading& loading, const Vect
     }
     J.rightCols(system.constraint_rows) = sum.dE.rightCols(system.constraint_rows);
     return {std::move(J), std::move(sum.E_rate)};
+}
+
+std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,
+                               const VectorXd& dx) {
+    std::vector<OnCurve> all;
+    Dual a(loading.a);
+    a.v[0] = loading.a_rate;
+    const auto& elastics = system.model->elastics;
+    for (std::size_t e = 0; e < elastics.size(); ++e) {
+        std::array<const Curve*, 6> curves{};
+        for (std::size_t k = 0; k < 6; ++k)
+            curves[k] = std::visit([&](const auto& kind) { return curve_of(kind, k); }, elastics[e].kind);
+        if (std::ranges::count(curves, nullptr) == 6) continue;
+        const auto [i, j] = bodies_of(elastics[e].kind);
+        const Vec6<Dual> now =
+            deformations(system, e, a, moving_frame(system, x, dx, i), moving_frame(system, x, dx, j));
+        for (std::size_t k = 0; k < 6; ++k)
+            if (curves[k] != nullptr) {
+                const Dual& value = now[static_cast<int>(k)];
+                all.push_back({e, k, curves[k], k < 3 ? system.length : 1, value.a, value.v[0]});
+            }
+    }
+    return all;
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -1,6 +1,7 @@
 // Solving the system at one loading, and its Jacobian. The only place that knows Ceres.
 #pragma once
 
+#include "reference/equilibrium/linearisation.hpp"
 #include "reference/equilibrium/solve.hpp"
 #include "reference/equilibrium/system.hpp"
 
@@ -12,8 +13,9 @@ struct Attempt {
     bool out_of_time = false;  // the iteration limit came before a standstill
 };
 
+// `near`: the system where the step to `start` began; regular.
 Attempt newton(const System& system, const Loading& loading, const Eigen::VectorXd& start,
-               const Options& options, Counts& counts);
+               const Linearisation& near, const Options& options, Counts& counts);
 
 struct Derivatives {
     Eigen::MatrixXd J;       // ∂E/∂(step) [n × n]
@@ -23,5 +25,17 @@ struct Derivatives {
 // By automatic differentiation.
 Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x,
                         Counts& counts);
+
+// A deformation that follows a curve, and how fast it changes.
+struct OnCurve {
+    std::size_t element, axis;
+    const Curve* curve;
+    double size;  // what it is small or large beside: L [m] or 1 [rad]
+    double x;     // [m] or [rad]
+    double rate;  // dx/dt along the way that `loading` is on, the state changing by dx/dt [n]
+};
+
+std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const Eigen::VectorXd& x,
+                               const Eigen::VectorXd& rate);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -103,9 +103,9 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         const auto [i, j] = bodies_of(model.elastics[e].kind);
-        const auto on_i = interaction(system, e, a, judge.frame(i), judge.frame(j));
-        judge.apply(i, on_i, +1);
-        judge.apply(j, on_i, -1);
+        const auto on = interaction(system, e, a, {}, judge.frame(i), judge.frame(j));
+        judge.apply(i, on.i, 1);
+        judge.apply(j, on.j, 1);
     }
     for (const auto& load : system.loads) {
         const BodyId body = body_of(load.kind);

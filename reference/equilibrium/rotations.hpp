@@ -2,13 +2,26 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "models/mechanism.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
 template <class T>
 using Vec3 = Eigen::Matrix<T, 3, 1>;
+
+template <class T>
+Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+template <class T>
+T dot(const Vec3<T>& a, const Vec3<T>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 // A(p) v = v + w u + p⃗ × u with u = 2 p⃗ × v, p = (w, p⃗) a unit quaternion; S is T or double.
 template <class T, class S>
@@ -78,14 +91,102 @@ Logarithm<T> logarithm(Eigen::Quaternion<T> q) {
     return {{k * q.x(), k * q.y(), k * q.z()}, c};
 }
 
+// C with C² = A, and t = tan(|θ|/4) θ/|θ|, by which C = (I + t̃) (I - t̃)⁻¹. With the quaternion of A as (w, v), w ≥ 0,
+// that of C halves the way from 1, (1 + w, v) / √(2 + 2w), and t = v / (1 + w). NaN where the logarithm is.
 template <class T>
-Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+struct HalfTurn {
+    Eigen::Quaternion<T> p;
+    Vec3<T> t;
+};
 
 template <class T>
-T dot(const Vec3<T>& a, const Vec3<T>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+HalfTurn<T> half_turn(Eigen::Quaternion<T> q) {
+    using std::sqrt;
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+    if (!(q.w() > 0.5e-6)) {
+        const T nan(std::numeric_limits<double>::quiet_NaN());
+        return {{nan, nan, nan, nan}, Vec3<T>::Constant(nan)};
+    }
+    const T one_w = 1.0 + q.w(), size = sqrt(2.0 * one_w);
+    return {{one_w / size, q.x() / size, q.y() / size, q.z() / size},
+            {q.x() / one_w, q.y() / one_w, q.z() / one_w}};
+}
+
+// Three angles of a rotation B and the axes they turn about: where B becomes exp(w̃) B, δθ_k = a_k · w.
+template <class T>
+struct Angles {
+    Vec3<T> theta;
+    std::array<Vec3<T>, 3> a;
+};
+
+// The angle of (x, y) in its plane. NaN from 1e-6 rad before half a turn, where it jumps, and at the origin,
+// where it has no value.
+template <class T>
+T plane_angle(const T& y, const T& x) {
+    using std::atan2;
+    constexpr double near2 = 1e-12;
+    const T xx = x * x, yy = y * y;
+    if (!(xx + yy > near2) || (x < 0.0 && yy <= near2 * xx))
+        return T(std::numeric_limits<double>::quiet_NaN());
+    return atan2(y, x);
+}
+
+// A direction u (unit) of the turning body, as it looks along the axis n: of w × u, the part in the plane turns
+// u's projection v = u - (n·u) n about n by  n · (v × (w × u)) / |v|² = w · (u × (n × v)) / |v|², so
+//
+//   a = n - (n·u) v / |v|²
+template <class T>
+Vec3<T> axis_of_projection(const Vec3<T>& u, int n) {
+    Vec3<T> v = u;
+    v[n] = T(0.0);
+    const T along = u[n] / dot(v, v);
+    Vec3<T> a = {-along * v[0], -along * v[1], -along * v[2]};
+    a[n] += T(1.0);
+    return a;
+}
+
+// As mechanism.hpp has them. With x, y, z the axes of j in axes of i, the columns of B:
+//
+//   rotation_vector  δθ = J⁻¹ w, so a_k is column k of J⁻ᵀ:  e_k + ½ θ × e_k + c θ × (θ × e_k)
+//   projected        θ_x, θ_y from z along x_i, y_i; θ_z from x along z_i
+//   cardan           the turn is w = x_i δθ_x + y' δθ_y + z δθ_z, y' = (0, z_z, -z_y) / h the axis across x_i and z,
+//                    h = √(z_y² + z_z²) = cos θ_y; the a_k are dual to these three: a_x as projected, a_y = y',
+//                    a_z = (0, z_y, z_z) / h². At θ_y = ±90°, h = 0: no value.
+template <class T>
+Angles<T> angles_of(Formulation::Angles kind, const Eigen::Quaternion<T>& B) {
+    using std::sqrt;
+    Angles<T> angles;
+    if (kind == Formulation::Angles::rotation_vector) {
+        const Logarithm<T> log = logarithm(B);
+        angles.theta = log.theta;
+        for (int k = 0; k < 3; ++k) {
+            Vec3<T>& a = angles.a[static_cast<std::size_t>(k)];
+            a = Vec3<T>::Constant(T(0.0));
+            a[k] = T(1.0);
+            const Vec3<T> once = cross(log.theta, a), twice = cross(log.theta, once);
+            a += once * T(0.5) + twice * log.c;
+        }
+        return angles;
+    }
+    const Eigen::Vector3d e_x = Eigen::Vector3d::UnitX(), e_y = Eigen::Vector3d::UnitY(),
+                          e_z = Eigen::Vector3d::UnitZ();
+    const Vec3<T> x = turned(B, e_x), z = turned(B, e_z);
+    angles.theta[0] = plane_angle(T(-z[1]), z[2]);
+    angles.a[0] = axis_of_projection(z, 0);
+    if (kind == Formulation::Angles::projected) {
+        angles.theta[1] = plane_angle(z[0], z[2]);
+        angles.theta[2] = plane_angle(x[1], x[0]);
+        angles.a[1] = axis_of_projection(z, 1);
+        angles.a[2] = axis_of_projection(x, 2);
+        return angles;
+    }
+    const Vec3<T> y = turned(B, e_y);
+    const T h2 = z[1] * z[1] + z[2] * z[2], h = sqrt(h2);
+    angles.theta[1] = plane_angle(z[0], h);
+    angles.theta[2] = plane_angle(T(-y[0]), x[0]);
+    angles.a[1] = {T(0.0), z[2] / h, -z[1] / h};
+    angles.a[2] = {T(0.0), z[1] / h2, z[2] / h2};
+    return angles;
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -16,7 +16,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         path.detail = fmt::format("branch '{}': {}", branch.name, failed.what);
         return path;
     };
-    const System system = make_system(model, branch, points);
+    System system = make_system(model, branch, points);
     if (!std::ranges::all_of(points, [](double a) { return std::isfinite(a); }))
         return ended({Outcome::not_finite, "a point of the branch is not finite"});
 
@@ -27,10 +27,22 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     double reach = 0;
     for (const double a : points) reach = std::max(reach, std::abs(a));
     auto failed = advance(walk, 1);
+    if (failed) {
+        let_joints_carry(system);
+        Walk other = start(system, options);
+        other.counts = walk.counts;
+        const bool settled = !advance(other, 1);
+        walk.counts = other.counts;
+        if (settled) {
+            failed.reset();
+            walk.here = std::move(other.here);
+            walk.pieces = std::move(other.pieces);
+        }
+    }
     if (!failed) failed = begin_branch(walk, reach);
     for (auto a = points.begin(); a != points.end() && !failed; ++a) {
         failed = advance(walk, *a);
-        if (!failed) path.points.push_back(state_of(system, loading_at(walk.stage, *a), walk.here.x));
+        if (!failed) path.points.push_back(state_of(system, loading_at(walk, *a), walk.here.x));
     }
     path.counts = walk.counts;
     return failed ? ended(*failed) : path;

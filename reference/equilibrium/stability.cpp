@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -27,6 +28,18 @@ MatrixXd null_space(const MatrixXd& A) {
     qr.compute(A.transpose());
     const MatrixXd Q = qr.householderQ();
     return Q.rightCols(Q.cols() - qr.rank());
+}
+
+// The least eigenvalue of a matrix that is nearly symmetric: each of S + N, S symmetric, is within |N| of one of S
+// (Bauer and Fike). Several times cheaper than to ask the matrix itself, which is done where N may matter.
+std::optional<double> least_if_symmetric(const MatrixXd& M) {
+    constexpr double may_matter = 1e-3;
+    const MatrixXd S = (M + M.transpose()) / 2;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S, Eigen::EigenvaluesOnly);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    const double least = solver.eigenvalues()[0];
+    if (!((M - S).norm() <= may_matter * std::abs(least))) return std::nullopt;
+    return least;
 }
 
 int sign_of_determinant(const MatrixXd& A) {
@@ -55,12 +68,21 @@ Stiffness stiffness(const System& system, const MatrixXd& J, const NullSpaces& i
     const MatrixXd held = Z.transpose() * idle.right.topRows(n);
     M += std::max(size, 1.0) * held * held.transpose();
 
+    const double round_off = eigenvalue_round_off * size;
+    if (system.conservative)
+        if (const auto least = least_if_symmetric(M)) return {*least, round_off};
     const Eigen::EigenSolver<MatrixXd> solver(M, false);
     if (solver.info() != Eigen::Success) return {nan, nan};
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& mu : solver.eigenvalues())
-        least = std::min(least, mu.imag() == 0 ? mu.real() : std::abs(mu));
-    return {least, eigenvalue_round_off * size};
+    double least = std::numeric_limits<double>::infinity(), modulus = least;
+    int negative = 0;
+    for (const auto& mu : solver.eigenvalues()) {
+        const bool real = mu.imag() == 0;
+        least = std::min(least, real ? mu.real() : std::abs(mu));
+        modulus = std::min(modulus, std::abs(mu));
+        negative += real && mu.real() < 0;
+    }
+    if (system.conservative) return {least, round_off};
+    return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
 }
 
 bool constraints_keep_their_side(const System& system, const MatrixXd& J_from, const MatrixXd& J_to) {
@@ -87,6 +109,11 @@ Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffn
     const double least = std::min({l_0, l_m, l_1});
     if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1)) || least < -round_off)
         return Stability::lost;
+    // A pair of eigenvalues that became negative: through zero together, or round it as a complex pair. Where they
+    // went round, the least modulus is not small, and hardly changes over a step that is short enough.
+    constexpr double hardly = 0.25;
+    const bool pair = from.negative != to.negative || from.negative != middle.negative;
+    if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;
     const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
     const bool dips = c > 0 && b < 0 && -b < 2 * c;
     if (dips && l_0 - b * b / (4 * c) < deepest_dip * least - round_off) return Stability::uncertain;

@@ -15,12 +15,19 @@
 
 namespace elastocheck::reference::equilibrium {
 
+// With a follower, or a bushing whose formulation has no energy, M is not symmetric, and what is meant by stable is
+// less: whether the equilibrium would flutter is a question of masses, which a statics model does not have. What
+// statics can say is that no other equilibrium passes through this one and that the branch does not turn, that is,
+// that det M keeps its sign (divergence, not flutter).
+
 // Of M without its idle modes: the least eigenvalue (the modulus where it is complex, which takes a dead
-// moment: a zero eigenvalue is what matters), and the size below which it is round-off. 1 where nothing is
-// free. NaN if J is.
+// moment: a zero eigenvalue is what matters), and the size below which it is round-off. Where the system has no
+// energy: the least modulus, with the sign of det M, and the number of negative real eigenvalues, which may change
+// only in pairs away from zero. 1 where nothing is free. NaN if J is.
 struct Stiffness {
     double least = 1;
     double round_off = 0;
+    int negative = 0;
 };
 Stiffness stiffness(const System& system, const Eigen::MatrixXd& J, const NullSpaces& idle);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,11 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
-    if (body == ground) return ground_frame(system);
-    return {system.length * x.segment<3>(7 * body), Eigen::Quaterniond(x.segment<4>(7 * body + 3))};
-}
 
 struct Values {
     const System& system;
@@ -37,9 +33,9 @@ struct Sum {
     void constraint(const Part& part, int k, double Phi) { E[6 * system.bodies + part.row + k] += Phi; }
 };
 
-VectorXd sum(const System& system, double a, double held, const VectorXd& x) {
+VectorXd sum(const System& system, double a, double held, const Pieces& pieces, const VectorXd& x) {
     Sum total{system, VectorXd::Zero(system.equations())};
-    assemble<double>(system, a, held, Values{system, x}, total);
+    assemble<double>(system, a, held, pieces, Values{system, x}, total);
     return std::move(total.E);
 }
 
@@ -115,6 +111,28 @@ void set_paths(System& system) {
         }
 }
 
+// Whether work depends on the way that is gone.
+bool has_energy(const LoadKind& load) {
+    return std::visit(
+        overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
+                   [](const FollowerForce&) { return false; }, [](const FollowerMoment&) { return false; }},
+        load);
+}
+
+void set_formulations(System& system) {
+    for (const auto& load : system.loads)
+        if (body_of(load.kind) != ground && !has_energy(load.kind)) system.conservative = false;
+    for (const auto& elastic : system.model->elastics) {
+        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr) continue;
+        const Formulation& f = bushing->formulation;
+        if (f.frame == Formulation::Frame::on_j || (f.frame == Formulation::Frame::middle && !f.conjugate))
+            throw std::invalid_argument("bushing '" + elastic.name +
+                                        "' has a frame that this leg has no law for");
+        if (!elastocheck::has_energy(f)) system.conservative = false;
+    }
+}
+
 // From the value that stands at a = 0 to where u_i is drawn between x_j and y_j.
 void set_turns(System& system) {
     const VectorXd x = design_unknowns(system);
@@ -150,34 +168,45 @@ std::vector<Vector3d> hardpoints(const System& system) {
     for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
     for (const auto& load : system.loads)
         std::visit(
-            overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); }, [](const DeadMoment&) {}},
+            overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); }, [](const DeadMoment&) {},
+                       [&](const FollowerForce& f) { add(f.at.body, f.at.s_local); },
+                       [](const FollowerMoment&) {}},
             load.kind);
     return points;
 }
 
 double force_of(const LoadKind& load, double length) {
     return std::visit(overloaded{[&](const DeadForce& l) { return l.f.norm(); },
-                                 [&](const DeadMoment& l) { return l.m.norm() / length; }},
+                                 [&](const DeadMoment& l) { return l.m.norm() / length; },
+                                 [](const FollowerForce& l) { return l.f_local.norm(); },
+                                 [&](const FollowerMoment& l) { return l.m_local.norm() / length; }},
                       load);
 }
 
 // The deformation, over L, whose force is reckoned with: its round-off is that of stiffness times length.
 constexpr double usual_deformation = 0.01;
 
-double force_of(const ScalarLaw& law, double length) {
-    return std::max(std::abs(gradient(law, usual_deformation * length)),
-                    std::abs(gradient(law, -usual_deformation * length)));
+double force_of(const ScalarLaw& law, double length) { return steepest(law) * (usual_deformation * length); }
+
+double force_of(const LinearStiffness& law, double length) {
+    double force = 0;
+    for (int k = 0; k < 6; ++k) {
+        const Vector6 g = usual_deformation * (k < 3 ? length : 1) * law.K.col(k);
+        force = std::max({force, g.head<3>().norm(), g.tail<3>().norm() / length});
+    }
+    return force;
 }
 
 double force_of(const SpatialLaw& law, double length) {
-    double force = 0;
-    for (int k = 0; k < 6; ++k)
-        for (const double sign : {1., -1.}) {
-            const Vector6 e = sign * usual_deformation * (k < 3 ? length : 1) * Vector6::Unit(k);
-            const Vector6 g = gradient(law, e);
-            force = std::max({force, g.head<3>().norm(), g.tail<3>().norm() / length});
-        }
-    return force;
+    return std::visit(overloaded{[&](const LinearStiffness& u) { return force_of(u, length); },
+                                 [&](const PerAxis& u) {
+                                     double force = 0;
+                                     for (std::size_t k = 0; k < 6; ++k)
+                                         force = std::max(force, k < 3 ? force_of(u.axis[k], length)
+                                                                       : force_of(u.axis[k], 1) / length);
+                                     return force;
+                                 }},
+                      law);
 }
 
 // The larger size at either end of the way from a = 0 to ±a.
@@ -212,6 +241,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     system.bodies = static_cast<int>(model.bodies.size());
     system.constraint_rows = constraint_rows(model);
     set_paths(system);
+    set_formulations(system);
 
     const auto places = hardpoints(system);
     for (const auto& p : places) system.centre += p / static_cast<double>(places.size());
@@ -219,6 +249,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     for (const auto& p : places) radius = std::max(radius, (p - system.centre).norm());
     if (std::isfinite(radius) && radius > 0) system.length = radius;
 
+    system.carried = VectorXd::Zero(system.constraint_rows);
     set_turns(system);
 
     double a = 0;
@@ -227,13 +258,33 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     if (std::isfinite(force) && force > 0) system.force = force;
 
     // What is stored at the design pose, in the scale so far.
-    system.at_design = sum(system, 0, 1, design_unknowns(system));
+    system.at_design = sum(system, 0, 1, {}, design_unknowns(system));
     const double stored = system.at_design.head(6 * system.bodies).lpNorm<Eigen::Infinity>();
     if (std::isfinite(stored) && stored > 1) {
         system.force *= stored;
         system.at_design.head(6 * system.bodies) /= stored;
     }
     return system;
+}
+
+// E is linear in the reactions.
+void let_joints_carry(System& system) {
+    const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
+    if (n == 0 || m == 0 || !system.at_design.allFinite()) return;
+    const VectorXd x = design_unknowns(system);
+    Eigen::MatrixXd C(n, m);
+    for (Eigen::Index k = 0; k < m; ++k) {
+        VectorXd with = x;
+        with[7 * system.bodies + k] += 1;
+        C.col(k) = (sum(system, 0, 1, {}, with) - system.at_design).head(n);
+    }
+    system.carried -= C.completeOrthogonalDecomposition().solve(system.at_design.head(n));
+    system.at_design = sum(system, 0, 1, {}, design_unknowns(system));
+}
+
+Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
+    if (body == ground) return ground_frame(system);
+    return {system.length * x.segment<3>(7 * body), Eigen::Quaterniond(x.segment<4>(7 * body + 3))};
 }
 
 VectorXd design_unknowns(const System& system) {
@@ -243,11 +294,12 @@ VectorXd design_unknowns(const System& system) {
         x.segment<3>(7 * body) = (pose.r - system.centre) / system.length;
         x.segment<4>(7 * body + 3) = pose.p.normalized().coeffs();
     }
+    x.tail(system.constraint_rows) = system.carried;
     return x;
 }
 
 VectorXd residual(const System& system, const Loading& loading, const VectorXd& x) {
-    VectorXd E = sum(system, loading.a, loading.held, x);
+    VectorXd E = sum(system, loading.a, loading.held, loading.pieces, x);
     if (loading.held != 0) E -= loading.held * system.at_design;
     return E;
 }
@@ -291,15 +343,41 @@ double largest(const VectorXd& E) {
     return E.size() == 0 ? 0 : E.cwiseAbs().maxCoeff();
 }
 
-std::string bushing_at_half_turn(const System& system, const VectorXd& x) {
-    constexpr double near = 0.025;  // cos(θ/2): within 0.05 rad of half a turn
+namespace {
+
+// How far B is from where the angles end, less than the least of these [rad].
+double short_of_the_end(const Formulation& formulation, bool rotational, const Eigen::Quaterniond& B) {
+    using Kind = Formulation::Angles;
+    constexpr double pi = EIGEN_PI;
+    const auto plane = [](double y, double x) {
+        return std::min(pi - std::abs(std::atan2(y, x)), std::hypot(x, y));
+    };
+    const Eigen::Matrix3d A = B.toRotationMatrix();
+    double left = pi;
+    if (formulation.frame == Formulation::Frame::middle) left = 2 * std::abs(B.w());
+    if (!rotational) return left;
+    if (formulation.angles == Kind::rotation_vector) left = 2 * std::abs(B.w());
+    if (formulation.angles == Kind::cardan)
+        left = std::min({left, plane(A(1, 2), A(2, 2)), plane(A(0, 1), A(0, 0))});
+    if (formulation.angles == Kind::projected)
+        left = std::min({left, plane(A(1, 2), A(2, 2)), plane(A(0, 2), A(2, 2)), plane(A(1, 0), A(0, 0))});
+    return left;
+}
+
+}  // namespace
+
+std::string bushing_without_angles(const System& system, const VectorXd& x) {
+    constexpr double near = 0.05;  // [rad]
     for (std::size_t e = 0; e < system.elements.size(); ++e) {
         const auto& elastic = system.model->elastics[e];
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-        if (bushing == nullptr || !system.elements[e].rotational) continue;
+        if (bushing == nullptr) continue;
         const auto axes_i = product(frame_of(system, x, bushing->i.body).p, bushing->i.A_local);
         const auto axes_j = product(frame_of(system, x, bushing->j.body).p, bushing->j.A_local);
-        if (std::abs(product(conjugate(axes_i), axes_j).w()) < near) return elastic.name;
+        const Eigen::Quaterniond B = product(conjugate(axes_i), axes_j);
+        if (short_of_the_end(bushing->formulation, system.elements[e].rotational, B) < near)
+            return fmt::format("bushing '{}' is turned {}, where its rotation has no value", elastic.name,
+                               2 * std::abs(B.w()) < near ? "by half a turn" : "to the end of its angles");
     }
     return {};
 }

@@ -58,7 +58,9 @@ struct System {
     double force = 1;                                  // F [N]
     int bodies = 0;                                    // nb
     int constraint_rows = 0;                           // m
-    Eigen::VectorXd at_design;                         // E at the design pose, no reactions, a = 0 [n]
+    bool conservative = true;                          // no follower, no formulation without energy
+    Eigen::VectorXd carried;                           // what the joints carry at the design pose [m]
+    Eigen::VectorXd at_design;                         // E there, at a = 0 [n]
 
     int unknowns() const { return 7 * bodies + constraint_rows; }
     int equations() const { return 6 * bodies + constraint_rows; }
@@ -69,15 +71,27 @@ struct System {
 // loads and preloads, what the drivers hold, constraints that the design pose misses. An angle is let go of
 // as an angle, value + held · turn: its row is a sine, which would let go to the nearer of two opposite
 // directions.
+//
+// `pieces` names the piece of its curve that each deformation is on, per Model::elastics, so that E is smooth
+// whatever the knots; empty: each by itself.
+using Pieces = std::vector<ElementPieces>;
 struct Loading {
     double a = 0;
     double held = 0;                   // [-]
     double a_rate = 0, held_rate = 0;  // along the way that is walked
+    Pieces pieces = {};
 };
 
 // `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a
 // driver moves what its joint or element does not have.
 System make_system(const Model& model, const Branch& branch, std::span<const double> points);
+
+// Another way to let go: the joints carry at the design pose what they can, the least reactions with the least
+// imbalance. Where somebody holds all, forces that turn with no joint are let go of, and half-way between two stable
+// states there may be an unstable one; here the way is short where the joints are what holds.
+void let_joints_carry(System& system);
+
+Frame<double> frame_of(const System& system, const Eigen::VectorXd& x, BodyId body);
 
 Eigen::VectorXd design_unknowns(const System& system);
 Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
@@ -89,8 +103,9 @@ Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from, 
 double pose_size(const System& system, const Eigen::VectorXd& dx);
 double largest(const Eigen::VectorXd& E);  // absolute entry, NaN when anything is not finite
 
-// The name of a bushing whose rotation is nearly where the logarithm ends, or empty.
-std::string bushing_at_half_turn(const System& system, const Eigen::VectorXd& x);
+// A bushing that is turned nearly to where its angles, or its frame in the middle, end: "bushing 'x' is turned by
+// half a turn, where its rotation has no value", or empty.
+std::string bushing_without_angles(const System& system, const Eigen::VectorXd& x);
 
 // "1500 N", "-40 mm": the branch's parameter as reports show it.
 std::string parameter(const Branch& branch, double a);
@@ -102,19 +117,42 @@ inline Frame<double> ground_frame(const System& system) {
     return {-system.centre, Eigen::Quaterniond::Identity()};
 }
 
-// What element e does to its body i, and the opposite to its body j.
+// The preload of a bushing at a.
 template <class T>
-Interaction<T> interaction(const System& system, std::size_t e, const T& a, const Frame<T>& i,
-                           const Frame<T>& j) {
+Vec6<T> preload_at(const ElementPath& path, const T& a) {
+    Vec6<T> preload;
+    for (int k = 0; k < 6; ++k) preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
+    return preload;
+}
+
+// What element e does to its two bodies.
+template <class T>
+OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const Pieces& pieces,
+                      const Frame<T>& i, const Frame<T>& j) {
     const ElementPath& path = system.elements[e];
+    const ElementPieces& on = pieces.empty() ? all_by_themselves : pieces[e];
     return std::visit(overloaded{[&](const AxialSpring& spring) {
-                                     return interaction(spring, path.free_length.at(a), i, j);
+                                     return interaction(spring, path.free_length.at(a), on[0], i, j);
                                  },
                                  [&](const Bushing& bushing) {
-                                     Vec6<T> preload;
-                                     for (int k = 0; k < 6; ++k)
-                                         preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
-                                     return interaction(bushing, preload, path.rotational, i, j);
+                                     return interaction(bushing, preload_at(path, a), path.rotational, on, i,
+                                                        j);
+                                 }},
+                      system.model->elastics[e].kind);
+}
+
+// What the law of element e sees: ℓ - ℓ₀ first, or e - e₀.
+template <class T>
+Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Frame<T>& i, const Frame<T>& j) {
+    const ElementPath& path = system.elements[e];
+    return std::visit(overloaded{[&](const AxialSpring& spring) {
+                                     Vec6<T> x = Vec6<T>::Constant(T(0.0));
+                                     x[0] = deformation(spring, path.free_length.at(a), i, j);
+                                     return x;
+                                 },
+                                 [&](const Bushing& bushing) {
+                                     return Vec6<T>(measured(bushing, path.rotational, i, j).e -
+                                                    bushing.undeformed.cast<T>());
                                  }},
                       system.model->elastics[e].kind);
 }
@@ -140,7 +178,8 @@ struct Part {
 // scaled reactions; `sink.balance(part, body, force, moment)` and `sink.constraint(part, k, Phi)` take the
 // scaled terms, to be summed.
 template <class T, class Source, class Sink>
-void assemble(const System& system, const T& a, const T& held, const Source& source, Sink& sink) {
+void assemble(const System& system, const T& a, const T& held, const Pieces& pieces, const Source& source,
+              Sink& sink) {
     const Model& model = *system.model;
     const double per_force = 1 / system.force, per_moment = per_force / system.length,
                  per_length = 1 / system.length;
@@ -157,9 +196,9 @@ void assemble(const System& system, const T& a, const T& held, const Source& sou
         const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{i, j};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
-        const auto on_i = interaction(system, e, a, frame_i, frame_j);
-        apply(part, i, frame_i, on_i, T(+1.0));
-        apply(part, j, frame_j, on_i, T(-1.0));
+        const auto on = interaction(system, e, a, pieces, frame_i, frame_j);
+        apply(part, i, frame_i, on.i, T(+1.0));
+        apply(part, j, frame_j, on.j, T(+1.0));
     }
     for (const auto& load : system.loads) {
         const Part part{body_of(load.kind), ground};

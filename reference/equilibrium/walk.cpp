@@ -29,6 +29,9 @@ constexpr double unanswered_round_off = 1e-9;
 // However close the points, a step between two is halved this often before the branch is given up.
 constexpr int least_halvings = 6;
 
+// Trials to find a knot before the step is shortened as any other; each is h⁴ better than the one before.
+constexpr int most_aims = 20;
+
 // How far past the smallest step the branch is looked for before it is called lost, in such steps.
 constexpr double past_the_end[] = {3, 6, 12};
 
@@ -36,13 +39,14 @@ Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) 
     Station station;
     station.t = t;
     station.x = std::move(x);
-    Derivatives by = derivatives(walk.system, loading_at(walk.stage, t), station.x, walk.counts);
+    Derivatives by = derivatives(walk.system, loading_at(walk, t), station.x, walk.counts);
     station.linearised = linearise(std::move(by.J), last, walk.counts);
     station.stiffness = stiffness(walk.system, station.linearised.J, station.linearised.modes);
     station.E_rate = std::move(by.E_rate);
     const Rate rate = answer(station.linearised, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
+    station.curves = on_curves(walk.system, loading_at(walk, t), station.x, station.tangent);
     return station;
 }
 
@@ -72,8 +76,8 @@ bool is_continuation(const System& system, const Station& from, const Station& t
 Stability stability_between(Walk& walk, const Station& from, const Station& to) {
     const double h = to.t - from.t;
     const VectorXd dx = step_between(walk.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
-    const auto by = derivatives(walk.system, loading_at(walk.stage, from.t + h / 2),
-                                moved(walk.system, from.x, dx), walk.counts);
+    const auto by = derivatives(walk.system, loading_at(walk, from.t + h / 2), moved(walk.system, from.x, dx),
+                                walk.counts);
     return over_step(from.stiffness, stiffness(walk.system, by.J, from.linearised.modes), to.stiffness);
 }
 
@@ -95,25 +99,34 @@ Verdict side_of(Walk& walk, const Station& next) {
 
 Trial try_step(Walk& walk, double t) {
     const System& system = walk.system;
-    const Loading loading = loading_at(walk.stage, t);
+    const Loading loading = loading_at(walk, t);
     const VectorXd dx = predicted_step(walk, t - walk.here.t);
-    if (!(pose_size(system, dx) <= longest_step)) return {Verdict::out_of_reach, {}, {}};
+    if (!(pose_size(system, dx) <= longest_step)) return {Verdict::out_of_reach};
 
-    Trial trial{Verdict::unsolved,
-                newton(system, loading, moved(system, walk.here.x, dx), walk.options, walk.counts),
-                {}};
+    Trial trial{Verdict::unsolved, newton(system, loading, moved(system, walk.here.x, dx),
+                                          walk.here.linearised, walk.options, walk.counts)};
     const Attempt& attempt = trial.attempt;
     if (!(std::isfinite(attempt.residual) && attempt.residual <= walk.options.tolerance)) return trial;
 
     trial.station = station_at(walk, t, attempt.x, &walk.here.linearised);
-    const Station& next = trial.station;
-    const double correction = answer(next.linearised, residual(system, loading, next.x)).dx.norm();
+    Station& next = trial.station;
+    const VectorXd further = answer(next.linearised, residual(system, loading, next.x)).dx;
+    const double correction = further.norm();
+    const double h = t - walk.here.t;
     if (!is_continuation(system, walk.here, next))
         trial.verdict = Verdict::another_branch;
+    else if (const auto exit = first_exit(walk.here.curves, next.curves, h, walk.pieces))
+        trial.verdict = Verdict::past_knot, trial.knot = walk.here.t + *exit * h;
     else if (!(std::isfinite(correction) && correction <= last_correction))
         trial.verdict = Verdict::unsettled;
-    else
+    else {
         trial.verdict = side_of(walk, next);
+        // It is taken: what a correction leaves behind is its square times how much stiffer members are along than
+        // across, 1e6 and more in a chain of beams.
+        if (VectorXd x = moved(system, next.x, further);
+            largest(residual(system, loading, x)) <= walk.options.tolerance)
+            next.x = std::move(x);
+    }
     return trial;
 }
 
@@ -131,10 +144,73 @@ Failure the_end(Walk& walk, double h, double t, Trial refused) {
     return failure(walk, t, refused);
 }
 
+// Onto the next piece wherever a deformation is at the end of its own and leaves it. The state stays, where it goes
+// from here changes.
+std::optional<Failure> change_pieces(Walk& walk, double direction) {
+    const auto where = [&] {
+        const std::string a = parameter(*walk.system.branch, loading_at(walk, walk.here.t).a);
+        return walk.stage == Stage::settling
+                   ? fmt::format("while settling at {}, {:.0f} % of the way", a, 100 * walk.here.t)
+                   : "at " + a;
+    };
+    Pieces changed(walk.pieces.size(), ElementPieces{});  // by ±1, the others 0
+    for (bool at_end = true; at_end;) {
+        at_end = false;
+        for (const OnCurve& at : walk.here.curves) {
+            int& piece = walk.pieces[at.element][at.axis];
+            const int side = leaves(at, piece, direction, walk.length);
+            if (side == 0) continue;
+            int& before = changed[at.element][at.axis];
+            if (before == -side)
+                return Failure{Outcome::branch_lost,
+                               fmt::format("the branch turns back where the law of '{}' has a knot, {}",
+                                           walk.system.model->elastics[at.element].name, where())};
+            before = side;
+            piece += side;
+            at_end = true;
+            break;
+        }
+        if (!at_end) break;
+        walk.before.reset();
+        walk.here = station_at(walk, walk.here.t, walk.here.x, nullptr);
+        const Stiffness& now = walk.here.stiffness;
+        if (walk.stage == Stage::branch && over_step(now, now, now) != Stability::kept)
+            return Failure{
+                Outcome::singular,
+                fmt::format("the equilibrium loses its stability where a law has a knot, {}", where())};
+    }
+    return std::nullopt;
+}
+
+// A state at a knot may be `at_knot` past it, on the piece before. What is handed on is an equilibrium of the
+// system itself.
+std::optional<Failure> onto_its_own_pieces(Walk& walk) {
+    constexpr int attempts = 3;
+    const auto open = [&] {
+        Loading loading = loading_at(walk, walk.here.t);
+        loading.pieces.clear();
+        return largest(residual(walk.system, loading, walk.here.x));
+    };
+    if (walk.here.curves.empty()) return std::nullopt;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        if (open() <= walk.options.tolerance) return std::nullopt;
+        walk.pieces = pieces_at(walk.system, loading_at(walk, walk.here.t), walk.here.x);
+        const Attempt solved = newton(walk.system, loading_at(walk, walk.here.t), walk.here.x,
+                                      walk.here.linearised, walk.options, walk.counts);
+        walk.before.reset();
+        walk.here = station_at(walk, walk.here.t, solved.x, nullptr);
+    }
+    if (open() <= walk.options.tolerance) return std::nullopt;
+    return Failure{Outcome::iteration_limit,
+                   fmt::format("the scaled residual stays at {:.1e} where a law has a knot, at {}", open(),
+                               parameter(*walk.system.branch, loading_at(walk, walk.here.t).a))};
+}
+
 }  // namespace
 
 Walk start(const System& system, const Options& options) {
-    Walk walk{system, options, 1, Stage::settling, {}, std::nullopt, {}};
+    Walk walk{system, options};
+    walk.pieces = pieces_at(system, loading_at(walk, 0), design_unknowns(system));
     walk.here = station_at(walk, 0, design_unknowns(system), nullptr);
     return walk;
 }
@@ -155,34 +231,42 @@ std::optional<Failure> advance(Walk& walk, double target) {
     const double smallest =
         std::min(std::ldexp(walk.length, -walk.options.halvings), std::ldexp(std::abs(h), -least_halvings));
     std::optional<Trial> refused;  // the most telling since the last step
+    double knot = 0;               // where a piece ends before the end of the step ...
+    int aims = 0;                  // ... and how often it was aimed at: 0 where the whole step is tried
     while (walk.here.t != target) {
+        if (auto failed = change_pieces(walk, target > walk.here.t ? 1 : -1)) return failed;
         const double rest = target - walk.here.t;
         const double unanswered = std::abs(rest) * walk.here.mu.norm(),
                      asked = std::abs(rest) * walk.here.E_rate.norm();
         if (unanswered > std::max(walk.options.tolerance, unanswered_round_off * asked))
             return unanswerable(walk.system, walk.here.linearised.modes.left * walk.here.mu);
         if (!walk.here.tangent.allFinite())
-            return Failure{Outcome::singular, fmt::format("the system is singular at {}",
-                                                          parameter(*walk.system.branch,
-                                                                    loading_at(walk.stage, walk.here.t).a))};
+            return Failure{Outcome::singular,
+                           fmt::format("the system is singular at {}",
+                                       parameter(*walk.system.branch, loading_at(walk, walk.here.t).a))};
 
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
-        const double t = h == rest ? target : walk.here.t + h;
+        const double t = aims > 0 ? knot : h == rest ? target : walk.here.t + h;
         Trial trial = try_step(walk, t);
-        if (trial.verdict == Verdict::accepted) {
+        if (trial.verdict == Verdict::past_knot && aims < most_aims && trial.knot != walk.here.t) {
+            knot = trial.knot;
+            ++aims;
+        } else if (trial.verdict == Verdict::accepted) {
             walk.before = std::move(walk.here);
             walk.here = std::move(trial.station);
             refused.reset();
-            h *= 2;
+            if (aims == 0) h *= 2;
+            aims = 0;
         } else {
             const bool says_more =
                 !refused || (refused->verdict != Verdict::turned_over && trial.verdict != Verdict::uncertain);
             if (says_more) refused = std::move(trial);
-            h /= 2;
+            h = aims > 0 ? (t - walk.here.t) / 2 : h / 2;
+            aims = 0;
             if (std::abs(h) < smallest * (1 - 1e-9)) return the_end(walk, h, t, std::move(*refused));
         }
     }
-    return std::nullopt;
+    return onto_its_own_pieces(walk);
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -6,10 +6,14 @@
 // quarter, the Jacobian is oriented alike at both, and the stiffness stays positive over all of it
 // (stability.hpp), whatever points lie on it. Otherwise the step is halved, and if that does not help, the
 // branch has ended here.
+//
+// All that is said of one curve without singular points holds as long as every element stays on one piece of its
+// law; where a law has a knot, the branch has one too, and the walk begins again there (knots.hpp).
 #pragma once
 
 #include <optional>
 
+#include "reference/equilibrium/knots.hpp"
 #include "reference/equilibrium/linearisation.hpp"
 #include "reference/equilibrium/newton.hpp"
 #include "reference/equilibrium/stability.hpp"
@@ -20,10 +24,6 @@ namespace elastocheck::reference::equilibrium {
 // = a).
 enum class Stage { settling, branch };
 
-inline Loading loading_at(Stage stage, double t) {
-    return stage == Stage::settling ? Loading{0, 1 - t, 0, -1} : Loading{t, 0, 1, 0};
-}
-
 // An equilibrium on the way.
 struct Station {
     double t = 0;
@@ -33,6 +33,7 @@ struct Station {
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
     Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]
+    std::vector<OnCurve> curves;
 };
 
 struct Walk {
@@ -40,14 +41,21 @@ struct Walk {
     const Options& options;
     double length = 1;  // of the way in t, by which the smallest step is measured
     Stage stage = Stage::settling;
-    Station here;
-    std::optional<Station> before;
-    Counts counts;
+    Pieces pieces = {};  // that the walk is on
+    Station here = {};
+    std::optional<Station> before = std::nullopt;  // on the same pieces
+    Counts counts = {};
 };
+
+inline Loading loading_at(const Walk& walk, double t) {
+    return walk.stage == Stage::settling ? Loading{0, 1 - t, 0, -1, walk.pieces}
+                                         : Loading{t, 0, 1, 0, walk.pieces};
+}
 
 enum class Verdict {
     accepted,
     out_of_reach,    // the tangent already leads too far away for one step
+    past_knot,       // an equilibrium of pieces that end before it
     unsolved,        // the residual stays above the tolerance
     another_branch,  // an equilibrium, but not on this branch
     unsettled,       // on this branch, but a further Newton step would still move it
@@ -57,8 +65,9 @@ enum class Verdict {
 
 struct Trial {
     Verdict verdict;
-    Attempt attempt;
-    Station station;
+    Attempt attempt = {};
+    Station station = {};
+    double knot = 0;  // t where the first piece ends, about
 };
 
 struct Failure {

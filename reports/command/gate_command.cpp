@@ -14,6 +14,7 @@
 #include "reports/command/arguments.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/command/load_scene.hpp"
 #include "reports/files/files.hpp"
 #include "reports/gate/baseline.hpp"
 #include "reports/gate/gate_report.hpp"
@@ -85,7 +86,7 @@ std::vector<Task> tasks(const GateOptions& options) {
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
-    const Model model = compile(read_scene(task.scene, options.settings));
+    const Model model = load_scene(task.scene, options.settings).model;
     check_memory(model, 0, static_cast<int>(compare::legs.size()), false);
     compare::Options how;
     if (options.progress)
@@ -167,6 +168,8 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
             compile(read_scene(task.scene,
                                options.settings));  // a bad scene is to be told apart from a missing baseline
         }
+    } catch (const NotTrimmed& error) {
+        scene.verdict.reasons.emplace_back(error.what());
     } catch (const std::invalid_argument& error) {  // more than there is memory for
         scene.bad_input = true;
         scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));

@@ -15,6 +15,8 @@
 #include "reports/command/exit_code.hpp"
 #include "reports/command/gate_command.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/command/load_scene.hpp"
+#include "reports/command/new_command.hpp"
 #include "reports/command/recursion_options.hpp"
 #include "reports/command/report_command.hpp"
 #include "reports/command/study_commands.hpp"
@@ -91,12 +93,22 @@ int run(int argc, char** argv) {
         app.add_subcommand("converge", "Split the recursion's error into steps, formulation and reference");
     auto* trade_command = app.add_subcommand(
         "trade", "What accuracy costs: every method against both references, and a recommendation");
+    auto* new_command =
+        app.add_subcommand("new", "Print a scene to start from; without a name, which there are");
+    std::string template_name;
+    new_command->add_option("NAME", template_name, "of the scene to print");
     const GateCommand gate_command = add_gate(app, progress);
     Settings settings;
     for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command}) {
         command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_name());
         add_settings(*command, settings);
     }
+    bool keep_all = false, formulations = false;
+    for (auto* command : {inspect_command, solve_command, compare_command})
+        command->add_flag("--keep-all", keep_all, "solve the whole scene, also what no output depends on");
+    compare_command->add_flag(
+        "--formulations", formulations,
+        "how much the outputs depend on the formulation of the bushings, in which tools differ");
     for (auto* command : {solve_command, compare_command}) add_recursion_options(*command, recursion_request);
     solve_command
         ->add_option(
@@ -151,7 +163,9 @@ int run(int argc, char** argv) {
         const std::string command = command_line(argc, argv);
         app.parse(argc, argv);
         if (*report_command) return report(request, command, progress);
-        if (*inspect_command) return inspect(scene, settings);
+        if (*new_command) return new_scene(template_name);
+        const Detail detail = keep_all ? Detail::everything : Detail::required;
+        if (*inspect_command) return inspect(scene, settings, detail);
         if (*solve_command || *compare_command) {
             const auto leg =
                 std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });
@@ -160,8 +174,10 @@ int run(int argc, char** argv) {
             const recursive::Options how = recursion(recursion_request);
             if (!rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
-            if (*compare_command) return compare_legs(scene, settings, how, output, command);
-            return solve(scene, settings, reference ? *leg : compare::Leg::recursive, how, rates, output);
+            if (*compare_command)
+                return compare_legs(scene, settings, {how, detail, formulations}, output, command);
+            return solve(scene, settings, detail, reference ? *leg : compare::Leg::recursive, how, rates,
+                         output);
         }
         if (*gate_command.parsed) return gate_command.run();
         if (*converge_command) return converge(scene, settings, rungs, levels, output, command);
@@ -186,6 +202,8 @@ int main(int argc, char** argv) {
         return code;
     } catch (const SceneError& error) {
         return fail(bad_input, error.what());
+    } catch (const NotTrimmed& error) {
+        return fail(could_not_judge, error.what());
     } catch (const FileError& error) {
         return fail(bad_input, error.what());
     } catch (const ResultError& error) {

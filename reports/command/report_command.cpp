@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "compare/compare.hpp"
+#include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/profile.hpp"
@@ -17,6 +19,7 @@
 #include "reports/command/arguments.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/command/load_scene.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/field.hpp"
 #include "reports/document/json.hpp"
@@ -56,16 +59,20 @@ json recommended(const Model& model, const compare::Trade& trade) {
 }
 
 json solve_scene(const std::string& file, const ReportRequest& request, const Progress& progress) {
-    const Scene scene = read_scene(file, request.settings);
-    const Model model = compile(scene);
+    const LoadedScene loaded = load_scene(file, request.settings);
+    const Scene& scene = loaded.scene;
+    const Model& model = loaded.model;
     const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
     json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+    if (loaded.trim) add_trim(document, *loaded.trim);
 
     compare::Options options;
     options.progress = tell;
     const auto comparison = compare::compare(model, options);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
+    if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
+        add_formulations(document, compare::formulation_study(scene, 0, tell), comparison);
     if (!request.measured.empty()) {
         add_measurement(document, read_whole(request.measured), request.measured, model, comparison);
         if (compared_with_measurement(document) == 0)

@@ -4,22 +4,24 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
+#include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/rates.hpp"
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/command/load_scene.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/csv.hpp"
+#include "reports/tables/formulation_tables.hpp"
 #include "reports/tables/inspection.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
@@ -46,6 +48,13 @@ void write_results(const std::string& folder, const std::string& command, json p
     for (const auto& file : tables)
         written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", folder, file.name);
     print("Written: {}\n", written);
+}
+
+json document_of(const LoadedScene& loaded, const std::string& file) {
+    json part =
+        scene_document(loaded.scene, read_whole(file), loaded.model, recursive::diagnose(loaded.model));
+    if (loaded.trim) add_trim(part, *loaded.trim);
+    return part;
 }
 
 // The rates of a polynomial branch beside its curve: positions and angles per unit of the parameter.
@@ -87,17 +96,20 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
 
 }  // namespace
 
-int inspect(const std::string& file, const Settings& settings) {
-    const Model model = compile(read_scene(file, settings));
-    print(inspection(model, recursive::diagnose(model)));
+int inspect(const std::string& file, const Settings& settings, Detail detail) {
+    const LoadedScene loaded = load_scene(file, settings, detail);
+    print(inspection({.scene = loaded.scene,
+                      .model = loaded.model,
+                      .trim = loaded.trim,
+                      .diagnosis = recursive::diagnose(loaded.model)}));
     return fine;
 }
 
-int solve(const std::string& file, const Settings& settings, compare::Leg leg, const recursive::Options& how,
-          const std::string& rates, const std::string& output) {
+int solve(const std::string& file, const Settings& settings, Detail detail, compare::Leg leg,
+          const recursive::Options& how, const std::string& rates, const std::string& output) {
     if (!output.empty()) check_may_write(output, curves_file);
     if (!rates.empty()) check_may_write(rates, rates_file);
-    const Model model = compile(read_scene(file, settings));
+    const Model model = load_scene(file, settings, detail).model;
     check_memory(model, how.steps, 1, false);
     std::string csv = curves_header(compare::channels(model));
     int code = fine;
@@ -120,32 +132,43 @@ int solve(const std::string& file, const Settings& settings, compare::Leg leg, c
     return code;
 }
 
-int compare_legs(const std::string& file, const Settings& settings, const recursive::Options& how,
+int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file, settings);
-    const Model model = compile(scene);
-    check_memory(model, how.steps, static_cast<int>(compare::legs.size()), !folder.empty());
+    const LoadedScene loaded = load_scene(file, settings, request.detail);
+    const Model& model = loaded.model;
+    check_memory(model, request.recursion.steps, static_cast<int>(compare::legs.size()), !folder.empty());
     compare::Options options;
-    options.recursion = how;
+    options.recursion = request.recursion;
     options.progress = progress;
     const compare::Comparison comparison = compare::compare(model, options);
+    std::optional<compare::FormulationStudy> study;
+    if (request.formulations)
+        study = compare::formulation_study(loaded.scene, request.recursion.steps, progress);
     progress("");
     print(tables(model, comparison));
+    if (study) print(formulation_text(*study, comparison));
     if (!folder.empty()) {
-        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
-        add_comparison(part, scene, model, comparison);
-        add_verdict(part, comparison.compared, reasons_of(comparison));
-        write_results(folder, command, std::move(part), {});
+        json part = document_of(loaded, file);
+        add_comparison(part, loaded.scene, model, comparison);
+        std::vector<NamedContent> files;
+        auto reasons = reasons_of(comparison);
+        if (study) {
+            add_formulations(part, *study, comparison);
+            files.push_back({"formulations.csv", csv(formulation_table(*study, comparison))});
+            for (const auto& reason : study->inconclusive) reasons.push_back("formulations: " + reason);
+        }
+        add_verdict(part, comparison.compared, reasons);
+        write_results(folder, command, std::move(part), std::move(files));
     }
-    return comparison.conclusive() ? fine : could_not_judge;
+    return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 
 int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names,
              const std::vector<int>& steps, const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file, settings);
-    const Model model = compile(scene);
+    const LoadedScene loaded = load_scene(file, settings);
+    const Model& model = loaded.model;
     if (!steps.empty()) check_memory(model, *std::ranges::max_element(steps), 1, false);
     compare::StudyOptions options;
     options.methods = methods_named(names);
@@ -166,7 +189,7 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     const bool conclusive =
         (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
     if (!folder.empty()) {
-        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+        json part = document_of(loaded, file);
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
             part["convergence"] = study_json(study, attribution);
@@ -189,8 +212,8 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
 int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
           const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
-    const Scene scene = read_scene(file, settings);
-    const Model model = compile(scene);
+    const LoadedScene loaded = load_scene(file, settings);
+    const Model& model = loaded.model;
     compare::TradeOptions options;
     options.tolerance = compare::parse_tolerance(tolerance);
     options.progress = progress;
@@ -199,7 +222,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     progress("");
     print("{}\n{}", trade_text(model, trade), precision_text(precision));
     if (!folder.empty()) {
-        json part = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+        json part = document_of(loaded, file);
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,

@@ -8,17 +8,23 @@
 #include "compare/compare.hpp"
 #include "recursive/solve.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/load_scene.hpp"
 
 namespace elastocheck::reports {
 
-int inspect(const std::string& scene, const Settings& settings);
+int inspect(const std::string& scene, const Settings& settings, Detail detail);
 
 // CSV of the curves to `output`, or to standard output where that is empty; of their derivatives to `rates`.
-int solve(const std::string& scene, const Settings& settings, compare::Leg leg, const recursive::Options& how,
-          const std::string& rates, const std::string& output);
+int solve(const std::string& scene, const Settings& settings, Detail detail, compare::Leg leg,
+          const recursive::Options& how, const std::string& rates, const std::string& output);
 
+struct CompareRequest {
+    recursive::Options recursion;
+    Detail detail = Detail::required;
+    bool formulations = false;  // how much the outputs depend on what a bushing is taken to measure, as well
+};
 // Where `folder` is empty nothing is written; else result.json with `command` in it, and CSV files.
-int compare_legs(const std::string& scene, const Settings& settings, const recursive::Options& how,
+int compare_legs(const std::string& scene, const Settings& settings, const CompareRequest& request,
                  const std::string& folder, const std::string& command);
 int converge(const std::string& scene, const Settings& settings, const std::vector<std::string>& methods,
              const std::vector<int>& steps, const std::string& folder, const std::string& command);

@@ -3,6 +3,7 @@
 #include "compare/findings.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -125,7 +126,7 @@ json profiles_json(const compare::Comparison& all, const compare::BranchComparis
             {"at_equal_abscissa",
              profile_json(compare::profile_at_equal_abscissa(all.channels, truth, recursion, by))},
             {"references",
-             profile_json(compare::profile_at_equal_parameter(all.channels, truth, curve(Leg::energy)))}};
+             profile_json(compare::profile_at_equal_parameter(all.channels, truth, curve(branch.second)))}};
 }
 
 json worst_json(const std::optional<compare::Worst>& worst) {
@@ -172,7 +173,10 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
                         {"unit", symbol(rate.unit)},
                         {"off", rate.off},
                         {"travel_mm", rate.travel},
-                        {"force_N", rate.force}});
+                        {"force_N", rate.force},
+                        {"wheel_rate_N_per_mm", rate.wheel_rate},
+                        {"ride_rate_N_per_mm", rate.ride_rate},
+                        {"ride_off", rate.ride_off}});
     return list;
 }
 
@@ -242,6 +246,8 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"cross_check", pair(branch.cross_check)},
              {"reference_uncertainty", pair(branch.uncertainty)},
              {"profiles", profiles_json(comparison, branch)},
+             {"second_reference", name(branch.second)},
+             {"no_energy", branch.no_energy},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()}});
     }
@@ -250,6 +256,36 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
+}
+
+void add_trim(json& scene_document, const compare::TrimRecord& trim) {
+    json adjusted = json::array(), conditions = json::array();
+    for (const auto& a : trim.adjusted)
+        adjusted.push_back({{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
+    for (const auto& c : trim.conditions)
+        conditions.push_back({{"name", c.name},
+                              {"unit", symbol(c.unit)},
+                              {"asked", c.asked},
+                              {"missed", c.missed},
+                              {"missed_by_confirming_leg", c.confirmed}});
+    scene_document["trim"] = {{"adjusted", adjusted},
+                              {"conditions", conditions},
+                              {"iterations", trim.iterations},
+                              {"confirmed_by", name(trim.confirmed_by)}};
+}
+
+void add_formulations(json& scene_document, const compare::FormulationStudy& study,
+                      const compare::Comparison& comparison) {
+    json formulations = json::array();
+    for (const auto& one : compare::formulations) formulations.push_back(one.name);
+    json not_solved = json::array();
+    for (const auto& branch : study.branches)
+        for (const auto& why : branch.not_solved) not_solved.push_back(branch.branch + ": " + why);
+    scene_document["formulations"] = {{"formulations", formulations},
+                                      {"bushings", study.bushings},
+                                      {"spread", table_json(formulation_table(study, comparison))},
+                                      {"not_solved", not_solved},
+                                      {"inconclusive", study.inconclusive}};
 }
 
 void add_gap(json& scene_document, const compare::Comparison& comparison, const compare::Study& study) {

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "compare/compare.hpp"
+#include "compare/formulations.hpp"
 #include "compare/study.hpp"
+#include "compare/trim.hpp"
 #include "models/scene.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reports/document/provenance.hpp"
@@ -36,6 +38,13 @@ nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input
 // hardpoints are at the design position and along the branches.
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);
+
+// "trim": what was adjusted, and how well the conditions are met.
+void add_trim(nlohmann::ordered_json& scene_document, const compare::TrimRecord& trim);
+
+// "formulations": how much the outputs depend on what a bushing is taken to measure, a table of spreads.
+void add_formulations(nlohmann::ordered_json& scene_document, const compare::FormulationStudy& study,
+                      const compare::Comparison& comparison);
 
 // "findings.gap": what part of the published deviation is the formulation's, once both are there.
 void add_gap(nlohmann::ordered_json& scene_document, const compare::Comparison& comparison,

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "compare/findings.hpp"
 #include "compare/readings.hpp"
 
 namespace elastocheck::reports {
@@ -112,10 +114,27 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
         for (const Leg by : compare::legs) {
             if (by == run.leg) continue;
             const auto& r = run.judged[static_cast<std::size_t>(by)];
+            if (run.path.points.empty()) continue;  // nothing to judge
+            if (by == Leg::energy && branch.second != Leg::energy) continue;
             fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment, 1e3 * r.length);
         }
         text.erase(text.find_last_not_of(' ') + 1);
         fmt::format_to(out, "\n");
+    }
+}
+
+// The wheel rates, and with a tyre the ride rates, of the branches that lift a wheel.
+void rates(const std::vector<compare::RateError>& errors, const compare::BranchComparison& branch,
+           std::string& text) {
+    for (const auto& e : errors) {
+        if (e.branch != branch.branch) continue;
+        const auto rate = [](double k, double off) {
+            return fmt::format("{:.4g} N/mm ({} %)", k, signed_value(100 * off));
+        };
+        text += fmt::format("  wheel rate{} from 0 to {:g} {}: {}", e.wheel.empty() ? "" : " " + e.wheel,
+                            e.to, symbol(e.unit), rate(e.wheel_rate, e.off));
+        if (std::isfinite(e.ride_rate)) text += "; ride rate: " + rate(e.ride_rate, e.ride_off);
+        text += '\n';
     }
 }
 
@@ -131,13 +150,19 @@ std::string recursion_of(const compare::Comparison& comparison) {
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;
     const auto out = std::back_inserter(text);
-    fmt::format_to(out,
-                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
-                   "the equilibrium leg;\n"
-                   "share: of the channel's range over the branch; uncertainty: the energy leg against the "
-                   "equilibrium leg.\n",
-                   model.name, coordinates(model), constraint_rows(model),
-                   coordinates(model) + constraint_rows(model), recursion_of(comparison));
+    fmt::format_to(
+        out,
+        "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
+        "the equilibrium leg;\n"
+        "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
+        "equilibrium leg;\n"
+        "rates: of the reference, with the recursion's error.\n",
+        model.name, coordinates(model), constraint_rows(model), coordinates(model) + constraint_rows(model),
+        recursion_of(comparison),
+        std::ranges::all_of(comparison.branches, &std::string::empty, &compare::BranchComparison::no_energy)
+            ? ""
+            : ", or series where no energy exists,");
+    const auto errors = compare::rate_errors(model, comparison);
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
         const auto& definition = model.branches[k];
@@ -156,8 +181,12 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         }
         fmt::format_to(out, "\n\n");
         deviation_table(comparison, branch, text);
+        rates(errors, branch, text);
         fmt::format_to(out, "\n");
         legs_table(branch, text);
+        if (!branch.no_energy.empty())
+            fmt::format_to(out, "  the equilibrium leg and {} judge each other; no energy exists: {}\n",
+                           name(branch.second), branch.no_energy);
         fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())
             fmt::format_to(out, "  inconclusive: {}\n", reason);

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "compare/channels.hpp"
 #include "compare/legs.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/document.hpp"
+#include "reports/tables/elements.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -25,9 +27,31 @@ std::string constraint_name(const ConstraintKind& kind) {
                       kind);
 }
 
+std::string words(const Size& size) {
+    return fmt::format("{} bodies, {} joints, {} elements: {} coordinates, {} constraints, {} unknowns",
+                       size.bodies, size.joints, size.elastics, 6 * size.bodies, size.rows,
+                       6 * size.bodies + size.rows);
+}
+
+std::string trim_words(const compare::TrimRecord& trim) {
+    std::string text =
+        fmt::format("\ntrim, found by the equilibrium leg in {} step{}, confirmed by {}\n", trim.iterations,
+                    trim.iterations == 1 ? "" : "s",
+                    trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series");
+    for (const auto& a : trim.adjusted)
+        text += fmt::format("  {:<30} {:+.6g} {}{}{}\n", a.name, a.by, symbol(a.unit),
+                            a.makes.empty() ? "" : ": ", a.makes);
+    for (const auto& c : trim.conditions)
+        text += fmt::format("  until {:<24} {:.6g} {}, met to {:.1e}; confirmed to {:.1e}\n", c.name, c.asked,
+                            symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed));
+    return text;
+}
+
 }  // namespace
 
-std::string inspection(const Model& model, const recursive::Diagnosis& d) {
+std::string inspection(const Inspected& inspected) {
+    const Model& model = inspected.model;
+    const recursive::Diagnosis& d = inspected.diagnosis;
     std::string text;
     const recursive::Conditioning condition = recursive::conditioning(model, d);
     const auto line = [&](const char* format, const auto&... args) {
@@ -57,17 +81,9 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
              made_of);
     }
     if (!model.elastics.empty()) line("\nelastic elements");
-    for (const auto& elastic : model.elastics) {
-        const auto [i, j] = std::visit(
-            [](const auto& e) {
-                return std::pair{e.i.body, e.j.body};
-            },
-            elastic.kind);
-        const char* kind = std::visit(overloaded{[](const AxialSpring&) { return "axial spring"; },
-                                                 [](const Bushing&) { return "bushing"; }},
-                                      elastic.kind);
-        line("  {:<20} {} - {}: {}", elastic.name, body_name(model, i), body_name(model, j), kind);
-    }
+    for (const auto& [name, between, what] : elements(inspected.scene, model))
+        line("  {:<20} {}: {}", name, between, what);
+    if (inspected.trim) text += trim_words(*inspected.trim);
     line("\nbranches");
     for (const auto& branch : model.branches) {
         std::string moved, held;
@@ -105,9 +121,11 @@ std::string inspection(const Model& model, const recursive::Diagnosis& d) {
     line("\nidle modes (nothing resists them; they are held, and reported here)");
     for (const auto& mode : d.idle) line("  {}", mode.description);
     if (d.idle.empty()) line("  none");
-    line("\nleft out, because no output depends on it");
+    line("\nleft out or condensed, because no output depends on it");
     for (const auto& o : model.left_out) line("  {}: {}", o.what, o.why);
     if (model.left_out.empty()) line("  nothing");
+    line("  the scene  {}", words(model.as_written));
+    line("  as solved  {}", words(model.as_solved));
     line("\nbalance at the design position, parameter 0");
     if (d.imbalance <= 1e-6)
         line("  in equilibrium");

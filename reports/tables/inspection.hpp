@@ -1,13 +1,22 @@
 // `elastocheck inspect`: how a scene was understood, before anything is solved.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "compare/trim.hpp"
 #include "models/model.hpp"
 #include "recursive/diagnosis.hpp"
 
 namespace elastocheck::reports {
 
-std::string inspection(const Model& model, const recursive::Diagnosis& diagnosis);
+struct Inspected {
+    const Scene& scene;  // trimmed
+    const Model& model;  // as it is solved
+    const std::optional<compare::TrimRecord>& trim;
+    const recursive::Diagnosis diagnosis;  // of `model`
+};
+
+std::string inspection(const Inspected& inspected);
 
 }  // namespace elastocheck::reports

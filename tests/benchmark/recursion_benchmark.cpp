@@ -39,7 +39,7 @@ using namespace elastocheck;
 using Clock = std::chrono::steady_clock;
 
 const Model& mcpherson() {
-    static const Model model = compile(support::scene("mcpherson"));
+    static const Model model = compile(support::scene("chrono_mcpherson"));
     return model;
 }
 

@@ -8,7 +8,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// The McPherson strut of models/scenes/mcpherson.yaml on either side of a rack.
+// The McPherson strut of models/scenes/chrono_mcpherson.yaml on either side of a rack.
 constexpr const char* axle = R"(
 elastocheck: 1
 name: McPherson axle with a rack

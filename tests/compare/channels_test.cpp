@@ -65,7 +65,7 @@ TEST(Channels, WheelSpinChangesNothing) {
 }
 
 TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const auto list = channels(model);
     EXPECT_EQ(list.size(), 6u + 6 * model.joints.size());
     EXPECT_EQ(list[0].name, "wheel_centre_x");
@@ -76,7 +76,7 @@ TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
 }
 
 TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const auto list = channels(compile(support::scene(name)));
         for (std::size_t c = 0; c < list.size(); ++c) {
             EXPECT_GT(list[c].definition.size(), 20u) << list[c].name;

@@ -19,7 +19,7 @@ namespace elastocheck::compare {
 namespace {
 
 const Comparison& mcpherson() {
-    static const Comparison comparison = compare(compile(support::scene("mcpherson")));
+    static const Comparison comparison = compare(compile(support::scene("chrono_mcpherson")));
     return comparison;
 }
 
@@ -51,8 +51,8 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
 TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
     // At 1 N nothing has turned yet, and where nothing is preloaded
     // eq. (24) is the tangent of the true equations.
-    for (const auto& name : support::scene_names()) {
-        if (name == "mcpherson_preload") continue;
+    for (const auto& name : support::small_scene_names()) {
+        if (name == "chrono_mcpherson_preload") continue;
         Scene scene = support::scene(name);
         // The tangent is off by the order of the rotation: 1 N turns the pendulum by 7e-4 rad and is 0.5 % of
         // what the shallow arch can bear, so for these two it is not small.
@@ -86,7 +86,7 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
 TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
     // What is stored at the design position has a stiffness, which eq. (24) leaves out: the wheel rate is off
     // from the start.
-    Scene scene = support::scene("mcpherson_preload");
+    Scene scene = support::scene("chrono_mcpherson_preload");
     for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
@@ -122,7 +122,7 @@ TEST(Compare, DeviationFromOneReferenceIsTheDeviationFromTheOther) {
 }
 
 TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const auto comparison = compare(compile(support::scene(name)));
         EXPECT_TRUE(comparison.conclusive()) << name;
         EXPECT_GT(comparison.compared, 100) << name;
@@ -223,7 +223,7 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
         probe.name += "_beside";
         scene.probes.push_back(probe);
     }
-    const auto comparison = compare(compile(scene));
+    const auto comparison = compare(compile(scene, Detail::everything));
     const std::string pin = other.joints.front().name;
     int totals_seen = 0;
     for (const auto& branch : comparison.branches) {
@@ -314,7 +314,7 @@ TEST(Judgement, BoundsAreSharesOfWhatActs) {
 
 TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
     // The references' own numbers, one of them moved by ten times its bound.
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const auto comparison = compare(model);
     for (const auto& branch : comparison.branches)
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
@@ -410,7 +410,7 @@ TEST(Judgement, ABranchOnWhichNoOutputMovesIsNoPass) {
 // ---- Two ways
 
 TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
-    Scene both = support::scene("mcpherson");
+    Scene both = support::scene("chrono_mcpherson");
     ASSERT_EQ(both.branches.size(), 2u);
     const Scene halves = both;
     both.branches.resize(1);
@@ -464,7 +464,7 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
 }
 
 TEST(Ways, AnyChannelCanBeTheAbscissa) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     Options options;
     options.abscissa = "camber";
     const auto comparison = compare(model, options);
@@ -491,7 +491,7 @@ TEST(Settled, SaysHowFarTheSceneSinksFromItsDrawing) {
     const auto found = settled(model, all, model.branches[0]);
     ASSERT_EQ(found.outcome, Outcome::converged) << found.detail;
     EXPECT_NEAR(found.displacement[static_cast<std::size_t>(find_channel(all, "tip_z"))], 5, 0.01);
-    const Model balanced = compile(support::scene("mcpherson"));
+    const Model balanced = compile(support::scene("chrono_mcpherson"));
     for (const double d : settled(balanced, channels(balanced), balanced.branches[0]).displacement)
         EXPECT_NEAR(d, 0, 1e-8);
 }

@@ -52,6 +52,15 @@ TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
     EXPECT_EQ(reading.channels[1].compared, 37);
 }
 
+// An end that both are driven to: which of them rounds down is chance, and must not decide what is compared.
+TEST(Deviation, TheEndThatBothReachToTheirRoundingIsCompared) {
+    const auto shape = [](double x) { return x * x; };
+    const Curve a = made(1, shape), b = made(1 - 1e-15, shape);
+    EXPECT_EQ(at_equal_travel(a, b).outside, 0);
+    EXPECT_EQ(at_equal_travel(a, b).channels[1].compared, 41);
+    EXPECT_EQ(at_equal_travel(a, made(1 - 1e-6, shape)).outside, 1);
+}
+
 TEST(Deviation, FallingTravelIsReadAsWell) {
     const auto shape = [](double x) { return x * x; };
     const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));

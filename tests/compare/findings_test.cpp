@@ -13,7 +13,7 @@ namespace elastocheck::compare {
 namespace {
 
 const Model& mcpherson() {
-    static const Model model = compile(support::scene("mcpherson"));
+    static const Model model = compile(support::scene("chrono_mcpherson"));
     return model;
 }
 const Comparison& compared() {
@@ -45,9 +45,43 @@ TEST(RateErrors, AreSaidPerBranchWithTheirSign) {
     }
 }
 
+TEST(RateErrors, RideRateIsWheelAndTyreInSeries) {
+    Scene scene = support::scene("chrono_mcpherson");
+    for (auto& branch : scene.branches) branch.steps = 10;
+    for (const auto& error : rate_errors(compile(scene), compare(compile(scene)))) {
+        EXPECT_TRUE(std::isnan(error.ride_rate)) << "no tyre";
+        EXPECT_GT(error.wheel_rate, 20) << "[N/mm] of a passenger car";
+        EXPECT_LT(error.wheel_rate, 50);
+    }
+    scene.wheels[0].tyre_rate = 200e3;  // [N/m]
+    const auto errors = rate_errors(compile(scene), compare(compile(scene)));
+    ASSERT_EQ(errors.size(), 2u);
+    for (const auto& error : errors) {
+        EXPECT_NEAR(error.ride_rate, error.wheel_rate * 200 / (error.wheel_rate + 200), 1e-9);
+        const double fast = error.wheel_rate * (1 + error.off);
+        EXPECT_NEAR(error.ride_off, fast * 200 / (fast + 200) / error.ride_rate - 1, 1e-12);
+        EXPECT_LT(std::abs(error.ride_off), std::abs(error.off)) << "the tyre is right";
+    }
+}
+
+// On the road the tyre's force over the height of the road is measured; it is 1 / (1/k_w + 1/k_t).
+TEST(RateErrors, RideRateOnTheRoadIsThatOfWheelAndTyreInSeries) {
+    const Model model = compile(support::scene("tyre_on_road"));
+    const auto errors = rate_errors(model, compare(model));
+    ASSERT_EQ(errors.size(), 4u)
+        << "both ways on the road and with the wheel; not of a load that the tyre shares";
+    for (const auto& error : errors) {
+        EXPECT_TRUE(error.branch == "road" || error.branch == "wheel") << error.branch;
+        EXPECT_NEAR(error.wheel_rate, 30, 1e-7) << error.branch;
+        EXPECT_NEAR(error.ride_rate, 1 / (1 / 30.0 + 1 / 200.0), 1e-7) << error.branch;
+        EXPECT_NEAR(error.off, 0, 1e-9) << error.branch << ": it is linear";
+        EXPECT_NEAR(error.ride_off, 0, 1e-9) << error.branch;
+    }
+}
+
 TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
     const auto with = [](auto&& change) {
-        Scene scene = support::scene("mcpherson");
+        Scene scene = support::scene("chrono_mcpherson");
         scene.branches.resize(1);
         scene.branches[0].steps = 5;
         change(scene.branches[0], scene);
@@ -158,7 +192,7 @@ TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
 }
 
 TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
-    Scene scene = support::scene("mcpherson");
+    Scene scene = support::scene("chrono_mcpherson");
     scene.branches[1].to = 1000;
     for (auto& branch : scene.branches) branch.steps = 5;
     const Model model = compile(scene);
@@ -169,7 +203,7 @@ TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
 
 TEST(Measured, AChangeCountsFromTheDesignPosition) {
     // Also where the scene settles before it walks: 12 mm of travel there are not the zero of a measurement.
-    Scene scene = support::scene("mcpherson");
+    Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);
     scene.branches[0].steps = 30;
     scene.branches[0].drivers[0].start = 300;

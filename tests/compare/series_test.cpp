@@ -17,7 +17,7 @@ using recursive::series::find;
 using recursive::series::follow;
 
 TEST(Rates, AreTheDerivativesOfTheOutputs) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
         for (const auto& whole : model.branches) {
@@ -52,7 +52,8 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
 }
 
 TEST(Rates, ParameterForAnOutputIsTheInverseOfTheOutputForAParameter) {
-    for (const char* name : {"mcpherson", "mcpherson_preload", "pinned_bar", "pendulum", "two_spring_arch"}) {
+    for (const char* name :
+         {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar", "pendulum", "two_spring_arch"}) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
         for (const auto& branch : model.branches) {
@@ -76,7 +77,7 @@ TEST(Rates, ParameterForAnOutputIsTheInverseOfTheOutputForAParameter) {
 }
 
 TEST(OrderStudy, ErrorStaysWithinWhatWasTold) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;
     options.orders = {4, 8, 12, 16};
     options.tolerances = {1e-6, 1e-9};
@@ -98,7 +99,7 @@ TEST(OrderStudy, ErrorStaysWithinWhatWasTold) {
 
 TEST(OrderStudy, NothingComparedIsNotConclusive) {
     EXPECT_FALSE(conclusive({}));
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;
     options.orders = {2};
     options.tolerances = {1e-12};

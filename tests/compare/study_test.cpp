@@ -74,7 +74,7 @@ TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
 }
 
 TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
-    const Study s = study(compile(support::scene("mcpherson")), options());
+    const Study s = study(compile(support::scene("chrono_mcpherson")), options());
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
         EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
@@ -86,7 +86,7 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
 }
 
 TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
-    for (const char* name : {"mcpherson", "bushing_pair", "pinned_bar", "two_spring_arch"}) {
+    for (const char* name : {"chrono_mcpherson", "bushing_pair", "pinned_bar", "two_spring_arch"}) {
         for (const auto& branch : attribute_gap(compile(support::scene(name)))) {
             ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
             for (const auto* reading : {&branch.equal_parameter, &branch.equal_abscissa})
@@ -101,7 +101,7 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
 
 TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
-    for (const auto& share : attribute_gap(compile(support::scene("mcpherson")))[0].equal_parameter)
+    for (const auto& share : attribute_gap(compile(support::scene("chrono_mcpherson")))[0].equal_parameter)
         EXPECT_LE(std::abs(share.load), 1e-9);
     EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_parameter[2].load), 1.0);
 }
@@ -152,7 +152,7 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
 TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
     // The preloaded strut settles before it walks: what is left when everything follows is within its band,
     // and the whole is the gap that the study finds.
-    const Model model = compile(support::scene("mcpherson_preload"));
+    const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Study s = study(model, options());
     const auto attribution = attribute_gap(model);
     ASSERT_EQ(attribution.size(), s.branches.size());
@@ -209,7 +209,7 @@ TEST(Study, ABranchThatMovesNothingIsNotStudied) {
 }
 
 TEST(Study, IsTheSameFromRunToRun) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const auto a = study(model, options()), b = study(model, options());
     for (std::size_t c = 0; c < a.channels.size(); ++c) {
         EXPECT_EQ(a.branches[0].methods[0].equal_parameter[c].gap,

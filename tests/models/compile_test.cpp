@@ -83,11 +83,16 @@ std::vector<Load> loads_of(const Branch& branch) {
     return loads;
 }
 
+void hinge(Scene& scene, const std::string& name, BodyId i, BodyId j) {
+    const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
+    scene.joints.push_back({name, Revolute{p_i, p_j, {i, Vector3d::UnitY()}, {j, Vector3d::UnitY()}}});
+}
+
 // a, b, c, ... one hung on the next, the first on ground.
 Scene chain(int count) {
     Scene scene = bodies(count);
-    ball(scene, "root", 0, ground);
-    for (BodyId n = 1; n < count; ++n) ball(scene, fmt::format("joint_{}", n), n, n - 1);
+    hinge(scene, "root", 0, ground);
+    for (BodyId n = 1; n < count; ++n) hinge(scene, fmt::format("joint_{}", n), n, n - 1);
     return scene;
 }
 
@@ -110,14 +115,25 @@ const std::string with_its_body = "a body it connects is left out";
 
 // ---- What is left out.
 
-TEST(Compile, LeavesOutNothingOfTheShippedScenes) {
+// Two of the shipped scenes are written part by part, as an assembly is; of the others everything is needed.
+TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
+    struct Fewer {
+        std::size_t bodies = 0, joints = 0;
+    };
+    const std::map<std::string, Fewer> part_by_part{
+        {"multi_link",
+         {.bodies = 2, .joints = 3}},  // the subframe, the hub; their joints, and one that is there twice
+        {"front_axle",
+         {.bodies = 2, .joints = 2}}};  // drop links: two balls and a body each are one distance
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
         if (entry.path().extension() != ".yaml") continue;
         const Scene scene = read_scene(entry.path());
         const Model model = compile(scene);
-        EXPECT_TRUE(model.left_out.empty()) << entry.path() << ": " << model.left_out.front().what;
-        EXPECT_EQ(model.bodies.size(), scene.bodies.size());
-        EXPECT_EQ(model.joints.size(), scene.joints.size());
+        const auto found = part_by_part.find(entry.path().stem());
+        const Fewer fewer = found == part_by_part.end() ? Fewer{} : found->second;
+        EXPECT_EQ(model.left_out.empty(), found == part_by_part.end()) << entry.path();
+        EXPECT_EQ(model.bodies.size() + fewer.bodies, scene.bodies.size()) << entry.path();
+        EXPECT_EQ(model.joints.size() + fewer.joints, scene.joints.size()) << entry.path();
         EXPECT_EQ(model.elastics.size(), scene.elastics.size());
         EXPECT_EQ(model.branches.size(), scene.branches.size());
         EXPECT_EQ(model.name, scene.name);
@@ -125,7 +141,8 @@ TEST(Compile, LeavesOutNothingOfTheShippedScenes) {
 }
 
 TEST(Compile, FindsThePapersTwentySevenUnknowns) {
-    const Model model = compile(read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "mcpherson.yaml"));
+    const Model model =
+        compile(read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "chrono_mcpherson.yaml"));
     EXPECT_EQ(coordinates(model), 18);
     EXPECT_EQ(constraint_rows(model), 9);
 }
@@ -415,8 +432,8 @@ struct RandomScene {
 
     JointKind joint(BodyId i, BodyId j) {
         const Direction a = direction(i), b = direction(j);
-        switch (below(12)) {
-            case 0: return Spherical{point(i), point(j)};
+        switch (below(12)) {  // no balls, of which links are made
+            case 0:
             case 1: return Revolute{point(i), point(j), a, b};
             case 2: return Cylindrical{point(i), point(j), a, b};
             case 3: return Distance{point(i), point(j), 1};

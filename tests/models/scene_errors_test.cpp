@@ -29,8 +29,9 @@ std::string repeated(const std::string& text, int times) {
 }
 
 const std::string sections =
-    "elastocheck, name, units, mirror, points, bodies, joints, springs, bushings, static_loads, "
-    "loads, branches, wheel, wheels, probes";
+    "elastocheck, name, units, mirror, gravity, points, bodies, joints, springs, stops, torsion_springs, "
+    "bushings, "
+    "beams, tyres, static_loads, loads, trim, branches, wheel, wheels, probes";
 const std::string joint_types =
     "spherical, revolute, universal, cylindrical, translational, planar, fixed, distance, "
     "in_plane, in_line, perpendicular, parallel";
@@ -186,10 +187,11 @@ const std::vector<Mistake> mistakes{
     {"BodyNamedGround", "  arm: {origin", "  ground: {origin",
      "13: bodies.ground: ground is always there and cannot be defined; choose another name"},
     {"BodyIsNotAMap", "arm: {origin: middle}", "arm: middle",
-     "13: bodies.arm: expected a map with the fields origin, found 'middle'"},
+     "13: bodies.arm: expected a map with the fields origin, mass, centre_of_gravity, found 'middle'"},
     {"BodyWithoutOrigin", "arm: {origin: middle}", "arm: {}", "13: bodies.arm.origin" + missing},
     {"UnknownFieldOfBody", "arm: {origin: middle}", "arm: {orgin: middle}",
-     "13: bodies.arm: unknown field 'orgin', did you mean 'origin'? allowed: origin"},
+     "13: bodies.arm: unknown field 'orgin', did you mean 'origin'? allowed: origin, mass, "
+     "centre_of_gravity"},
     {"UnknownHardpoint", "arm: {origin: middle}", "arm: {origin: midle}",
      "13: bodies.arm.origin: no hardpoint is called 'midle', did you mean 'middle'? defined: " + hardpoints},
     {"HardpointIsAList", "arm: {origin: middle}", "arm: {origin: [0, 0, 0]}",
@@ -256,8 +258,8 @@ const std::vector<Mistake> mistakes{
     // ---- springs
     {"UnknownFieldOfSpring", "rate: 30, preload", "rates: 30, preload",
      "22: springs.coil: unknown field 'rates', did you mean 'rate'? allowed: bodies, from, "
-     "to, rate, free_length, preload"},
-    {"SpringWithoutRate", "rate: 30, preload", "preload", "22: springs.coil.rate" + missing},
+     "to, rate, curve, free_length, preload, bump_stop, rebound_stop"},
+    {"SpringWithoutRate", "rate: 30, preload", "preload", "22: springs.coil: no law; allowed: rate or curve"},
     {"NegativeRate", "rate: 30,", "rate: -30,",
      "22: springs.coil.rate: negative rate '-30'; allowed: zero or more"},
     {"SpringOfNoLength", "from: front, to: top, rate", "from: front, to: front, rate",
@@ -277,9 +279,10 @@ const std::vector<Mistake> mistakes{
     // ---- bushings
     {"UnknownFieldOfBushing", "rates: [1, 2, 2], rot", "rate: [1, 2, 2], rot",
      "25: bushings.mount: unknown field 'rate', did you mean 'rates'? allowed: bodies, at, "
-     "frame, rates, rotational_rates, stiffness, preload, preload_moment"},
+     "frame, rates, rotational_rates, stiffness, curves, preload, preload_moment, undeformed, "
+     "undeformed_angles, formulation"},
     {"NoStiffness", ", rates: [1, 2, 2], rotational_rates: [3, 4, 4]", "",
-     "25: bushings.mount: no stiffness; allowed: rates and/or rotational_rates, or stiffness"},
+     "25: bushings.mount: no stiffness; allowed: rates, rotational_rates and/or curves, or stiffness"},
     {"RatesAndStiffness", "    at: middle\n    stiffness:",
      "    at: middle\n    rates: [1, 1, 1]\n    stiffness:", "30: bushings.block.stiffness: " + together},
     {"RotationalRatesAndStiffness",
@@ -357,7 +360,7 @@ const std::vector<Mistake> mistakes{
      "42: loads.twist.at: a moment has no point of application; leave it out"},
     {"UnknownFieldOfLoad", "twist: {on: hub, moment", "twist: {on: hub, momnet",
      "42: loads.twist: unknown field 'momnet', did you mean 'moment'? allowed: on, at, force, "
-     "moment"},
+     "moment, follows"},
     // ---- branches
     {"NoBranches", "branches:\n  up: {load: [push, twist], to: 1000, steps: 10}\n", "",
      "1: branches" + missing},

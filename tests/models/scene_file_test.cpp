@@ -16,6 +16,7 @@
 
 #include "tests/models/bench_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
+#include "tests/support/folder.hpp"
 
 namespace elastocheck {
 namespace {
@@ -69,7 +70,7 @@ void expect_same(const Scene& a, const Scene& b, double tolerance) {
 // ---- The shipped scenes.
 
 TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
-    const Scene scene = shipped("mcpherson");
+    const Scene scene = shipped("chrono_mcpherson");
     ASSERT_EQ(scene.bodies.size(), 3U);
     ASSERT_EQ(scene.joints.size(), 4U);
     ASSERT_EQ(scene.elastics.size(), 4U);
@@ -191,6 +192,33 @@ TEST(Readme, ItsExampleIsAScene) {
     const Scene scene = parse_scene(text, "README.md");
     EXPECT_EQ(scene.bodies.size(), 2U);
     EXPECT_EQ(scene.branches.at(1).drivers.size(), 2U);
+    EXPECT_EQ(scene.elastics.size(), 5U);
+}
+
+// Those of curves and stops are sections in place of, or beside, those of the first.
+TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
+    std::ifstream file(fs::path(ELASTOCHECK_SCENES) / "README.md");
+    std::vector<std::string> blocks;
+    for (std::string line; std::getline(file, line);) {
+        if (line != "```yaml") continue;
+        for (blocks.emplace_back(); std::getline(file, line) && line != "```";) blocks.back() += line + "\n";
+    }
+    ASSERT_GE(blocks.size(), 3U);
+    for (std::size_t k = 1; k < blocks.size(); ++k) {
+        if (!blocks[k].starts_with("springs:") && !blocks[k].starts_with("stops:")) continue;
+        SCOPED_TRACE(blocks[k]);
+        std::string text = blocks[0];
+        std::istringstream lines(blocks[k]);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.empty() || line[0] == ' ') continue;  // not the head of a section
+            const std::string head = "\n" + line.substr(0, line.find(':') + 1);
+            if (const auto begin = text.find(head); begin != std::string::npos)
+                text.erase(begin, text.find("\n\n", begin) - begin);
+        }
+        support::Folder folder;
+        folder.write("mount.csv", "displacement [m], force [N]\n0, 0\n0.001, 1000\n0.002, 4000\n");
+        EXPECT_NO_THROW(read_scene(folder.write("scene.yaml", text + "\n" + blocks[k])));
+    }
 }
 
 // ---- Units.
@@ -671,7 +699,7 @@ TEST(File, ThatCannotBeReadIsNamed) {
     EXPECT_EQ(complaint_about("no/such/scene.yaml"), "no/such/scene.yaml: no such file");
     EXPECT_EQ(complaint_about(""), ": no such file");
     const std::string directory = fs::path(testing::TempDir()).string();
-    EXPECT_EQ(complaint_about(directory), directory + ": a directory; a scene is one file");
+    EXPECT_EQ(complaint_about(directory), directory + ": a directory; a file is needed");
     const std::string too_long(5000, 'a');
     EXPECT_EQ(complaint_about(too_long), too_long + ": cannot be read");
 }

@@ -39,24 +39,46 @@ struct SceneNumbers {
 };
 
 inline void add_load(SceneNumbers& n, const Load& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
-        n.add(load.name + ".at", force->at);
-        n.add(load.name + ".f", force->f);
-    } else {
-        const auto& moment = std::get<DeadMoment>(load.kind);
-        n.add(load.name + ".body", moment.body);
-        n.add(load.name + ".m", moment.m);
+    std::visit(
+        [&](const auto& l) {
+            if constexpr (requires { l.at; }) n.add(load.name + ".at", l.at);
+            if constexpr (requires { l.body; }) n.add(load.name + ".body", l.body);
+            if constexpr (requires { l.f; }) n.add(load.name + ".f", l.f);
+            if constexpr (requires { l.m; }) n.add(load.name + ".m", l.m);
+            if constexpr (requires { l.f_local; }) n.add(load.name + ".f_local", l.f_local);
+            if constexpr (requires { l.m_local; }) n.add(load.name + ".m_local", l.m_local);
+        },
+        load.kind);
+}
+
+inline void add_law(SceneNumbers& n, const std::string& name, const ScalarLaw& law) {
+    if (const auto* linear = std::get_if<LinearRate>(&law)) {
+        n.add(name, linear->k);
+        return;
     }
+    const auto& curve = std::get<Curve>(law);
+    for (std::size_t k = 0; k < curve.knots.size(); ++k)
+        n.add(fmt::format("{}.x_{}", name, k), curve.knots[k]);
+    for (std::size_t k = 0; k < curve.pieces.size(); ++k)
+        for (std::size_t c = 0; c < 4; ++c) n.add(fmt::format("{}.c_{}{}", name, k, c), curve.pieces[k][c]);
+    n.add(name + ".known_outside", curve.known_outside);
 }
 
 inline void add_elastic(SceneNumbers& n, const ElasticKind& kind) {
     if (const auto* spring = std::get_if<AxialSpring>(&kind)) {
         n.add("i", spring->i), n.add("j", spring->j);
-        n.add("k", std::get<LinearRate>(spring->law).k), n.add("free_length", spring->free_length);
+        add_law(n, "k", spring->law), n.add("free_length", spring->free_length);
     } else {
         const auto& bushing = std::get<Bushing>(kind);
         n.add("i", bushing.i), n.add("j", bushing.j);
-        n.add("K", std::get<LinearStiffness>(bushing.law).K), n.add("preload", bushing.preload);
+        if (const auto* linear = std::get_if<LinearStiffness>(&bushing.law)) n.add("K", linear->K);
+        if (const auto* axes = std::get_if<PerAxis>(&bushing.law))
+            for (std::size_t k = 0; k < 6; ++k) add_law(n, fmt::format("k_{}", k), axes->axis[k]);
+        n.add("preload", bushing.preload), n.add("undeformed", bushing.undeformed);
+        n.add("frame", static_cast<double>(bushing.formulation.frame));
+        n.add("angles", static_cast<double>(bushing.formulation.angles));
+        n.add("conjugate", bushing.formulation.conjugate);
+        n.add("offset_moment", bushing.formulation.offset_moment);
     }
 }
 

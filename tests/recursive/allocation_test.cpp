@@ -9,6 +9,7 @@
 #include "recursive/series/expand.hpp"
 #include "recursive/settle.hpp"
 #include "recursive/solve.hpp"
+#include "tests/recursive/elements.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -28,9 +29,43 @@ void* malloc(std::size_t size) {
 namespace elastocheck::recursive {
 namespace {
 
+// A stop in parallel with every spring, every bushing another formulation with curves for a third of its axes, and
+// a load that follows.
+Scene with_curves(Scene scene) {
+    Random random;
+    const auto formulations = every_formulation();
+    std::size_t k = 0;
+    for (auto& elastic : std::vector<Elastic>(scene.elastics))
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
+            AxialSpring bumper = *spring;
+            bumper.law = stop(0.01, 2e4);
+            scene.elastics.push_back({elastic.name + "_stop", bumper});
+        }
+    for (auto& elastic : scene.elastics)
+        if (auto* bushing = std::get_if<Bushing>(&elastic.kind)) {
+            const Matrix6<double> K = std::get<LinearStiffness>(bushing->law).K;
+            PerAxis law;
+            for (std::size_t a = 0; a < 6; ++a) {
+                const double rate = K(static_cast<int>(a), static_cast<int>(a));
+                law.axis[a] = LinearRate{rate};
+                if (a % 3 == 0)
+                    law.axis[a] =
+                        Curve{{0, 1}, {{0, rate, 0, 0}, {0, rate, rate, 0}, {2 * rate, 3 * rate, 0, 0}}};
+            }
+            bushing->law = law;
+            bushing->formulation = formulations[k++ % formulations.size()];
+        }
+    return scene;
+}
+
 TEST(Allocation, NoStepOfAnyMethodAllocates) {
-    for (const char* name : {"mcpherson", "mcpherson_preload", "bushing_pair", "two_spring_arch"}) {
-        const Model model = compile(support::scene(name));
+    std::vector<std::pair<std::string, Scene>> scenes;
+    for (const char* name :
+         {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "two_spring_arch"})
+        scenes.emplace_back(name, support::scene(name));
+    scenes.emplace_back("chrono_mcpherson with curves", with_curves(support::scene("chrono_mcpherson")));
+    for (const auto& [name, scene] : scenes) {
+        const Model model = compile(scene);
         for (const auto& method : methods) {
             if (!has_steps(method)) continue;
             const auto count = [&](int steps) {
@@ -49,7 +84,7 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
 }
 
 TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         March<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);

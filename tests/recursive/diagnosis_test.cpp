@@ -24,7 +24,7 @@ Scene bar(const std::string& rest) {
 }
 
 TEST(Diagnosis, CountsThePapersMcPhersonAs18Coordinates9Constraints27Unknowns) {
-    const auto d = diagnose(compile(support::scene("mcpherson")));
+    const auto d = diagnose(compile(support::scene("chrono_mcpherson")));
     EXPECT_EQ(d.coordinates, 18);
     EXPECT_EQ(d.rows, 9);
     EXPECT_EQ(d.coordinates + d.rows, 27);
@@ -34,7 +34,7 @@ TEST(Diagnosis, CountsThePapersMcPhersonAs18Coordinates9Constraints27Unknowns) {
 }
 
 TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
-    const auto d = diagnose(compile(support::scene("mcpherson")));
+    const auto d = diagnose(compile(support::scene("chrono_mcpherson")));
     ASSERT_EQ(d.idle.size(), 1u);
     EXPECT_EQ(d.idle[0].description,
               "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'");
@@ -42,7 +42,7 @@ TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
 
 TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
     for (const double factor : {1e-9, 1e-3, 1.0, 1e3, 1e6, 1e9}) {
-        Scene scene = support::scene("mcpherson");
+        Scene scene = support::scene("chrono_mcpherson");
         for (auto& elastic : scene.elastics) {
             if (elastic.name != "K3_arm_front") continue;  // one stiff or soft element among ordinary ones
             std::get<LinearStiffness>(std::get<Bushing>(elastic.kind).law).K *= factor;
@@ -104,7 +104,7 @@ TEST(Diagnosis, OnlyJointsThatShareADependencyAreUndetermined) {
     const auto d = diagnose(model);
     EXPECT_EQ(d.determined, (std::vector<bool>{false, false, true, true}));
     EXPECT_EQ(d.redundant_sets, (std::vector<std::vector<int>>{{0, 1}}));
-    EXPECT_EQ(diagnose(compile(support::scene("mcpherson"))).redundant_sets.size(), 0u);
+    EXPECT_EQ(diagnose(compile(support::scene("chrono_mcpherson"))).redundant_sets.size(), 0u);
 }
 
 TEST(Diagnosis, ASoftDirectionIsNotIdleInATurnedFrame) {
@@ -150,7 +150,7 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
 }
 
 TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {
-    const Scene scene = support::scene("mcpherson");
+    const Scene scene = support::scene("chrono_mcpherson");
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
     for (const auto& other : {support::moved(scene, R, {30, -20, 10}), support::reversed(scene),
                               support::mirrored(scene), support::with_body_axes(scene, {R, R.conjugate()})}) {

@@ -152,7 +152,7 @@ Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, doubl
 }
 
 TEST(Driver, TravelAndLoadLeadTheMcPhersonToTheSameStates) {
-    const Scene scene = support::scene("mcpherson");
+    const Scene scene = support::scene("chrono_mcpherson");
     const Model loaded = compile(scene);
     for (const auto& branch : loaded.branches) {
         const auto by_load = run({loaded, branch}, adaptive(1e-9), 4);
@@ -256,7 +256,7 @@ TEST(Driver, PreloadPullsABushingBackByItsRate) {
 
 TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
     // A pinned bar whose rod is drawn too short, a jack that begins 30 mm up: every method begins there.
-    const Scene scene = support::scene("mcpherson");
+    const Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
     const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
                            scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;

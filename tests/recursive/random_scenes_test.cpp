@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "models/compile.hpp"
 #include "recursive/solve.hpp"
@@ -123,6 +124,7 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
     constexpr int scenes = 200;  // of a thousand 846 are judged, adaptive declines 1 and series 2 of them
     int judged = 0;
     std::map<std::string, int> declined;
+    std::set<int> unsolved;  // by either
     std::string which;
     for (int number = 0; number < scenes; ++number) {
         const Model model = compile(random_scene(number));
@@ -158,6 +160,7 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
             const auto& path = paths[name];
             if (path.outcome != Outcome::converged) {
                 ++declined[name];
+                unsolved.insert(number);
                 which += fmt::format("\n{} {}: {}", number, name, path.detail);
                 continue;
             }
@@ -167,7 +170,8 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
                     << number << " " << name << " at " << loads[k];
         }
     }
-    EXPECT_LE(declined["adaptive"] + declined["series"], judged / 100) << which;
+    // The equilibrium leg has a second way to settle, to states that no path from the drawing leads to.
+    EXPECT_LE(static_cast<int>(unsolved.size()), judged / 100) << which;
     RecordProperty("judged", judged);
     RecordProperty("adaptive declined", declined["adaptive"]);
     RecordProperty("series declined", declined["series"]);

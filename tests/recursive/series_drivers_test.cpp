@@ -79,7 +79,7 @@ double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
 }
 
 Scene mcpherson_on_a_jack(Branch& branch) {
-    Scene scene = support::scene("mcpherson");
+    Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
     const Eigen::Vector3d centre =
         scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
@@ -134,7 +134,7 @@ TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
     const Walked jack = walked(mcpherson_on_a_jack(branch), branch);
     const Path by_travel = follow(jack.model, jack.branch);
     ASSERT_EQ(by_travel.outcome, Outcome::converged) << by_travel.detail;
-    const Model loaded = compile(support::scene("mcpherson"));
+    const Model loaded = compile(support::scene("chrono_mcpherson"));
     const Path by_load = follow(loaded, loaded.branches[0]);
     double force = 0, work = 0, before = 0;
     const auto sampled = sample(jack.model, by_travel, jack.branch, 200);
@@ -303,7 +303,7 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
 
 TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
     for (const double longer : {-0.03, 0.02}) {
-        Scene scene = support::scene("mcpherson");
+        Scene scene = support::scene("chrono_mcpherson");
         for (auto& joint : scene.joints)
             if (auto* rod = std::get_if<Distance>(&joint.kind)) rod->length += longer;
         const Walked w = walked(scene, scene.branches[0]);
@@ -366,7 +366,7 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
 // ---- One analysis for all.
 
 TEST(Analysis, ServesBranchesAndThreadsAlike) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const Analysis analysis = analyse(model);
     std::vector<Path> shared(4);
     std::vector<std::thread> threads;
@@ -381,7 +381,7 @@ TEST(Analysis, ServesBranchesAndThreadsAlike) {
 }
 
 TEST(Analysis, OfAnotherModelIsRefused) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     EXPECT_THROW(follow(model, model.branches[0], {}, analyse(compile(support::scene("pinned_bar")))),
                  std::invalid_argument);
 }
@@ -426,14 +426,14 @@ Coverage coverage(const Model& model, Random& random) {
 
 TEST(Pattern, HoldsAllThatIsNotZero) {
     Random random;
-    for (const auto& name : support::scene_names())
+    for (const auto& name : support::small_scene_names())
         EXPECT_EQ(coverage(compile(support::scene(name)), random).missed, 0) << name;
 }
 
 TEST(Pattern, OfASuspensionIsAtMostATwentiethMoreThanThat) {
     // Not so of planar mechanisms, whose third dimension it does not know to be empty.
     Random random;
-    for (const char* name : {"mcpherson", "mcpherson_preload", "mcpherson_travel"}) {
+    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "chrono_mcpherson_travel"}) {
         const Coverage c = coverage(compile(support::scene(name)), random);
         EXPECT_LE(c.held, 1.05 * c.met) << name;
     }

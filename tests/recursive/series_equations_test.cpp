@@ -5,6 +5,7 @@
 
 #include "recursive/assembly.hpp"
 #include "recursive/series/expand.hpp"
+#include "recursive/series/pieces.hpp"
 #include "tests/recursive/random.hpp"
 
 namespace elastocheck::recursive::series {
@@ -38,6 +39,12 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
     for (auto& value : e.Phi_d) value = random(-0.1, 0.1);
     begin(e, c.q, lambda, load[0]);
     evaluate(e, {0, Pass::known});
+    std::vector<Followed> curves = curves_of(c.model);
+    for (auto& curve : curves) {
+        find_piece(e, curve);
+        follow_on(curve, e);
+    }
+    evaluate(e, {0, Pass::known});
     Matrix<double> x = Matrix<double>::Zero(n + m, p + 1), left(n + m, p + 1);
     x.col(0).tail(m) = lambda;
     left.col(0) << e.G, e.Phi;
@@ -62,6 +69,7 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
             set_inputs<double>(c.model, c.branch, drawn, a[0], 0, inputs);
         else
             set_inputs<double>(c.model, c.branch, drawn, 1, a[0], inputs);
+        for (const auto& curve : curves) follow_on(curve, inputs);
         constraint_force<double>(c.model, inputs, q, at.tail(m), f, Phi);
         elastic_force<double>(c.model, inputs, q, part);
         f += part;
@@ -151,6 +159,98 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
         preload.direction.tail<3>() = random.vector(50);
         c.branch.drivers.push_back({preload, random(), random()});
         expect_same(c, random, fmt::format("twisted mount between {} and {}", i, j));
+    }
+}
+
+// Three knots, four pieces of any kind: the equations know no more of them than that each is a polynomial.
+Curve curve(Random& random, double size, double force) {
+    Curve f;
+    for (int k = 0; k < 3; ++k) f.knots.push_back(size * (k - 1 + random(-0.3, 0.3)));
+    for (int k = 0; k < 4; ++k) {
+        f.pieces.emplace_back();
+        double unit = force;
+        for (auto& c : f.pieces.back()) {
+            c = unit * random();
+            unit /= size;
+        }
+    }
+    f.pieces.front()[2] = f.pieces.front()[3] = f.pieces.back()[2] = f.pieces.back()[3] = 0;
+    return f;
+}
+Bushing any_bushing(BodyId i, BodyId j, double angle, const State<double>& q, Random& random) {
+    Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}};
+    e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
+    e.undeformed = Vector6<double>::NullaryExpr([&] { return random(-0.3, 0.3); });
+    e.j.A_local = q[j].p.conjugate() * q[i].p * e.i.A_local * exponential<double>(angle * random.unit());
+    return e;
+}
+
+TEST(SeriesEquations, HoldForASpringOnAnyPieceOfACurve) {
+    Random random;
+    for (const auto& [i, j] : sides)
+        for (int trial = 0; trial < 20; ++trial) {
+            Case c = anywhere(random);
+            const AxialSpring e{
+                {i, random.vector()}, {j, random.vector()}, curve(random, 0.5, 1e4), random(0.1, 3)};
+            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local)).norm() < 1)
+                continue;
+            c.model.elastics.push_back({"spring", e});
+            c.branch.drivers.push_back({FreeLength{0}, random(), random()});
+            expect_same(c, random, fmt::format("curve between {} and {}", i, j));
+        }
+}
+
+TEST(SeriesEquations, HoldForEveryFormulationOfABushing) {
+    Random random;
+    using Frame = Formulation::Frame;
+    using Angles = Formulation::Angles;
+    int formulations = 0;
+    for (const Frame frame : {Frame::on_i, Frame::middle})
+        for (const Angles angles : {Angles::rotation_vector, Angles::cardan, Angles::projected})
+            for (const bool conjugate : {true, false})
+                for (const bool offset_moment : {true, false}) {
+                    if (!conjugate && frame != Frame::on_i) continue;
+                    ++formulations;
+                    for (const auto& [i, j] : sides)
+                        for (const double angle : {0.0, 1e-6, 0.3, 0.9}) {
+                            Case c = anywhere(random);
+                            Bushing e = any_bushing(i, j, angle, c.q, random);
+                            e.formulation = {frame, angles, conjugate, offset_moment};
+                            c.model.elastics.push_back({"bushing", e});
+                            Preload preload{0, Vector6<double>::Zero()};
+                            for (auto& value : preload.direction) value = random(-500, 500);
+                            c.branch.drivers.push_back({preload, random(), random()});
+                            const std::string what = fmt::format(
+                                "frame {}, angles {}, conjugate {}, offset moment {}: {} to {} at {} rad",
+                                static_cast<int>(frame), static_cast<int>(angles), conjugate, offset_moment,
+                                i, j, angle);
+                            expect_same(c, random, what);
+                            PerAxis law;
+                            for (auto& axis : law.axis) axis = curve(random, 0.5, 1e3);
+                            law.axis[1] = LinearRate{3e5};
+                            law.axis[4] = LinearRate{70};
+                            std::get<Bushing>(c.model.elastics[0].kind).law = law;
+                            expect_same(c, random, what + " on curves");
+                            for (int k = 3; k < 6; ++k) law.axis[static_cast<std::size_t>(k)] = LinearRate{0};
+                            std::get<Bushing>(c.model.elastics[0].kind).law = law;
+                            std::get<Bushing>(c.model.elastics[0].kind).preload.tail<3>().setZero();
+                            c.branch.drivers.clear();
+                            expect_same(c, random, what + " without moments");
+                        }
+                }
+    EXPECT_EQ(formulations, 18);  // 2 frames, 3 angles, 2 offsets; on i also not conjugate
+}
+
+TEST(SeriesEquations, HoldForFollowers) {
+    Random random;
+    for (BodyId body = 0; body < bodies; ++body) {
+        Case c = anywhere(random);
+        const Load force{"force", FollowerForce{{body, random.vector()}, random.vector(1e3)}},
+            moment{"moment", FollowerMoment{body, random.vector(1e3)}};
+        c.model.static_loads = {force, moment};
+        for (const auto& load : {force, moment, force})
+            c.branch.drivers.push_back({load, random(), random()});
+        expect_same(c, random, fmt::format("followers on {}", body));
     }
 }
 

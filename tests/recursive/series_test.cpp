@@ -75,7 +75,7 @@ TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
 
 TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
     // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as h².
-    for (const char* name : {"mcpherson", "mcpherson_preload", "bushing_pair", "pendulum"}) {
+    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "pendulum"}) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
         const Path path = follow(model, branch);
@@ -119,12 +119,12 @@ double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
 
 TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
     std::mt19937 random(3);
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             std::vector<double> loads;
             for (int k = 0; k <= 301; ++k) loads.push_back(branch.to * k / 301);
             std::uniform_real_distribution<double> between(0, branch.to);
-            if (name == "mcpherson")
+            if (name == "chrono_mcpherson")
                 for (int k = 0; k < 1000; ++k) loads.push_back(between(random));
             std::ranges::sort(loads, {}, [](double a) { return std::abs(a); });
             const auto reference = reference::equilibrium::solve(model, branch, loads);
@@ -149,7 +149,7 @@ TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
 }
 
 TEST(Series, EveryExpansionHoldsInTheFullEquationsOfAllLegs) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const auto path = recursive::solve(model, branch, {.method = *find_method("series")});
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -165,7 +165,7 @@ TEST(Series, EveryExpansionHoldsInTheFullEquationsOfAllLegs) {
 }
 
 TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const Branch& branch = model.branches[0];
     const Path exact = follow(model, branch, {.order = 24});
     for (const int p : {2, 4, 6, 8, 10}) {
@@ -184,7 +184,7 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
 TEST(Series, OrderOneIsTheTangent) {
     // Its first coefficient is the step that `tangent` takes: displacement, and the rotation's axis and angle
     // to first order.
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         const Path path = follow(model, branch);
         Branch little = branch;
@@ -205,7 +205,7 @@ TEST(Series, OrderOneIsTheTangent) {
 }
 
 TEST(Series, RatesAreTheDerivativesOfWhatItEvaluates) {
-    for (const char* name : {"mcpherson", "pendulum", "mcpherson_preload"}) {
+    for (const char* name : {"chrono_mcpherson", "pendulum", "chrono_mcpherson_preload"}) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
         const Path path = follow(model, branch);
@@ -289,7 +289,7 @@ TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
 }
 
 TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
-    for (const char* name : {"mcpherson", "pinned_bar", "pendulum", "mcpherson_preload"}) {
+    for (const char* name : {"chrono_mcpherson", "pinned_bar", "pendulum", "chrono_mcpherson_preload"}) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const Path by_load = follow(model, branch), by_arc = follow(model, branch, {.arc_length = true});
             ASSERT_EQ(by_arc.outcome, Outcome::converged) << by_arc.detail;
@@ -307,7 +307,7 @@ TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
 }
 
 TEST(Series, KeepsTheToleranceItIsTold) {
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const Path exact = follow(model, branch, {.order = 20});
             for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10})
@@ -330,7 +330,7 @@ TEST(Series, KeepsTheToleranceItIsTold) {
 }
 
 TEST(Series, SampledLoadsAreThoseOfOtherLegsToTheLastBit) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     for (const auto& branch : model.branches)
         for (const int points : {7, 20, 301}) {
             const auto sampled = sample(model, follow(model, branch), branch, points);
@@ -341,7 +341,7 @@ TEST(Series, SampledLoadsAreThoseOfOtherLegsToTheLastBit) {
 }
 
 TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
-    const Model model = compile(support::scene("mcpherson"));
+    const Model model = compile(support::scene("chrono_mcpherson"));
     const Path path = follow(model, model.branches[0], {.order = 2, .expansions = 5});
     EXPECT_EQ(path.outcome, Outcome::iteration_limit);
     EXPECT_EQ(path.expansions.size(), 5u);
@@ -354,7 +354,7 @@ TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
 TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
     // The second pass, linear in x_k, against the matrix
     // it is solved with: G_k with x_k in place must vanish.
-    for (const auto& name : support::scene_names()) {
+    for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         March<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);

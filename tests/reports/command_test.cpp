@@ -24,7 +24,7 @@ Said elastocheck_says(const std::string& arguments) {
 }
 
 TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
-    const Said said = elastocheck_says("inspect " + scenes + "/mcpherson.yaml");
+    const Said said = elastocheck_says("inspect " + scenes + "/chrono_mcpherson.yaml");
     EXPECT_EQ(said.code, 0);
     for (const char* part :
          {"coordinates           18", "constraints            9", "unknowns              27",
@@ -84,7 +84,7 @@ TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
 
 TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const Folder folder;
-    const std::string scene = scenes + "/mcpherson.yaml", rates = (folder.path / "rates.csv").string();
+    const std::string scene = scenes + "/chrono_mcpherson.yaml", rates = (folder.path / "rates.csv").string();
     const Said solved = elastocheck_says("solve " + scene + " --method series --steps 10 --rates " + rates);
     EXPECT_EQ(solved.code, 0) << solved.err;
     EXPECT_EQ(std::ranges::count(solved.out, '\n'), 1 + 2 * 11);
@@ -145,7 +145,7 @@ TEST(Command, OptionsOfAnotherMethodAreRefused) {
 
 TEST(Command, CompareWritesTheTableAndTheResult) {
     const Folder folder;
-    const Said said = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 20 -o " +
+    const Said said = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 20 -o " +
                                        (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
@@ -153,7 +153,7 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
                              "recursive    converged", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (Kang 2004, section 3)");
+    EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (generic vehicle of Project Chrono)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
     EXPECT_TRUE(curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
     EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,N,")) << curves.substr(0, 300);
@@ -176,7 +176,7 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
 TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
     // The mount's sideways preload turning with the strut: in equilibrium, but no minimum of the energy.
     const Folder folder;
-    std::string scene = text_of(scenes + "/mcpherson_preload.yaml");
+    std::string scene = text_of(scenes + "/chrono_mcpherson_preload.yaml");
     scene.replace(scene.find("bodies: [ground, strut], at: strut_top"), 38,
                   "bodies: [strut, ground], at: strut_top");
     const auto preload = scene.find("preload: [", scene.find("K2_strut_mount"));

@@ -15,7 +15,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 struct Made {
-    Scene scene = support::scene("mcpherson");
+    Scene scene = support::scene("chrono_mcpherson");
     Model model = compile(scene);
     compare::Comparison comparison;
 

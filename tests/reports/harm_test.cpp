@@ -148,12 +148,12 @@ TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
         EXPECT_EQ(said.code, 2) << arguments << said.err;
         EXPECT_TRUE(contains(said.err, "--steps")) << said.err;
     }
-    const Said said = in(folder, "compare --steps 1000000 " + scenes + "/mcpherson.yaml");
+    const Said said = in(folder, "compare --steps 1000000 " + scenes + "/chrono_mcpherson.yaml");
     EXPECT_EQ(said.code, 2) << said.err;
     EXPECT_TRUE(contains(said.err, "points on 2 branches, by 3 of the legs, would take about")) << said.err;
     EXPECT_TRUE(contains(said.err, "steps a branch")) << said.err;
     // A scene that asks for it itself.
-    std::string text = text_of(scenes + "/mcpherson.yaml");
+    std::string text = text_of(scenes + "/chrono_mcpherson.yaml");
     for (auto at = text.find("steps: 300"); at != text.npos; at = text.find("steps: 300", at + 1))
         text.replace(at, 10, "steps: 1000000");
     for (const char* command : {"compare s.yaml", "report s.yaml -o out", "gate s.yaml"}) {

@@ -20,7 +20,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 struct Solved {
-    Model model = compile(support::scene("mcpherson"));
+    Model model = compile(support::scene("chrono_mcpherson"));
     compare::Comparison comparison;
     Solved() {
         compare::Options options;
@@ -177,7 +177,7 @@ TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
 
 // A scene out of balance settles before it travels; a measurement counts from where it is drawn.
 TEST(Measurement, TravelCountsFromTheDesignPosition) {
-    Scene heavy = support::scene("mcpherson");
+    Scene heavy = support::scene("chrono_mcpherson");
     heavy.static_loads = {std::get<Load>(heavy.branches[0].drivers.at(0).what)};
     std::get<DeadForce>(heavy.static_loads.at(0).kind).f *= 500;
     const Model model = compile(heavy);
@@ -201,7 +201,7 @@ TEST(Measurement, TravelCountsFromTheDesignPosition) {
 
 // Newtons say nothing of a branch that goes by millimetres.
 TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
-    const Model model = compile(support::scene("mcpherson_travel"));
+    const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
     options.recursion.steps = 8;
     const auto comparison = compare::compare(model, options);

@@ -67,10 +67,10 @@ TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
     const Contents a = contents_of(folder.path / "a"), b = contents_of(folder.path / "b");
     ASSERT_EQ(a.size(), b.size());
     for (const auto& [name, text] : a) EXPECT_EQ(text, b.at(name)) << name;
-    for (const char* name :
-         {"report.html", "report.md", "result.json", "curves.csv", "files.txt",
-          "figures/mcpherson-toe-jounce-and-rebound.svg", "figures/mcpherson-toe-jounce-and-rebound.gp",
-          "figures/mcpherson-toe-jounce-and-rebound.csv"})
+    for (const char* name : {"report.html", "report.md", "result.json", "curves.csv", "files.txt",
+                             "figures/chrono-mcpherson-toe-jounce-and-rebound.svg",
+                             "figures/chrono-mcpherson-toe-jounce-and-rebound.gp",
+                             "figures/chrono-mcpherson-toe-jounce-and-rebound.csv"})
         EXPECT_TRUE(a.contains(name)) << name;
 }
 
@@ -176,10 +176,10 @@ TEST(Report, SeveralScenesBeginWithASummaryOfTheirVerdicts) {
         const auto at = md.find("| " + name + " |");
         return at == md.npos ? "" : md.substr(at, md.find('\n', at) - at);
     };
-    EXPECT_TRUE(contains(row("McPherson strut (Kang 2004, section 3)"), "| conclusive |"))
+    EXPECT_TRUE(contains(row("McPherson strut (generic vehicle of Project Chrono)"), "| conclusive |"))
         << md.substr(0, 1500);
-    EXPECT_FALSE(contains(row("McPherson strut (Kang 2004, section 3)"), "–"))
-        << row("McPherson strut (Kang 2004, section 3)");
+    EXPECT_FALSE(contains(row("McPherson strut (generic vehicle of Project Chrono)"), "–"))
+        << row("McPherson strut (generic vehicle of Project Chrono)");
     EXPECT_TRUE(contains(row("second"), "| inconclusive |")) << row("second");
 }
 

@@ -7,6 +7,6 @@
 namespace elastocheck::reports {
 
 // As a reader of result.json has it: NaN is null. Made once per scene.
-const nlohmann::ordered_json& sample_result(const std::string& scene = "mcpherson");
+const nlohmann::ordered_json& sample_result(const std::string& scene = "chrono_mcpherson");
 
 }  // namespace elastocheck::reports

@@ -167,7 +167,7 @@ TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
 
 // Both ends of a branch that is walked both ways, and the force where the travel is given.
 TEST(Verdict, TellsTheWheelRateOfEveryEnd) {
-    const json result = sample_result("mcpherson_travel");
+    const json result = sample_result("chrono_mcpherson_travel");
     const std::string text = said(result);
     for (const char* end : {"at the end of travel at −80\u00a0mm", "at the end of travel at 80\u00a0mm",
                             "at the end of braking", "at the end of load"})

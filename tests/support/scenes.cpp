@@ -1,9 +1,14 @@
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <stdexcept>
 
+#include "models/curve.hpp"
+#include "models/overloaded.hpp"
 #include "models/reader/scene_file.hpp"
+#include "tests/support/folder.hpp"
 
 namespace elastocheck::support {
 namespace {
@@ -47,6 +52,26 @@ void for_each_load(Scene& scene, F&& f) {
             if (auto* load = std::get_if<Load>(&driver.what)) f(load->kind);
 }
 
+// What is written in metres and newtons, in millimetres and kilonewtons: "N·m/deg" is a thousand times a thousandth.
+double in_mm_and_kN(const std::string& unit) {
+    if (unit == "m/s²") return 1;  // gravity is, whatever the units
+    const auto power = [&](std::string_view part) {
+        double factor = 1;
+        while (!part.empty()) {
+            const auto dot = part.find("·");
+            std::string_view one = part.substr(0, dot);
+            part = dot == part.npos ? "" : part.substr(dot + std::string_view("·").size());
+            const double base = one.starts_with('m') ? 1e3 : one.starts_with('N') ? 1e-3 : 1;
+            const int n = one.ends_with("²") ? 2 : one.ends_with("³") ? 3 : one.ends_with("⁴") ? 4 : 1;
+            factor *= std::pow(base, n);
+        }
+        return factor;
+    };
+    const auto slash = unit.find('/');
+    const std::string_view whole = unit;
+    return power(whole.substr(0, slash)) / (slash == unit.npos ? 1 : power(whole.substr(slash + 1)));
+}
+
 }  // namespace
 
 Scene scene(const std::string& name) {
@@ -61,6 +86,46 @@ std::vector<std::string> scene_names() {
     return names;
 }
 
+std::vector<std::string> small_scene_names() {
+    std::vector<std::string> names = scene_names();
+    std::erase_if(names, [](const std::string& name) { return scene(name).trim.has_value(); });
+    return names;
+}
+
+std::vector<std::string> family_names() {
+    std::vector<std::string> names = scene_names();
+    std::erase_if(names, [](const std::string& name) { return !scene(name).trim.has_value(); });
+    return names;
+}
+
+bool has_potential(const Scene& original) {
+    Scene scene = original;
+    bool has = true;
+    for_each_load(scene, [&](LoadKind& load) {
+        has &= std::holds_alternative<DeadForce>(load) || std::holds_alternative<DeadMoment>(load);
+    });
+    for (const auto& elastic : scene.elastics)
+        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind))
+            has &= has_energy(bushing->formulation);
+    return has;
+}
+
+Scene in_millimetres_and_kilonewtons(const std::string& name) {
+    const std::filesystem::path file = std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml";
+    const std::string units = "units: {length: m, angle: deg, force: N}";
+    std::string text = text_of(file);
+    const auto at = text.find(units);
+    if (at == text.npos) throw std::logic_error(name + " is not in m, deg and N");
+    text.replace(at, units.size(), "units: {length: mm, angle: deg, force: kN}");
+    std::vector<Setting> settings;
+    for (const auto& number : read_scene(file).numbers) {
+        const bool is_ratio = number.path.find(".drive.") != std::string::npos;  // of one length to another
+        const double factor = is_ratio ? 1 : in_mm_and_kN(number.unit);
+        if (factor != 1) settings.push_back(setting(number.path, factor * number.value));
+    }
+    return parse_scene(text, file, settings);
+}
+
 Scene moved(const Scene& original, const Quaterniond& R, const Vector3d& t) {
     Scene scene = original;
     for (auto& point : scene.hardpoints) point.position = R * point.position + t;
@@ -72,10 +137,8 @@ Scene moved(const Scene& original, const Quaterniond& R, const Vector3d& t) {
         if constexpr (requires { feature.A_local; }) feature.A_local = R * feature.A_local;
     });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load))
-            force->f = R * force->f;
-        else
-            std::get<DeadMoment>(load).m = R * std::get<DeadMoment>(load).m;
+        if (auto* force = std::get_if<DeadForce>(&load)) force->f = R * force->f;
+        if (auto* moment = std::get_if<DeadMoment>(&load)) moment->m = R * moment->m;
     });
     return scene;
 }
@@ -97,8 +160,14 @@ Scene with_body_axes(const Scene& original, const std::vector<Quaterniond>& turn
         if constexpr (requires { feature.A_local; }) feature.A_local = turn(feature.body) * feature.A_local;
     });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load))
-            force->at.s_local = turn(force->at.body) * force->at.s_local;
+        std::visit(overloaded{[&](DeadForce& l) { l.at.s_local = turn(l.at.body) * l.at.s_local; },
+                              [](DeadMoment&) {},
+                              [&](FollowerForce& l) {
+                                  l.at.s_local = turn(l.at.body) * l.at.s_local;
+                                  l.f_local = turn(l.at.body) * l.f_local;
+                              },
+                              [&](FollowerMoment& l) { l.m_local = turn(l.body) * l.m_local; }},
+                   load);
     });
     for (auto& wheel : scene.wheels)
         for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local})
@@ -125,18 +194,26 @@ Scene mirrored(const Scene& original) {
     axial << 1, -1, 1, -1, 1, -1;
     for (auto& elastic : scene.elastics)
         if (auto* bushing = std::get_if<Bushing>(&elastic.kind)) {
-            auto& law = std::get<LinearStiffness>(bushing->law);
-            law.K = axial.asDiagonal() * law.K * axial.asDiagonal();
+            std::visit(overloaded{[&](LinearStiffness& law) {
+                                      law.K = axial.asDiagonal() * law.K * axial.asDiagonal();
+                                  },
+                                  [&](PerAxis& law) {
+                                      for (int k = 0; k < 6; ++k) {
+                                          auto& u = law.axis[static_cast<std::size_t>(k)];
+                                          if (axial[k] < 0) u = elastocheck::reversed(u);
+                                      }
+                                  }},
+                       bushing->law);
             bushing->preload = axial.asDiagonal() * bushing->preload;
+            bushing->undeformed = axial.asDiagonal() * bushing->undeformed;
         }
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load)) {
-            force->f = S * force->f;
-            force->at.s_local = S * force->at.s_local;
-        } else {
-            auto& moment = std::get<DeadMoment>(load);
-            moment.m = -(S * moment.m);
-        }
+        std::visit(
+            overloaded{[&](DeadForce& l) { l.f = S * l.f, l.at.s_local = S * l.at.s_local; },
+                       [&](DeadMoment& l) { l.m = -(S * l.m); },
+                       [&](FollowerForce& l) { l.f_local = S * l.f_local, l.at.s_local = S * l.at.s_local; },
+                       [&](FollowerMoment& l) { l.m_local = -(S * l.m_local); }},
+            load);
     });
     for (auto& branch : scene.branches)
         for (auto& driver : branch.drivers)
@@ -157,10 +234,14 @@ Scene reversed(const Scene& original) {
     };
     for_each_feature(scene, [&](auto& feature) { renumber(feature.body); });
     for_each_load(scene, [&](LoadKind& load) {
-        if (auto* force = std::get_if<DeadForce>(&load))
-            renumber(force->at.body);
-        else
-            renumber(std::get<DeadMoment>(load).body);
+        std::visit(
+            [&](auto& l) {
+                if constexpr (requires { l.at; })
+                    renumber(l.at.body);
+                else
+                    renumber(l.body);
+            },
+            load);
     });
     for (auto& wheel : scene.wheels) renumber(wheel.body);
     const auto other_end = [](int& k, std::size_t count) { k = static_cast<int>(count) - 1 - k; };

@@ -12,6 +12,17 @@ namespace elastocheck::support {
 Scene scene(const std::string& name);
 std::vector<std::string> scene_names();
 
+// Of these the ones that ask for no trim: closed forms and studies, small enough to be solved in every way there is.
+std::vector<std::string> small_scene_names();
+// And the ones that do: a suspension as it stands under a car. tests/compare/scenes_test.cpp solves them.
+std::vector<std::string> family_names();
+
+// Whether every load and formulation has an energy, so that the energy leg answers.
+bool has_potential(const Scene& scene);
+
+// models/scenes/NAME.yaml, which is in m and N, with its numbers rewritten and read in mm and kN.
+Scene in_millimetres_and_kilonewtons(const std::string& name);
+
 // Everything turned by R and moved by t: ground frame, bodies, loads.
 Scene moved(const Scene& scene, const Eigen::Quaterniond& R, const Eigen::Vector3d& t);
 

@@ -79,7 +79,7 @@ std::vector<double> loads(const Branch& branch) {
 
 TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
     for (const recursive::Method& method : recursive::methods)
-        for (const char* scene : {"mcpherson_preload.yaml", "two_spring_arch.yaml"}) {
+        for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"}) {
             SCOPED_TRACE(std::string(method.name));
             expect_undisturbed(scene, [&](const Model& model, const Branch& branch) {
                 return recursive::solve(model, branch, {.method = method, .steps = 20});
@@ -88,14 +88,14 @@ TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
 }
 
 TEST(Threads, TheEquilibriumLegIsUndisturbed) {
-    for (const char* scene : {"mcpherson_preload.yaml", "two_spring_arch.yaml"})
+    for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             return reference::equilibrium::solve(model, branch, loads(branch));
         });
 }
 
 TEST(Threads, TheEnergyLegIsUndisturbed) {
-    for (const char* scene : {"mcpherson_preload.yaml", "two_spring_arch.yaml"})
+    for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             return reference::energy::solve(model, branch, loads(branch));
         });

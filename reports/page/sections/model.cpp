@@ -1,6 +1,8 @@
 // The model as compiled.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
@@ -32,6 +34,17 @@ std::optional<Section> model_section(const Field& scene) {
     row("condition number, equilibrated (raw)",
         fmt::format("{} ({})", number(model["condition_equilibrated"].number(), 2),
                     number(model["condition_raw"].number(), 2)));
+    if (const auto trim = scene.find("trim")) {
+        for (const auto& a : (*trim)["adjusted"].items())
+            row("trimmed", fmt::format("{}: {} {}, {}", a["name"].text(), number(a["by"].number(), 5),
+                                       a["unit"].text(), a["makes"].text()));
+        for (const auto& c : (*trim)["conditions"].items())
+            row("trimmed until",
+                fmt::format("{} = {} {}, met to {}, confirmed by {} to {}", c["name"].text(),
+                            number(c["asked"].number()), c["unit"].text(),
+                            number(std::abs(c["missed"].number()), 2), (*trim)["confirmed_by"].text(),
+                            number(std::abs(c["missed_by_confirming_leg"].number()), 2)));
+    }
     section.tables.push_back(std::move(table));
     if (scene.find("channels")) {
         Table outputs{.caption = "Outputs, and what they mean",

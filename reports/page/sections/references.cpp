@@ -75,9 +75,14 @@ std::optional<Section> references_section(const Field& scene) {
             if (times) cells.push_back(number(1e3 * leg["seconds"].number()));
             work.rows.push_back(cells);
         }
+        if (const auto why = branch.find("no_energy"); why && !why->text().empty())
+            section.words["no_energy"].push_back(
+                {{"branch", name}, {"second", branch["second_reference"].text()}, {"why", why->text()}});
         for (const auto& reason : branch["inconclusive"].texts())
             section.words["reasons"].push_back(fmt::format("{}: {}", name, reason));
     }
+    if (section.words.contains("no_energy"))
+        agreement.caption = "How far the second reference is from the equilibrium leg, worst over the branch";
     judged.folded = true;
     section.tables = {agreement, judged, work};
     return section;

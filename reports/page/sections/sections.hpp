@@ -23,6 +23,7 @@ std::optional<Section> attribution_section(const Field& scene);
 std::optional<Section> orders_section(const Field& scene);
 std::optional<Section> arithmetic_section(const Field& scene);
 std::optional<Section> references_section(const Field& scene);
+std::optional<Section> formulations_section(const Field& scene);
 std::optional<Section> model_section(const Field& scene);
 
 std::vector<Section> sections_of(const Field& scene);

@@ -214,7 +214,7 @@ TEST(Drivers, WorkOfTheJackIsTheEnergyStored) {
 // ---- The McPherson strut on a jack under its wheel.
 
 Scene jacked_strut() {
-    Scene scene = scene_named("mcpherson");
+    Scene scene = scene_named("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
     const Point centre{wheel.body, wheel.centre_local};
     const Pose& design = scene.bodies[static_cast<std::size_t>(wheel.body)].design;
@@ -337,7 +337,7 @@ TEST(Drivers, HeldHeightsAreReachedBySettling) {
 
 // A tie rod 3 mm longer than it is drawn is the same as one that a branch has lengthened by 3 mm.
 TEST(Drivers, ADistanceMayHaveAnotherLengthThanDrawn) {
-    const Scene scene = scene_named("mcpherson");
+    const Scene scene = scene_named("chrono_mcpherson");
     for (const double longer : {0.003, -0.02}) {
         const auto driven =
             walk(scene, driven_branch("toe", {motion_of(scene, "tie_rod", 1)}, longer), {0, longer});
@@ -496,6 +496,31 @@ TEST(Drivers, AnAngleTheOtherWayRoundIsNoGoodState) {
     EXPECT_LE(largest(residuals(model, model.branches[0], state)), 1e-12);
     state.poses[0].p = Eigen::AngleAxisd(1 + pi, Z);
     EXPECT_EQ(residuals(model, model.branches[0], state).direction, 2);
+}
+
+// An angle that is held far from where it is drawn is reached by turning there: at more than a right angle the other way
+// round satisfies Φ = 0 as well and lies nearer.
+TEST(Drivers, AnAngleHeldBeyondARightAngleSettlesTheRightWayRound) {
+    for (const double held : {-2.9, -2.0, -0.5, 0.5, 1.7, 2.5, 3.0}) {
+        Scene scene;
+        scene.bodies = {{"arm", {}}};
+        scene.joints = {{"pin", Revolute{{0}, {ground}, {0, Z}, {ground, Z}}},
+                        {"crank", Angle{{0, X}, {ground, X}, {ground, Y}, 0}}};
+        scene.probes = {{"tip", {0, X}}};
+        scene.branches = {{.name = "turn",
+                           .to = 0.1,
+                           .steps = 1,
+                           .unit = ParameterUnit::radian,
+                           .drivers = {{Motion{1}, held, 1}}}};
+        const double values[] = {0, 0.1};
+        const auto path = solve(scene, 0, values);
+        ASSERT_EQ(path.outcome, Outcome::converged) << held << ": " << path.detail;
+        for (const auto& state : path.points) {
+            const double angle = held + state.load;
+            const Eigen::Vector3d expected(std::cos(angle), std::sin(angle), 0);
+            EXPECT_LE((position(state, scene.probes[0].at) - expected).norm(), 1e-12) << held;
+        }
+    }
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ Scene changed(Scene scene, const Change& change) {
 // McPherson, made harder: preload, a moment, coupling in a bushing, a static load.
 std::vector<Scene> scenes() {
     Random random;
-    Scene hard = scene_named("mcpherson");
+    Scene hard = scene_named("chrono_mcpherson");
     auto& coil = std::get<AxialSpring>(hard.elastics[0].kind);
     coil.free_length += 3000 / rate_of(coil);
     auto& bushing = std::get<Bushing>(hard.elastics[2].kind);
@@ -132,7 +132,7 @@ std::vector<Scene> scenes() {
              {FreeLength{0}, 0.002, 0.01},
              {Preload{3, random.many(6, 20)}, 1, 2},
              {Load{"brake", DeadForce{{wheel.body, Vector3d(0, 0.05, 0)}, {-1, 0.2, 0}}}, 300, 200}}}};
-    return {scene_named("mcpherson"),
+    return {scene_named("chrono_mcpherson"),
             hard,
             driven,
             scene_named("pinned_bar"),

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 const Vector3d strut_axis = Vector3d(0.04097493, 0.0682915, -0.3305464).normalized();
 
 struct Solved {
-    Scene scene = scene_named("mcpherson");
+    Scene scene = scene_named("chrono_mcpherson");
     Model model = compile(scene);
     std::vector<EquilibriumPath> paths;
 };
@@ -140,7 +140,7 @@ TEST(McPherson, WarmStartedPointsAreCheap) {
 
 // With preload and the wheel's own weight the scene settles elsewhere, then goes on from there.
 TEST(McPherson, SettlesUnderPreloadAndWeight) {
-    Scene scene = scene_named("mcpherson");
+    Scene scene = scene_named("chrono_mcpherson");
     auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
     coil.free_length += 3500 / rate_of(coil);
     scene.static_loads = {{"weight", DeadForce{{scene.wheels[0].body, Vector3d::Zero()}, {0, 0, 2500}}}};

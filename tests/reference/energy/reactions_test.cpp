@@ -90,7 +90,7 @@ TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
 // The wheel of the McPherson strut by the method of sections:
 // four joints, the coil and the load, forces and moments.
 TEST(Reactions, WheelIsInBalance) {
-    const Scene scene = scene_named("mcpherson");
+    const Scene scene = scene_named("chrono_mcpherson");
     const Model model = compile(scene);
     const auto path = solve(model, model.branches[0], sweep(model.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -119,7 +119,7 @@ TEST(Reactions, WheelIsInBalance) {
 // A two-force member pulls along itself and transmits no moment;
 // the ball joint and the in-plane constraint likewise.
 TEST(Reactions, MembersCarryWhatTheirKindCanCarry) {
-    const Model model = compile(scene_named("mcpherson"));
+    const Model model = compile(scene_named("chrono_mcpherson"));
     const auto path = solve(model, model.branches[1], sweep(model.branches[1]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {

@@ -25,7 +25,7 @@ TEST(Residuals, AMicronewtonIsSeenAtTenKilonewtons) {
     pair.state.load += 1e-6;
     EXPECT_NEAR(pair.now().force, 1e-6, 1e-8);
 
-    Judged strut = solved_at("mcpherson", 1e4);
+    Judged strut = solved_at("chrono_mcpherson", 1e4);
     const double before = strut.now().force;
     EXPECT_LE(before, 5e-8);
     strut.state.load += 1e-6;
@@ -33,11 +33,11 @@ TEST(Residuals, AMicronewtonIsSeenAtTenKilonewtons) {
 }
 
 TEST(Residuals, AMovedBodyIsSeenAsAConstraintError) {
-    Judged strut = solved_at("mcpherson", 1000);
+    Judged strut = solved_at("chrono_mcpherson", 1000);
     EXPECT_LE(strut.now().length, 1e-15);
     strut.state.poses[0].r.y() += 1e-6;  // the arm, off its ball joint
     EXPECT_NEAR(strut.now().length, 1e-6, 1e-12);
-    strut = solved_at("mcpherson", 1000);
+    strut = solved_at("chrono_mcpherson", 1000);
     strut.state.poses[2].p =
         Eigen::AngleAxisd(1e-6, Vector3d::UnitX()) * strut.state.poses[2].p;  // out of its tube
     EXPECT_GE(strut.now().direction, 1e-7);
@@ -61,7 +61,7 @@ TEST(Residuals, AMovedBodyIsSeenAsAnImbalance) {
 }
 
 TEST(Residuals, StatesThatAreNoNumbersAreNoGoodStates) {
-    const Judged good = solved_at("mcpherson", 1000);
+    const Judged good = solved_at("chrono_mcpherson", 1000);
     for (std::size_t b = 0; b < 3; ++b) {
         Judged bad = good;
         bad.state.poses[b].r.z() = NAN;
@@ -80,13 +80,13 @@ TEST(Residuals, StatesThatAreNoNumbersAreNoGoodStates) {
 }
 
 TEST(Residuals, OrientationMustBeAUnitQuaternion) {
-    Judged strut = solved_at("mcpherson", 1000);
+    Judged strut = solved_at("chrono_mcpherson", 1000);
     strut.state.poses[1].p.coeffs() *= 1.001;
     EXPECT_NEAR(strut.now().direction, 1e-3, 1e-12);
 }
 
 TEST(Residuals, SignOfAQuaternionDoesNotMatter) {
-    Judged strut = solved_at("mcpherson", 1000);
+    Judged strut = solved_at("chrono_mcpherson", 1000);
     const double before = strut.now().force;
     for (auto& pose : strut.state.poses) pose.p.coeffs() *= -1;
     EXPECT_LE(strut.now().force, before + 1e-9);

@@ -114,5 +114,41 @@ TEST(Stability, AColumnBucklesAtItsLoadInAnyNumberOfSteps) {
     }
 }
 
+// A block driven up by z, free sideways on k_y, pressed upon by a strut under it with the force of a curve: nothing, then
+// within 15 mm so much that it gives way sideways, and less again for good. No slope announces it and two equilibria on
+// either side are both minima; that the second is not as stiff as foreseen tells.
+TEST(Stability, AStretchThatNothingAnnouncesIsSeenByWhatItLeavesBehind) {
+    const double k_y = 1e4, l = 0.5;
+    const Vector3d X = Vector3d::UnitX(), Y = Vector3d::UnitY(), Z = Vector3d::UnitZ();
+    for (const double at : {0.02, 0.035, 0.05, 0.08, 0.083, 0.12, 0.15}) {
+        const double most = -1.2 * k_y * (l + at), left = -0.7 * k_y * (l + at);
+        Curve press{{at, at + 0.003, at + 0.012, at + 0.015}, {{{0, 0, 0, 0}}}};
+        press.pieces.push_back({0, most / 0.003, 0, 0});
+        press.pieces.push_back({most, 0, 0, 0});
+        press.pieces.push_back({most, (left - most) / 0.003, 0, 0});
+        press.pieces.push_back({left, 0, 0, 0});
+        Scene scene;
+        scene.bodies = {{"block", {}}};
+        scene.joints = {{"plane", InPlane{{0}, {ground}, {ground, X}, 0}},
+                        {"no_roll", Perpendicular{{0, Y}, {ground, Z}}},
+                        {"no_pitch", Perpendicular{{0, Z}, {ground, X}}},
+                        {"no_yaw", Perpendicular{{0, X}, {ground, Y}}},
+                        {"jack", InPlane{{0}, {ground}, {ground, Z}, 0}, true}};
+        Bushing side{Marker{ground}, Marker{0}, LinearStiffness{}};
+        stiffness_of(side)(1, 1) = k_y;
+        scene.elastics = {{"side", side}, {"strut", AxialSpring{{ground, {0, 0, -l}}, {0}, press, l}}};
+        scene.probes = {{"block", {0}}};
+        scene.branches = {{.name = "travel",
+                           .to = 0.2,
+                           .steps = 1,
+                           .unit = ParameterUnit::metre,
+                           .drivers = {{Motion{4}, 0, 1}}}};
+        const double values[] = {0, 0.2};
+        const auto path = solve(scene, 0, values);
+        EXPECT_EQ(path.outcome, Outcome::branch_lost) << at << ": " << path.detail;
+        EXPECT_EQ(path.points.size(), 1u) << at;
+    }
+}
+
 }  // namespace
 }  // namespace elastocheck::reference::energy

@@ -27,6 +27,22 @@ inline const Matrix6& stiffness_of(const Bushing& bushing) {
     return std::get<LinearStiffness>(bushing.law).K;
 }
 
+// f = 0 up to `clearance`, then `rate` (x - clearance): a stop that closes with growing x.
+inline Curve stop(double clearance, double rate) { return {{clearance}, {{{0, 0, 0, 0}, {0, rate, 0, 0}}}}; }
+
+// Through (x, f) with these slopes between them, straight on outside: continuous with its slope.
+inline Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
+                     const std::vector<double>& slope) {
+    Curve curve{x, {{f[0], slope[0], 0, 0}}};
+    for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+        const double h = x[k + 1] - x[k], mean = (f[k + 1] - f[k]) / h;
+        curve.pieces.push_back({f[k], slope[k], (3 * mean - 2 * slope[k] - slope[k + 1]) / h,
+                                (slope[k] + slope[k + 1] - 2 * mean) / (h * h)});
+    }
+    curve.pieces.push_back({f.back(), slope.back(), 0, 0});
+    return curve;
+}
+
 // A branch that its loads alone drive, from 0 to `to`.
 inline Branch load_branch(const std::string& name, const std::vector<Load>& loads, double to, int steps) {
     Branch branch{.name = name, .to = to, .steps = steps, .drivers = {}};
@@ -80,6 +96,29 @@ struct Random {
         return Eigen::Quaterniond(Eigen::AngleAxisd((*this)(0, largest_angle), unit()));
     }
     Pose pose() { return {vector(), rotation()}; }
+    // Rising or falling as it likes, `knots` of them over about [-1, 1], its slope continuous.
+    Curve smooth_curve(int knots) {
+        std::vector<double> x, f, slope;
+        for (int k = 0; k < knots; ++k) {
+            x.push_back(-1 + 2.0 * k / std::max(1, knots - 1) + 0.3 / knots * (*this)());
+            f.push_back((*this)(-3, 3));
+            slope.push_back((*this)(-3, 3));
+        }
+        return hermite(x, f, slope);
+    }
+    // The same with slopes that jump at the knots.
+    Curve kinked_curve(int knots) {
+        Curve curve = smooth_curve(knots);
+        for (int k = 0; k + 1 < knots; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            const double h = curve.knots[i + 1] - curve.knots[i], bend = 5 * (*this)();
+            curve.pieces[i + 1][1] += bend * h;  // bend · t (h - t), zero at both ends
+            curve.pieces[i + 1][2] -= bend;
+        }
+        curve.pieces.front()[1] = (*this)(-3, 3);
+        curve.pieces.back()[1] = (*this)(-3, 3);
+        return curve;
+    }
 };
 
 }  // namespace elastocheck::reference::energy

@@ -151,7 +151,7 @@ TEST(EquilibriumDrivers, ABarThatGrowsLiftsByItsTriangle) {
 // ---- Travel and load are two ways to the same states
 
 TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
-    Scene s = with_jack(scene("mcpherson"));
+    Scene s = with_jack(scene("chrono_mcpherson"));
     const Vector3d design = position_in(s, s.wheels[0]);
     for (const double to : {3000., -3000.}) {
         s.branches = {
@@ -219,7 +219,7 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
         return state.reactions[joint(solved.model, "jack")].force[2];
     };
     for (const double to : {0.09, -0.1}) {
-        Scene s = with_jack(scene("mcpherson"));
+        Scene s = with_jack(scene("chrono_mcpherson"));
         s.branches = {branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, to, 30,
                                 ParameterUnit::metre)};
         expect_work_is_energy(s, to, jack_force, nothing);
@@ -231,7 +231,7 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
     expect_work_is_energy(arch, -0.2, jack_force, nothing);
 
     // ∂U/∂ℓ₀ = -u'(ℓ - ℓ₀)
-    Scene coil = scene("mcpherson");
+    Scene coil = scene("chrono_mcpherson");
     coil.branches = {branch_of("trim", {{FreeLength{0}, 0, 1}}, 0.03, 1, ParameterUnit::metre)};
     coil.static_loads = {
         {"weight", DeadForce{{coil.wheels[0].body, coil.wheels[0].centre_local}, {0, 0, 0}}}};
@@ -309,9 +309,9 @@ TEST(EquilibriumDrivers, APreloadIsAnsweredByItsBushing) {
 // ---- Steering, and drivers together
 
 TEST(EquilibriumDrivers, AHeldRackIsGround) {
-    const Scene held = with_rack(scene("mcpherson"));
+    const Scene held = with_rack(scene("chrono_mcpherson"));
     const auto with = solved_at(held, 0, {1000, 3000}),
-               without = solved_at(scene("mcpherson"), 0, {1000, 3000});
+               without = solved_at(scene("chrono_mcpherson"), 0, {1000, 3000});
     ASSERT_EQ(with.path.outcome, Outcome::converged) << with.path.detail;
     Worst worst;
     for (std::size_t n = 0; n < 2; ++n)
@@ -328,7 +328,7 @@ TEST(EquilibriumDrivers, AHeldRackIsGround) {
 TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
     for (const double height : {-0.05, 0., 0.05})
         for (const double to : {0.03, -0.03}) {
-            Scene s = with_jack(with_rack(scene("mcpherson")));
+            Scene s = with_jack(with_rack(scene("chrono_mcpherson")));
             const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
             s.branches = {branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, height, 0}}, to, 12,
                                     ParameterUnit::metre)};
@@ -363,7 +363,7 @@ TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
 TEST(EquilibriumDrivers, TheOrderOfDriversDoesNotMatter) {
     const Vector3d brake(-1500, 0, 0);
     const auto build = [&](bool steer_last) {
-        Scene s = with_jack(with_rack(scene("mcpherson")));
+        Scene s = with_jack(with_rack(scene("chrono_mcpherson")));
         s.static_loads.push_back(
             {"side", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 400, 0}}});
         const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
@@ -496,7 +496,7 @@ TEST(EquilibriumDrivers, MessagesSpeakOfTheParameterInItsUnit) {
 }
 
 TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
-    Scene s = with_jack(scene("mcpherson"));
+    Scene s = with_jack(scene("chrono_mcpherson"));
     s.branches.push_back(branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, 0.1, 1,
                                    ParameterUnit::metre));  // else there would be no jack in the model
     const Model model = compile(s);
@@ -507,7 +507,7 @@ TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
     state.reactions.resize(model.joints.size());
     EXPECT_THROW(residuals(model, model.branches[0], state), std::invalid_argument);
 
-    const Model plain = compile(scene("mcpherson"));
+    const Model plain = compile(scene("chrono_mcpherson"));
     const auto with = [&](Driven what) { return branch_of("b", {{what, 0, 1}}, 1, 1); };
     Branch two_ways = plain.branches[0];
     two_ways.from = -1;
@@ -528,7 +528,7 @@ TEST(EquilibriumDrivers, ADriverThatIsNotFiniteNeverConverges) {
 }
 
 TEST(EquilibriumDrivers, SolvesOfOneModelAtTheSameTimeAgreeToTheBit) {
-    const Scene s = with_rack(scene("mcpherson"));
+    const Scene s = with_rack(scene("chrono_mcpherson"));
     const Model model = compile(s);
     const std::vector<double> points = equally(3000, 10);
     std::vector<EquilibriumPath> paths(4);

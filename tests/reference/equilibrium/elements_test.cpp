@@ -23,11 +23,11 @@ double slope(const Move& U, double h) {
     return (45 * (U(h) - U(-h)) - 9 * (U(2 * h) - U(-2 * h)) + (U(3 * h) - U(-3 * h))) / (60 * h);
 }
 
-Interaction<double> on_i_of(const AxialSpring& spring, const Frame<double>& i, const Frame<double>& j) {
-    return interaction(spring, spring.free_length, i, j);
+OnBoth<double> on_both(const AxialSpring& spring, const Frame<double>& i, const Frame<double>& j) {
+    return interaction(spring, spring.free_length, by_itself, i, j);
 }
-Interaction<double> on_i_of(const Bushing& b, const Frame<double>& i, const Frame<double>& j) {
-    return interaction(b, b.preload, true, i, j);
+OnBoth<double> on_both(const Bushing& b, const Frame<double>& i, const Frame<double>& j) {
+    return interaction(b, b.preload, true, all_by_themselves, i, j);
 }
 
 // The wrench of the element on both bodies, (force; moment about the origin) each, against the gradient,
@@ -35,10 +35,10 @@ Interaction<double> on_i_of(const Bushing& b, const Frame<double>& i, const Fram
 template <class Element>
 double deviation_from_gradient(const Element& element, const Pose& i, const Pose& j) {
     const Frame<double> frame_i{i.r, i.p}, frame_j{j.r, j.p};
-    const auto on_i = on_i_of(element, frame_i, frame_j);
+    const auto on = on_both(element, frame_i, frame_j);
     Eigen::Matrix<double, 12, 1> wrench, gradient;
-    wrench << on_i.force, on_i.moment + (on_i.at - i.r).cross(on_i.force), -on_i.force,
-        -on_i.moment - (on_i.at - j.r).cross(on_i.force);
+    wrench << on.i.force, on.i.moment + (on.i.at - i.r).cross(on.i.force), on.j.force,
+        on.j.moment + (on.j.at - j.r).cross(on.j.force);
     for (int k = 0; k < 6; ++k) {
         gradient[k] = -slope([&](double h) { return energy(element, moved(i, k, h), j); }, 1e-3);
         gradient[6 + k] = -slope([&](double h) { return energy(element, i, moved(j, k, h)); }, 1e-3);
@@ -110,7 +110,8 @@ TEST(EquilibriumElements, HalfATurnIsNotANumber) {
 TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
     std::mt19937 random(4);
     Worst worst;
-    for (const auto& s : {rich_scene(), scene("mcpherson"), scene("pendulum"), scene("two_spring_arch")}) {
+    for (const auto& s :
+         {rich_scene(), scene("chrono_mcpherson"), scene("pendulum"), scene("two_spring_arch")}) {
         const Model model = compile(s);
         const std::vector<double> loads = {1000};
         const System system = make_system(model, model.branches[0], loads);

@@ -73,7 +73,7 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
 // Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a preload, a
 // free length.
 Scene driven_scene() {
-    Scene s = with_jack(with_rack(scene("mcpherson")));
+    Scene s = with_jack(with_rack(scene("chrono_mcpherson")));
     s.name = "driven";
     const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
     Vector6 preload;
@@ -89,7 +89,7 @@ Scene driven_scene() {
     return s;
 }
 
-std::vector<Scene> scenes() { return {scene("mcpherson"), rich_scene(), driven_scene()}; }
+std::vector<Scene> scenes() { return {scene("chrono_mcpherson"), rich_scene(), driven_scene()}; }
 
 TEST(EquilibriumInvariance, UnitOfLength) {
     for (const auto& s : scenes())

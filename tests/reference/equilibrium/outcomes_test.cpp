@@ -64,7 +64,7 @@ TEST(EquilibriumOutcome, ArchIsFollowedToWithinAHairOfItsLimit) {
 
 // There and back again, and out the other way, in one list.
 TEST(EquilibriumOutcome, ABranchMayBeVisitedInAnyOrder) {
-    const Model model = compile(scene("mcpherson"));
+    const Model model = compile(scene("chrono_mcpherson"));
     const std::vector<double> loads = {0, 1000, 1000, 3000, 0, -3000, 500};
     const auto path = solve(model, model.branches[0], loads);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -143,7 +143,7 @@ TEST(EquilibriumOutcome, ABushingWithoutRotationalRatesMayTurnFurther) {
 // ---- Idle modes
 
 TEST(EquilibriumOutcome, AnIdleStrutIsNoObstacle) {
-    const Model model = compile(scene("mcpherson"));
+    const Model model = compile(scene("chrono_mcpherson"));
     for (const auto& branch : model.branches) {
         const auto path = solve(model, branch, every_load(branch));
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -151,7 +151,7 @@ TEST(EquilibriumOutcome, AnIdleStrutIsNoObstacle) {
 }
 
 TEST(EquilibriumOutcome, ALoadedIdleStrutIsNamed) {
-    Scene s = scene("mcpherson");
+    Scene s = scene("chrono_mcpherson");
     for (const double moment : {1., 1e-3, 1e-6}) {
         s.branches[0].drivers = {driven_by({"spin", DeadMoment{2, {0, 0, moment}}})};
         const Model model = compile(s);
@@ -276,7 +276,7 @@ TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
             {"bar", [&](Scene& s) { std::get<Distance>(s.joints[2].kind).length = bad; }},
         };
         for (const auto& [place, spoil] : places) {
-            Scene s = scene("mcpherson");
+            Scene s = scene("chrono_mcpherson");
             spoil(s);
             const Model model = compile(s);
             const std::vector<double> loads = {0, 100, 200};
@@ -285,7 +285,7 @@ TEST(EquilibriumOutcome, ANumberThatIsNotFiniteNeverConverges) {
             EXPECT_TRUE(path.points.empty()) << place;
             EXPECT_FALSE(path.detail.empty()) << place;
         }
-        const Model model = compile(scene("mcpherson"));
+        const Model model = compile(scene("chrono_mcpherson"));
         const std::vector<double> loads = {0, bad, 200};
         const auto path = solve(model, model.branches[0], loads);
         EXPECT_EQ(path.outcome, Outcome::not_finite) << path.detail;
@@ -304,7 +304,7 @@ TEST(EquilibriumOutcome, TooFewIterationsAreReportedAsSuch) {
     Options options;
     options.iteration_limit = 1;
     options.halvings = 2;
-    const Model model = compile(scene("mcpherson"));
+    const Model model = compile(scene("chrono_mcpherson"));
     const std::vector<double> loads = {0, 500, 1000};
     const auto path = solve(model, model.branches[0], loads, options);
     EXPECT_EQ(path.outcome, Outcome::iteration_limit) << path.detail;
@@ -315,7 +315,7 @@ TEST(EquilibriumOutcome, AToleranceBelowRoundOffIsNotMetQuietly) {
     Options options;
     options.tolerance = 1e-19;
     options.halvings = 3;
-    const Model model = compile(scene("mcpherson"));
+    const Model model = compile(scene("chrono_mcpherson"));
     const std::vector<double> loads = {0, 500, 1000};
     const auto path = solve(model, model.branches[0], loads, options);
     EXPECT_EQ(path.outcome, Outcome::iteration_limit) << path.detail;
@@ -323,7 +323,7 @@ TEST(EquilibriumOutcome, AToleranceBelowRoundOffIsNotMetQuietly) {
 
 // Every rate of the suspension in turn from limp to rigid: converged and in balance, or an honest outcome.
 TEST(EquilibriumOutcome, ExtremeRatesGiveAnEquilibriumOrAnHonestOutcome) {
-    const Scene original = scene("mcpherson");
+    const Scene original = scene("chrono_mcpherson");
     int converged = 0, compared = 0;
     for (std::size_t e = 0; e < original.elastics.size(); ++e)
         for (double factor = 1e-9; factor < 1e10; factor *= 10) {

@@ -52,7 +52,7 @@ TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
     s.elastics = {{"mount", mount}};
     s.branches = {pull({1, p_bracket}, {0.36, 0.48, 0.8})};
     s.probes = {{"p", {1, p_bracket}}};
-    const Model model = compile(s);
+    const Model model = compile(s, Detail::everything);
     const auto state = solved(model, model.branches[0], 400);
     const Vector3d f = 400 * Vector3d(0.36, 0.48, 0.8);
     const Vector3d arm = position(state, {1, p_bracket}) - position(state, {0, at});
@@ -145,7 +145,7 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
                     driven_by({"m", DeadMoment{body, random_vector(random, 0.05)}}));
             }
             s.probes = {{"a", {0, at}}, {"b", {1, at}}};
-            const Model model = compile(s);
+            const Model model = compile(s, Detail::everything);
             ASSERT_EQ(constraint_rows(model), count) << s.name;
             std::vector<double> loads;
             for (int n = -10; n <= 10; ++n) loads.push_back(50 * n);
@@ -168,7 +168,7 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
 }
 
 TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffForHardlyMoreThanOneIterationAPoint) {
-    const Model model = compile(scene("mcpherson"));
+    const Model model = compile(scene("chrono_mcpherson"));
     for (const auto& branch : model.branches) {
         const auto loads = every_load(branch);
         ASSERT_EQ(loads.size(), 301u);

@@ -1,0 +1,67 @@
+#include "models/curve.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "models/overloaded.hpp"
+
+namespace elastocheck {
+namespace {
+
+using Cubic = std::array<double, 4>;  // c_0 + c_1 x + c_2 x² + c_3 x³
+
+// The cubic c about a, about a + h.
+Cubic shifted(const Cubic& c, double h) {
+    return {c[0] + h * (c[1] + h * (c[2] + h * c[3])), c[1] + h * (2 * c[2] + h * 3 * c[3]),
+            c[2] + 3 * h * c[3], c[3]};
+}
+// -f(-x) of a cubic in x.
+Cubic reversed(const Cubic& c) { return {-c[0], c[1], -c[2], c[3]}; }
+
+}  // namespace
+
+double force(const ScalarLaw& law, double x) {
+    const auto at = [&](const Curve& curve) {
+        const auto piece = std::ranges::upper_bound(curve.knots, x) - curve.knots.begin();
+        const Cubic& c = curve.pieces[static_cast<std::size_t>(piece)];
+        const double t = x - curve.knots[static_cast<std::size_t>(std::max<std::ptrdiff_t>(piece - 1, 0))];
+        return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+    };
+    return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; }, at}, law);
+}
+
+Curve reversed(const Curve& curve) {
+    const std::size_t n = curve.knots.size();
+    Curve result = curve;
+    std::ranges::transform(curve.knots, result.knots.rbegin(), [](double x) { return -x; });
+    result.pieces.front() = reversed(curve.pieces.back());
+    result.pieces.back() = reversed(curve.pieces.front());
+    // Between two knots a piece is told about the left one, which was the right one.
+    for (std::size_t k = 1; k < n; ++k)
+        result.pieces[n - k] = reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));
+    return result;
+}
+
+ScalarLaw reversed(const ScalarLaw& law) {
+    return std::visit(overloaded{[](const LinearRate& u) -> ScalarLaw { return u; },
+                                 [](const Curve& u) -> ScalarLaw { return reversed(u); }},
+                      law);
+}
+
+Bushing turned_round(const Bushing& bushing) {
+    Bushing result = bushing;
+    std::swap(result.i, result.j);
+    std::visit(overloaded{[](LinearStiffness&) {},
+                          [](PerAxis& u) {
+                              for (ScalarLaw& law : u.axis) law = reversed(law);
+                          }},
+               result.law);
+    result.preload = -bushing.preload;
+    result.undeformed = -bushing.undeformed;
+    using Frame = Formulation::Frame;
+    if (bushing.formulation.frame == Frame::on_i) result.formulation.frame = Frame::on_j;
+    if (bushing.formulation.frame == Frame::on_j) result.formulation.frame = Frame::on_i;
+    return result;
+}
+
+}  // namespace elastocheck

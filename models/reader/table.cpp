@@ -1,0 +1,120 @@
+#include "models/reader/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "models/reader/text_file.hpp"
+#include "models/reader/words.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_rows = 10'000;
+
+std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
+    const auto rows = at.items();
+    if (!at.is_list() || rows.size() < 2)
+        at.fail(fmt::format("expected at least two rows [deflection, force], found {}", at.found()));
+    if (rows.size() > most_rows)
+        at.fail(fmt::format("{} rows; a table has {} at most", rows.size(), most_rows));
+    std::vector<TablePoint> points;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        const auto cells = rows[n].items();
+        if (!rows[n].is_list() || cells.size() != 2)
+            rows[n].fail(fmt::format("row {}: expected two numbers, deflection and force, found {}", n + 1,
+                                     rows[n].found()));
+        const TablePoint point{units.deflection.si(cells[0].number(units.deflection.name)),
+                               units.force.si(cells[1].number(units.force.name))};
+        if (n > 0 && !(point.x > points.back().x))
+            cells[0].fail(fmt::format("row {}: deflection {} is not above that of the row before", n + 1,
+                                      cells[0].found()));
+        if (n > 0 && point.f < points.back().f)
+            cells[1].fail(
+                fmt::format("row {}: force {} is below that of the row before; it may stay, but not fall",
+                            n + 1, cells[1].found()));
+        points.push_back(point);
+    }
+    return points;
+}
+
+// ---- CSV: two numbers a line and a comma between them; empty lines and lines that begin with # say nothing, and the
+// first of the others may name the columns.
+
+std::string_view trimmed(std::string_view text) {
+    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+bool begins_with_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double ignored = 0;
+    return std::from_chars(text.data(), text.data() + text.size(), ignored).ec != std::errc::invalid_argument;
+}
+
+// The table as the scene would have it, with the lines of its own file.
+Value rows_of(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    Value table{.kind = Value::Kind::list};
+    bool is_first = true;
+    for (int line = 1; !text.empty(); ++line) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view rest = trimmed(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (rest.empty() || rest.starts_with('#')) continue;
+        Value row{.kind = Value::Kind::list, .line = line};
+        for (bool more = true; more;) {
+            const std::size_t comma = rest.find(',');
+            more = comma != std::string_view::npos;
+            const std::string cell(trimmed(rest.substr(0, comma)));
+            row.items.push_back({.kind = Value::Kind::scalar, .text = cell, .line = line});
+            if (more) rest.remove_prefix(comma + 1);
+        }
+        const auto is_number = [](const Value& cell) { return begins_with_number(cell.text); };
+        if (!std::exchange(is_first, false) || std::ranges::any_of(row.items, is_number))
+            table.items.push_back(std::move(row));
+    }
+    return table;
+}
+
+std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const Definitions& defs) {
+    const fs::path name = at.text("the name of a CSV file");
+    if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
+        at.fail(fmt::format("{} leads out of the scene's folder; allowed: a file in it, or in a folder below",
+                            at.found()));
+    if (!defs.folder) at.fail("read from beside the scene's file, which there is none of here; give a table");
+    const fs::path path = *defs.folder / name;
+    const TextFile file = read_text(path);
+    if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
+    if (file.text.size() > largest_text)
+        at.fail(fmt::format("{}: larger than 1 MiB, which no table is", at.found()));
+    if (!is_utf8(file.text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
+    const Value table = rows_of(file.text);
+    const std::string file_name = path.string();
+    std::vector<Number> not_of_the_scene;
+    return read_rows({&table, at.path, &file_name, &not_of_the_scene}, units);
+}
+
+}  // namespace
+
+LawUnits of_lengths(const Units& units) { return {units.length, units.force, units.rate}; }
+LawUnits of_angles(const Units& units) { return {units.angle, units.moment, units.rotational_rate}; }
+
+std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units, const Definitions& defs) {
+    const auto table = curve.optional("table"), file = curve.optional("file");
+    if (table && file) file->fail("given together with table; allowed: one of the two");
+    if (!table && !file) curve.fail("no points; allowed: table or file");
+    return table ? read_rows(*table, units) : read_file(*file, units, defs);
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,18 @@
+// Text files as they come, for the readers of scenes and tables.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace elastocheck::reader {
+
+inline constexpr std::size_t largest_text = 1 << 20;  // [bytes]
+
+struct TextFile {
+    std::string text;     // one byte more than the largest at most: for the reader to refuse
+    std::string trouble;  // why there is none: "no such file"; empty where there is
+};
+TextFile read_text(const std::filesystem::path& file);
+
+}  // namespace elastocheck::reader

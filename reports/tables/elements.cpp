@@ -1,0 +1,195 @@
+#include "reports/tables/elements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <numbers>
+
+#include "models/overloaded.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr std::array components{"x", "y", "z", "rx", "ry", "rz"};
+
+// A deformation and its rate as people read them.
+struct Scale {
+    double length;  // [m] or [rad] in one
+    const char* length_name;
+    double rate;  // [N/m] or [N·m/rad] in one
+    const char* rate_name;
+};
+constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angles{degree, "deg", 1 / degree, "N·m/deg"};
+
+std::string rate_words(double k, const Scale& s) { return fmt::format("{:.4g} {}", k / s.rate, s.rate_name); }
+
+bool is_free(const std::array<double, 4>& piece) {
+    return std::ranges::all_of(piece, [](double c) { return c == 0; });
+}
+
+std::string range_words(const Curve& curve, const Scale& s) {
+    return fmt::format("curve from {:.4g} to {:.4g} {}, {}", curve.knots.front() / s.length,
+                       curve.knots.back() / s.length, s.length_name,
+                       curve.known_outside ? "straight beyond" : "not known beyond");
+}
+
+// A spring without force on one side: it touches from a clearance on, counted from its free length.
+std::string spring_words(const ScalarLaw& law) {
+    return std::visit(
+        overloaded{
+            [](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
+            [](const Curve& u) {
+                const bool open_short = is_free(u.pieces.front()), open_long = is_free(u.pieces.back());
+                if (open_short == open_long) return "axial spring, " + range_words(u, lengths);
+                // Where the free side ends.
+                std::size_t n = 0;
+                while (n < u.knots.size() && is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
+                    ++n;
+                const double touches = open_short ? u.knots[n - 1] : u.knots[u.knots.size() - n];
+                const auto& piece = open_short ? u.pieces[n] : u.pieces[u.knots.size() - n];
+                const bool straight = piece[2] == 0 && piece[3] == 0;
+                return fmt::format(
+                    "stop, touches when {:.4g} mm {}, {}", 1e3 * std::abs(touches),
+                    open_short ? "longer" : "shorter",
+                    straight ? rate_words(std::abs(piece[1]), lengths) : range_words(u, lengths));
+            }},
+        law);
+}
+
+// The components that a law resists, and its curves among them.
+struct Resisted {
+    std::vector<std::size_t> all, curves;
+};
+Resisted resisted(const SpatialLaw& law) {
+    Resisted found;
+    const auto add = [&](std::size_t k, bool is_curve) {
+        found.all.push_back(k);
+        if (is_curve) found.curves.push_back(k);
+    };
+    std::visit(overloaded{[&](const LinearStiffness& u) {
+                              for (std::size_t k = 0; k < 6; ++k)
+                                  if (!u.K.row(static_cast<Eigen::Index>(k)).isZero(0)) add(k, false);
+                          },
+                          [&](const PerAxis& u) {
+                              for (std::size_t k = 0; k < 6; ++k)
+                                  std::visit(overloaded{[&](const LinearRate& l) {
+                                                            if (l.k != 0) add(k, false);
+                                                        },
+                                                        [&](const Curve& l) {
+                                                            if (!std::ranges::all_of(l.pieces, is_free))
+                                                                add(k, true);
+                                                        }},
+                                             u.axis[k]);
+                          }},
+               law);
+    return found;
+}
+
+std::string law_words(const SpatialLaw& law, std::size_t k, const Scale& s) {
+    return std::visit(overloaded{[&](const LinearStiffness& u) {
+                                     const auto i = static_cast<Eigen::Index>(k);
+                                     return rate_words(u.K(i, i), s);
+                                 },
+                                 [&](const PerAxis& u) {
+                                     return std::visit(
+                                         overloaded{[&](const LinearRate& l) { return rate_words(l.k, s); },
+                                                    [&](const Curve& l) { return range_words(l, s); }},
+                                         u.axis[k]);
+                                 }},
+                      law);
+}
+
+std::string formulation_words(const Formulation& f) {
+    std::string text;
+    const auto add = [&](bool differs, const char* words) {
+        if (differs) text += std::string(", ") + words;
+    };
+    add(f.frame == Formulation::Frame::on_j, "frame on j");
+    add(f.frame == Formulation::Frame::middle, "frame in the middle");
+    add(f.angles == Formulation::Angles::cardan, "Cardan angles");
+    add(f.angles == Formulation::Angles::projected, "projected angles");
+    add(!f.conjugate, "forces straight along its axes (no energy)");
+    add(!f.offset_moment, "without the moment of the offset (no energy)");
+    return text;
+}
+
+// As written, before compile() turned it round.
+Formulation written_formulation(const Scene& scene, const std::string& name, const Bushing& modelled) {
+    for (const auto& elastic : scene.elastics)
+        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind); bushing && elastic.name == name)
+            return bushing->formulation;
+    return modelled.formulation;
+}
+
+bool is_beam(const Elastic& elastic) {
+    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::middle &&
+           std::holds_alternative<LinearStiffness>(bushing->law);
+}
+
+std::string bushing_words(const Scene& scene, const Elastic& elastic, const Bushing& bushing) {
+    const Resisted axes = resisted(bushing.law);
+    if (elastic.only_where_driven && axes.all == std::vector<std::size_t>{2})
+        return fmt::format("tyre, {}, stands on the branches that drive its road",
+                           law_words(bushing.law, 2, lengths));
+    if (axes.all == std::vector<std::size_t>{5})
+        return "torsion spring, " + law_words(bushing.law, 5, angles);
+    std::string text = is_beam(elastic) ? "beam" : "bushing";
+    if (!is_beam(elastic)) text += formulation_words(written_formulation(scene, elastic.name, bushing));
+    for (const std::size_t k : axes.curves)
+        text += fmt::format(", {}: {}", components[k], law_words(bushing.law, k, k < 3 ? lengths : angles));
+    if (!bushing.undeformed.isZero(0)) text += ", undeformed elsewhere than drawn";
+    return text;
+}
+
+// "antiroll" and 3 of "antiroll.3"; 0 where there is no number.
+std::pair<std::string, int> stem(const std::string& name) {
+    const auto dot = name.rfind('.');
+    int number = 0;
+    if (dot == name.npos) return {name, 0};
+    const char *begin = name.data() + dot + 1, *end = name.data() + name.size();
+    if (std::from_chars(begin, end, number).ptr != end) return {name, 0};
+    return {name.substr(0, dot), number};
+}
+
+}  // namespace
+
+std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
+    const auto body = [&](BodyId b) {
+        return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
+    };
+    const auto ends = [](const Elastic& elastic) {
+        return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, elastic.kind);
+    };
+    std::vector<ElementLine> lines;
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const Elastic& elastic = model.elastics[k];
+        const auto [i, j] = ends(elastic);
+        std::size_t last = k;  // of a chain
+        const auto [name, number] = stem(elastic.name);
+        while (number > 0 && is_beam(elastic) && last + 1 < model.elastics.size() &&
+               is_beam(model.elastics[last + 1]) &&
+               stem(model.elastics[last + 1].name) ==
+                   std::pair{name, number + static_cast<int>(last + 1 - k)})
+            ++last;
+        if (last > k) {
+            const Elastic& end = model.elastics[last];
+            lines.push_back(
+                {fmt::format("{} ... {}", elastic.name, last - k + static_cast<std::size_t>(number)),
+                 body(i) + " - " + body(ends(end).second), fmt::format("beam in {} segments", last - k + 1)});
+            k = last;
+            continue;
+        }
+        lines.push_back(
+            {elastic.name, body(i) + " - " + body(j),
+             std::visit(overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
+                                   [&](const Bushing& e) { return bushing_words(scene, elastic, e); }},
+                        elastic.kind)});
+    }
+    return lines;
+}
+
+}  // namespace elastocheck::reports

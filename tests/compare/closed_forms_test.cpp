@@ -1,0 +1,591 @@
+// What is known by hand or from the books, from the text of a scene through every leg and the series.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "compare/compare.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/series/path.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/quadrature.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double no_curve =
+    1e-8;  // [mm] [deg] that the references are apart where no curve's knot is crossed
+constexpr double expansions = 1e-9;  // [mm] [deg] that the series is from the equilibrium leg
+
+// A scene in metres, radians and newtons, its branches walked by the series and both references, which agree.
+class Solved {
+  public:
+    // The series is told a truncation error [m]: its own, or less for chains of many bodies.
+    Solved(const std::string& text, const std::string& what, double told = recursive::Series{}.tolerance)
+        : model(compile(parse_scene(
+              "elastocheck: 1\nname: " + what + "\nunits: {length: m, angle: rad, force: N}\n" + text,
+              what))) {
+        Options options;
+        options.recursion.method = {"series", 0, recursive::Series{.tolerance = told}};
+        all = compare(model, options);
+        EXPECT_TRUE(all.conclusive()) << what;
+        for (const auto& branch : all.branches) {
+            for (const auto& why : branch.inconclusive.texts())
+                ADD_FAILURE() << what << " " << branch.branch << ": " << why;
+            for (const Pair* pair : {&branch.uncertainty, &branch.deviation}) {
+                const auto& read = pair->equal_parameter.channels;
+                if (read.size() != all.channels.size()) ADD_FAILURE() << what << ": not compared";
+                for (std::size_t c = 0; c < read.size(); ++c)
+                    if (all.channels[c].kinematic()) {
+                        EXPECT_LE(read[c].max, pair == &branch.deviation ? expansions : no_curve)
+                            << what << " " << branch.branch << " " << all.channels[c].name << " "
+                            << name(pair->b);
+                    }
+            }
+        }
+    }
+
+    // Of a leg along a branch; Leg::recursive is the series. In mm, deg, N, N·m.
+    std::vector<double> read(std::string_view branch, std::string_view channel,
+                             Leg leg = Leg::equilibrium) const {
+        return run(branch, leg).curve.channel(static_cast<std::size_t>(find_channel(all.channels, channel)));
+    }
+    double at_end(std::string_view branch, std::string_view channel, Leg leg = Leg::equilibrium) const {
+        return read(branch, channel, leg).back();
+    }
+    const LegRun& run(std::string_view branch, Leg leg) const {
+        for (const auto& b : all.branches)
+            if (b.branch == branch) return b.runs.at(static_cast<std::size_t>(leg));
+        throw std::logic_error("no branch " + std::string(branch));
+    }
+
+    Model model;
+    Comparison all;
+};
+
+// log₂ of how much smaller an error is with twice as many segments.
+double order(double coarse, double fine) { return std::log2(coarse / fine); }
+
+// ---- Beams.
+
+// A leaf of spring steel, 1 m long, 60 mm wide, 12 mm thick, clamped at the root; it bends in the plane xy.
+constexpr double E = 206e9, G = 79e9, L = 1, width = 0.060, thick = 0.012;
+constexpr double EI = E * width * thick * thick * thick / 12;  // 1780 N·m²
+std::string leaf(int segments) {
+    return fmt::format(
+        "points: {{root: [0, 0, 0], tip: [{}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
+        "beams: {{leaf: {{bodies: [ground, tip], through: [root, tip], segments: {}, E: {}, G: {}, up: z,\n"
+        "  A: {}, I_y: {}, I_z: {}, J: {}}}}}\nprobes: {{tip: {{on: tip, at: tip}}}}\n",
+        L, segments, E, G, width * thick, width * width * width * thick / 12,
+        width * thick * thick * thick / 12, width * thick * thick * thick / 3);
+}
+
+// Under a moment M at its tip the leaf has the curvature M/EI throughout. A chain of n turns at every segment by
+// θ = M L/(n EI) and stands on a circle as well, smaller by (θ/2)/tan(θ/2) = 1 - θ²/12 - ...: order 2 in n. Whether the
+// moment keeps its direction or follows the tip is one in the plane; the latter has no energy.
+TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
+    const double turn = 2 * pi;
+    for (const bool follows : {false, true}) {
+        std::vector<double> errors;
+        for (const int n : {4, 8, 16}) {
+            const Solved s(
+                leaf(n) + fmt::format("loads: {{roll: {{on: tip, moment: [0, 0, 1], follows: {}}}}}\n"
+                                      "branches: {{roll: {{load: roll, to: {}, steps: 8}}}}\n",
+                                      follows, turn * EI / L),
+                fmt::format("leaf of {} segments, {}", n, follows ? "follower" : "dead"), 1e-13);
+            EXPECT_EQ(s.all.branches[0].second, follows ? Leg::series : Leg::energy);
+            const auto x = s.read("roll", "tip_x"), y = s.read("roll", "tip_y"), z = s.read("roll", "tip_z");
+            ASSERT_EQ(x.size(), 9u) << n;
+            double error = 0;
+            for (std::size_t k = 1; k < x.size(); ++k) {
+                const double phi = turn * static_cast<double>(k) / 8, theta = phi / n, R = 1e3 * L / phi;
+                const double chain = R * (theta / 2) / std::tan(theta / 2);
+                EXPECT_NEAR(x[k], chain * std::sin(phi), 1e-8) << n << " " << phi;
+                EXPECT_NEAR(y[k], chain * (1 - std::cos(phi)), 1e-8) << n << " " << phi;
+                EXPECT_NEAR(z[k], 0, 1e-8) << n << " " << phi;
+                error = std::max(error, std::hypot(x[k] - R * std::sin(phi), y[k] - R * (1 - std::cos(phi))));
+            }
+            errors.push_back(error);
+        }
+        for (std::size_t k = 1; k < errors.size(); ++k)
+            EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.05) << errors[k - 1] << " to " << errors[k];
+    }
+}
+
+// A round rod is as soft across the plane of its circle as in it. A dead moment has no potential for finite rotations:
+// its stiffness is not symmetric, and the part that is has lost its sign before half a turn, though no other
+// equilibrium branches off: the tangent stays regular. The energy leg, which knows minima alone, ends there and says so;
+// the equilibrium leg and the series go round.
+TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
+    const int n = 8, steps = 16;
+    const double diameter = 0.022, EI_rod = E * pi * std::pow(diameter, 4) / 64;
+    const Model model = compile(parse_scene(
+        fmt::format("elastocheck: 1\nname: rod\nunits: {{length: m, angle: rad, force: N}}\n"
+                    "points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
+                    "beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, G: "
+                    "{3}, diameter: {4}}}}}\n"
+                    "probes: {{tip: {{on: tip, at: tip}}}}\nloads: {{roll: {{on: tip, moment: [0, 0, 1]}}}}\n"
+                    "branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}\n",
+                    L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
+        "rod.yaml"));
+    const auto ways = ways_of(model, model.branches[0]);
+    for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy}) {
+        const auto path = walk(ways, {.leg = leg});
+        if (leg == Leg::energy) {
+            EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+            EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
+            EXPECT_GT(path.points.size(), 4u);
+            EXPECT_LT(path.points.size(), 10u) << "by half a turn";
+        } else {
+            EXPECT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
+            ASSERT_EQ(path.points.size(), 17u) << name(leg);
+        }
+        for (const auto& point : path.points) {
+            const double phi = point.load * L / EI_rod, theta = phi / n;
+            if (phi == 0) continue;
+            const double R = L / phi * (theta / 2) / std::tan(theta / 2);
+            const Eigen::Vector3d tip(R * std::sin(phi), R * (1 - std::cos(phi)), 0);
+            const auto body = static_cast<std::size_t>(model.probes[0].at.body);
+            const double off = (point.poses[body].r - tip).norm();
+            EXPECT_LE(1e3 * off, 1e-8) << name(leg) << " " << phi;
+        }
+    }
+}
+
+// The elastica EI φ'' = -P cos φ under a dead force P across its root, in Legendre's integrals: with φ_L the slope of
+// the tip, k² = (1 + sin φ_L)/2 and sin ψ = 1/(k√2)
+//
+//   √(P/EI) L = F(k, π/2) - F(k, ψ)     x = √(EI/P) 2 k cos ψ     y = L - 2 √(EI/P) (E(k, π/2) - E(k, ψ))
+struct Tip {
+    double x, y;  // of L
+};
+Tip elastica(double alpha) {  // P L²/EI
+    const double root = std::sqrt(alpha), quarter = pi / 2;
+    const auto psi = [](double k) { return std::asin(std::min(1.0, 1 / (k * std::numbers::sqrt2))); };
+    double low = 1 / std::numbers::sqrt2, high = 1 - 1e-12;
+    for (int i = 0; i < 100; ++i) {
+        const double k = (low + high) / 2;
+        (std::ellint_1(k, quarter) - std::ellint_1(k, psi(k)) < root ? low : high) = k;
+    }
+    const double k = low;
+    return {2 * k * std::cos(psi(k)) / root,
+            1 - 2 / root * (std::ellint_2(k, quarter) - std::ellint_2(k, psi(k)))};
+}
+
+TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
+    EXPECT_NEAR(elastica(4).y, 0.66996, 1e-5);  // Mattiasson (1981)
+    EXPECT_NEAR(1 - elastica(4).x, 0.32894, 1e-5);
+    std::vector<double> errors;
+    for (const int n : {4, 8, 16}) {
+        const Solved s(leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
+                                             "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+                                             10 * EI / (L * L)),
+                       fmt::format("leaf of {} segments", n), 1e-13);
+        const auto x = s.read("push", "tip_x"), y = s.read("push", "tip_y");
+        ASSERT_EQ(x.size(), 6u) << n;
+        double error = 0;
+        for (std::size_t k = 1; k < x.size(); ++k) {
+            const Tip exact = elastica(2. * static_cast<double>(k));
+            error = std::max(error, std::hypot(x[k] - 1e3 * L * exact.x, y[k] - 1e3 * L * exact.y));
+        }
+        errors.push_back(error);
+    }
+    for (std::size_t k = 1; k < errors.size(); ++k)
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, k == 1 ? 0.3 : 0.15)
+            << errors[k - 1] << " to " << errors[k];
+    EXPECT_LE(errors.back(), 2) << "mm, of a tip that comes 810 mm across";
+}
+
+// ---- Euler's column: the leaf, pressed along its axis.
+//
+// With φ_k and u_k = w_n - w_k of the nodes, a segment of length h bends under the moment of P about its middle, its
+// shear gives way to what of P is across it, β = P h²/(12EI), and it is shorter by ε = P/EA = β ρ, ρ = 12EI/(EA h²):
+//
+//   w_k+1 - w_k = h (1 + β - ε) ½ (φ_k + φ_k+1)   EI/h (φ_k+1 - φ_k) = P (½ (u_k + u_k+1) + ¼ h (φ_k+1 - φ_k))
+//
+// With φ_k ~ sin kμ, u_k ~ cos kμ both hold where T = tan²(μ/2) = 3β(1 + β - ε)/(1 - 3β), and the free tip asks for
+// μ n = π/2:  3(1 - ρ)β² + 3(1 + T)β = T. P/P_E is then 1 + O(μ²), P_E = π² EI/(4 L²).
+double critical_load(int n) {
+    const double T = std::pow(std::tan(pi / (4 * n)), 2), h = L / n, EA = E * width * thick;
+    const double rho = 12 * EI / (EA * h * h), b = 3 * (1 + T);
+    const double beta = (std::sqrt(b * b + 12 * T * (1 - rho)) - b) / (6 * (1 - rho));
+    return 12 * EI * beta / (h * h);
+}
+
+// Up to there the straight column is an equilibrium that everybody follows, past it nobody does: the tangent's
+// determinant has changed its sign (series, adaptive), the stiffness has lost its sign (equilibrium leg), the potential
+// its minimum (energy leg, which calls a stiffness lost when it can tell it from zero: a little later).
+TEST(Column, TangentIsSingularAtEulersLoad) {
+    const double euler = pi * pi * EI / (4 * L * L);
+    std::vector<double> errors;
+    for (const int n : {4, 8, 16}) {
+        const Model model = compile(
+            parse_scene("elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n" + leaf(n) +
+                            "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
+                            "branches: {press: {load: press, to: 1, steps: 1}}\n",
+                        "column.yaml"));
+        const double P = critical_load(n);
+        for (const auto& [leg, method, lost] : {std::tuple{Leg::recursive, "series", Outcome::singular},
+                                                {Leg::recursive, "adaptive", Outcome::singular},
+                                                {Leg::equilibrium, "series", Outcome::singular},
+                                                {Leg::energy, "series", Outcome::branch_lost}}) {
+            const double margin = leg == Leg::energy ? 2e-6 : 1e-8;
+            for (const double share : {1 - margin, 1 + margin, 1.5}) {
+                Branch branch = model.branches[0];
+                branch.to = share * P;
+                const auto path =
+                    walk(ways_of(model, branch),
+                         {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
+                EXPECT_EQ(path.outcome, share < 1 ? Outcome::converged : lost)
+                    << n << " " << name(leg) << " " << method << " at " << share << ": " << path.detail;
+            }
+        }
+        errors.push_back(1 - P / euler);
+    }
+    for (std::size_t k = 1; k < errors.size(); ++k)
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << errors[k - 1] << " to " << errors[k];
+}
+
+// ---- Torsion, bending, and both.
+
+// A rod of 22 mm.
+constexpr double D = 0.022, EI_rod = E * pi * D * D * D * D / 64, GJ_rod = G * pi * D * D * D * D / 32;
+const std::string steel_rod = fmt::format("E: {}, G: {}, diameter: {}", E, G, D);
+
+// T = G J φ / L: a rod however it is cut, and the torsion spring of that rate. A lever at its end tells the angle.
+TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
+    const double turn = 2.5;  // [rad]
+    const std::string end = fmt::format(
+        "loads: {{torque: {{on: tip, moment: [1, 0, 0]}}}}\nprobes: {{lever: {{on: tip, at: lever}}}}\n"
+        "branches: {{twist: {{load: torque, from: {}, to: {}, steps: 10}}}}\n",
+        -turn * GJ_rod / L, turn * GJ_rod / L);
+    const std::string points = fmt::format(
+        "points: {{root: [0, 0, 0], tip: [{}, 0, 0], lever: [{}, 0.1, 0]}}\nbodies: {{tip: {{origin: "
+        "tip}}}}\n",
+        L, L);
+    std::vector<std::string> bars{
+        fmt::format("joints: {{hinge: {{type: revolute, bodies: [tip, ground], at: tip, axis: x}}}}\n"
+                    "torsion_springs: {{bar: {{bodies: [tip, ground], at: tip, axis: x, rate: {}}}}}\n",
+                    GJ_rod / L)};
+    for (const int n : {1, 3, 12})
+        bars.push_back(
+            fmt::format("beams: {{bar: {{bodies: [ground, tip], through: [root, tip], segments: {}, {}}}}}\n",
+                        n, steel_rod));
+    for (const auto& bar : bars) {
+        const Solved s(points + bar + end, "torsion bar");
+        for (const Leg leg : legs) {
+            const LegRun& run = s.run("twist", leg);
+            const auto x = s.read("twist", "lever_x", leg), y = s.read("twist", "lever_y", leg),
+                       z = s.read("twist", "lever_z", leg);
+            ASSERT_EQ(run.curve.a.size(), 11u) << bar;
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                const double phi = run.curve.a[k] * L / GJ_rod;
+                EXPECT_NEAR(x[k], 1e3 * L, 1e-8) << bar << name(leg);
+                EXPECT_NEAR(y[k], 100 * std::cos(phi), 1e-8) << bar << name(leg);
+                EXPECT_NEAR(z[k], 100 * std::sin(phi), 1e-8) << bar << name(leg);
+            }
+        }
+    }
+}
+
+// w = F L³/(48 E I) for small forces, whatever the number of segments; what is more grows as F³.
+TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
+    const double length = 1.2, b = 0.060, t = 0.012, EI_leaf = E * b * t * t * t / 12;
+    const double rate = 48 * EI_leaf / (length * length * length);  // 49 kN/m
+    for (const int n : {2, 4, 10}) {
+        const auto text = [&](double force) {
+            return fmt::format(
+                "points: {{eye_front: [{0}, 0, 0], seat: [0, 0, 0], eye_rear: [-{0}, 0, 0]}}\n"
+                "bodies: {{front: {{origin: eye_front}}, rear: {{origin: eye_rear}}}}\n"
+                "joints:\n  front: {{type: revolute, bodies: [front, ground], at: eye_front, axis: y}}\n"
+                "  shackle: {{type: in_plane, bodies: [rear, ground], at: eye_rear, normal: z}}\n"
+                "beams: {{leaf: {{bodies: [front, rear], through: [eye_front, seat, eye_rear], segments: "
+                "{1}, up: z, E: "
+                "{2}, G: {3},\n  A: {4}, I_y: {5}, I_z: {6}, J: {7}}}}}\n"
+                "loads: {{push: {{on: leaf.seat, at: seat, force: [0, 0, 1]}}}}\n"
+                "probes: {{seat: {{on: leaf.seat, at: seat}}}}\n"
+                "branches: {{push: {{load: push, to: {8}, steps: 4}}}}\n",
+                length / 2, n, E, G, b * t, b * t * t * t / 12, t * b * b * b / 12, b * t * t * t / 3, force);
+        };
+        std::vector<double> more;
+        for (const double F : {5., 50., 500.}) {
+            const Solved s(text(F), fmt::format("leaf of {} under {} N", n, F));
+            for (const Leg leg : legs) {
+                const double w = s.at_end("push", "seat_z", leg) / (1e3 * F / rate);
+                if (F == 5) {
+                    EXPECT_NEAR(w, 1, 1e-7) << n << " " << name(leg);
+                }
+                if (leg == Leg::equilibrium) more.push_back(w - 1);
+            }
+        }
+        EXPECT_NEAR(more[2] / more[1], 100, 2) << n << ": " << more[1] << " to " << more[2];
+    }
+}
+
+// An anti-roll bar: a rod b long in two bearings, its arms a long, one end held by its link, a force F at the other. Both
+// arms bend like cantilevers, the rod between them twists under F a:
+//
+//   w = F (2 a³/(3 E I) + a² b/(G J))
+TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
+    const double a = 0.2, b = 0.9;
+    const double rate = 1 / (2 * a * a * a / (3 * EI_rod) + a * a * b / GJ_rod);  // 45 kN/m
+    for (const int n : {3, 7, 21}) {
+        const auto text = [&](double force) {
+            return fmt::format(
+                "points: {{end_left: [0, {0}, 0], bearing_left: [{1}, {0}, 0], bearing_right: [{1}, -{0}, "
+                "0], "
+                "end_right: [0, -{0}, 0]}}\n"
+                "bodies: {{link_left: {{origin: end_left}}, link_right: {{origin: end_right}}}}\n"
+                "beams: {{bar: {{bodies: [link_left, link_right], through: [end_left, bearing_left, "
+                "bearing_right, "
+                "end_right], segments: {2}, {3}}}}}\n"
+                "joints:\n  left: {{type: spherical, bodies: [bar.bearing_left, ground], at: bearing_left}}\n"
+                "  right: {{type: in_line, bodies: [bar.bearing_right, ground], at: bearing_right, axis: "
+                "y}}\n"
+                "  link: {{type: in_plane, bodies: [link_right, ground], at: end_right, normal: z}}\n"
+                "loads: {{lift: {{on: link_left, at: end_left, force: [0, 0, 1]}}}}\n"
+                "probes: {{end: {{on: link_left, at: end_left}}}}\n"
+                "branches: {{lift: {{load: lift, to: {4}, steps: 4}}}}\n",
+                b / 2, a, n, steel_rod, force);
+        };
+        std::vector<double> more;
+        for (const double F : {5., 50., 500.}) {
+            const Solved s(text(F), fmt::format("bar of {} under {} N", n, F));
+            for (const Leg leg : legs) {
+                const double w = s.at_end("lift", "end_z", leg) / (1e3 * F / rate);
+                if (F == 5) {
+                    EXPECT_NEAR(w, 1, 1e-6) << n << " " << name(leg);
+                }
+                if (leg == Leg::equilibrium) more.push_back(w - 1);
+            }
+        }
+        EXPECT_NEAR(more[2] / more[1], 100, 5) << n << ": " << more[1] << " to " << more[2];
+    }
+}
+
+// ---- Stops.
+
+// A block on a spring of 20 kN/m, with a bump stop that closes when it is 30 mm lower and a rebound stop 50 mm above.
+struct Block {
+    double k = 20e3, c = 0.03, s = 300e3, d = 0.05, r = 120e3;
+
+    std::string text(double to) const {
+        return fmt::format(
+            "points: {{low: [0, 0, 0], high: [0, 0, 0.4]}}\nbodies: {{block: {{origin: high}}}}\n"
+            "joints: {{guide: {{type: translational, bodies: [block, ground], at: high, axis: z}}}}\n"
+            "springs:\n  coil: {{bodies: [block, ground], from: high, to: low, rate: {}, bump_stop: "
+            "{{clearance: {}, rate: "
+            "{}}}, rebound_stop: {{clearance: {}, rate: {}}}}}\n"
+            "loads: {{push: {{on: block, at: high, force: [0, 0, -1]}}}}\nprobes: {{top: {{on: block, at: "
+            "high}}}}\n"
+            "branches: {{push: {{load: push, from: {}, to: {}, steps: 30}}}}\n",
+            k, c, s, d, r, -to, to);
+    }
+    // How far a force F pushes it down, and what a stop takes of that.
+    double down(double F) const {
+        return F > k * c ? (F + s * c) / (k + s) : F < -k * d ? (F - r * d) / (k + r) : F / k;
+    }
+    double contact(double F) const {
+        return F > k * c ? s * (F - k * c) / (k + s) : F < -k * d ? r * (F + k * d) / (k + r) : 0;
+    }
+};
+
+TEST(Stop, BearsWhatTheHandCalculationSaysInEveryLeg) {
+    const Block block;
+    for (const double to : {3100.0, 600.0, 1000.0, 20000.0}) {
+        const Solved s(block.text(to), fmt::format("block to {} N", to));
+        for (const Leg leg : legs) {
+            const LegRun& run = s.run("push", leg);
+            const auto z = s.read("push", "top_z", leg);
+            ASSERT_EQ(z.size(), 31u);
+            for (std::size_t k = 0; k < z.size(); ++k) {
+                const double F = run.curve.a[k], down = 0.4 - z[k] / 1e3;
+                EXPECT_NEAR(1e3 * down, 1e3 * block.down(F), 1e-8) << name(leg) << " " << F;
+                EXPECT_NEAR(F - block.k * down, block.contact(F), 1e-8 * to) << name(leg) << " " << F;
+            }
+        }
+    }
+}
+
+// The step that closes the stop has the stiffness from before. What sums up stiffness times step keeps that: the part of
+// the step behind the knot, times the difference in flexibility, of first order in the step. Whatever starts each step
+// from the true force has it back with the next.
+TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
+    const Block block;
+    const double to = 3100;
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n" + block.text(to), "block"));
+    for (const auto& method : recursive::methods)
+        for (const int steps : {20, 40, 80, 160}) {
+            const LegRun done =
+                run(model, model.branches[0], Leg::recursive, {.method = method, .steps = steps});
+            ASSERT_EQ(done.path.outcome, Outcome::converged) << method.name << ": " << done.path.detail;
+            const double step = 2 * to / steps;
+            const auto kept = [&](double contact, double stop) {  // the load at contact, the stop's rate
+                const double behind = std::ceil(contact / step) * step - contact;
+                return behind * (1 / block.k - 1 / (block.k + stop));
+            };
+            const auto* linear = std::get_if<recursive::Linear>(&method.kind);
+            const bool sums = linear && !(linear->follow == recursive::everything);
+            const auto error = [&](const Equilibrium& point) {
+                return 0.4 - point.poses[0].r.z() - block.down(point.load);
+            };
+            EXPECT_NEAR(error(done.path.points.back()), sums ? kept(block.k * block.c, block.s) : 0, 1e-12)
+                << method.name << " " << steps;
+            EXPECT_NEAR(error(done.path.points.front()), sums ? -kept(block.k * block.d, block.r) : 0, 1e-12)
+                << method.name << " " << steps;
+        }
+}
+
+// ---- A curve and a stop on an arm that is turned by hand.
+
+// Fritsch and Butland's interpolant told as Hermite's: through the table, with slopes m.
+struct Interpolated {
+    std::vector<double> x, f, m;
+
+    Interpolated(std::vector<double> x_, std::vector<double> f_)
+        : x(std::move(x_)), f(std::move(f_)), m(x.size()) {
+        const std::size_t last = x.size() - 1;
+        const auto h = [&](std::size_t k) { return x[k + 1] - x[k]; };
+        const auto rise = [&](std::size_t k) { return (f[k + 1] - f[k]) / h(k); };
+        for (std::size_t k = 1; k < last; ++k) {
+            const double v = 2 * h(k) + h(k - 1), w = h(k) + 2 * h(k - 1);
+            m[k] = (v + w) / (v / rise(k - 1) + w / rise(k));  // all rise here
+        }
+        const auto end = [](double h_0, double h_1, double d_0, double d_1) {  // three points, not below zero
+            return std::max(0.0, ((2 * h_0 + h_1) * d_0 - h_0 * d_1) / (h_0 + h_1));
+        };
+        m[0] = end(h(0), h(1), rise(0), rise(1));
+        m[last] = end(h(last - 1), h(last - 2), rise(last - 1), rise(last - 2));
+    }
+    double force(double at) const {
+        if (at <= x.front()) return f.front() + m.front() * (at - x.front());
+        if (at >= x.back()) return f.back() + m.back() * (at - x.back());
+        std::size_t k = 0;
+        while (at > x[k + 1]) ++k;
+        const double h = x[k + 1] - x[k], t = (at - x[k]) / h, s = 1 - t;
+        return s * s * ((1 + 2 * t) * f[k] + h * t * m[k]) +
+               t * t * ((1 + 2 * s) * f[k + 1] - h * s * m[k + 1]);
+    }
+    // ∫₀ f, by Simpson's rule from row to row, which is exact for cubics.
+    double energy(double at) const {
+        const double low = std::min(0.0, at), high = std::max(0.0, at);
+        std::vector<double> ends{low};
+        for (const double row : x)
+            if (row > low && row < high) ends.push_back(row);
+        ends.push_back(high);
+        double u = 0;
+        for (std::size_t k = 1; k < ends.size(); ++k) {
+            const double a = ends[k - 1], b = ends[k];
+            u += (b - a) / 6 * (force(a) + 4 * force((a + b) / 2) + force(b));
+        }
+        return at < 0 ? -u : u;
+    }
+};
+
+// An arm of 0.3 m about y, on a spring with a curve and a bump stop between it and a point above.
+struct Arm {
+    Interpolated curve{{-0.06, -0.03, 0, 0.02, 0.05, 0.08}, {-2600, -900, 0, 700, 2400, 6000}};
+    double R = 0.3, x = 0.25, z = 0.35, clearance = 0.025, rate = 400e3;
+
+    std::string text(double to) const {
+        std::string rows;
+        for (std::size_t k = 0; k < curve.x.size(); ++k)
+            rows += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", curve.x[k], curve.f[k]);
+        return fmt::format(
+            "points: {{hinge: [0, 0, 0], end: [{}, 0, 0], top: [{}, 0, {}]}}\nbodies: {{arm: {{origin: "
+            "hinge}}}}\n"
+            "joints: {{hinge: {{type: revolute, bodies: [arm, ground], at: hinge, axis: y}}}}\n"
+            "springs:\n  coil: {{bodies: [arm, ground], from: end, to: top, curve: {{table: [{}]}}, "
+            "bump_stop: {{clearance: "
+            "{}, rate: {}}}}}\n"
+            "probes: {{end: {{on: arm, at: end}}}}\n"
+            "branches: {{turn: {{drive: joints.hinge, from: {}, to: {}, steps: 24}}}}\n",
+            R, x, z, rows, clearance, rate, -to, to);
+    }
+    // ℓ - ℓ(0) with the arm turned by α from x towards -z, and its slope dℓ/dα.
+    double longer(double alpha) const { return length(alpha) - length(0); }
+    double length(double alpha) const { return std::hypot(x - R * std::cos(alpha), z + R * std::sin(alpha)); }
+    double slope(double alpha) const {
+        return R * (x * std::sin(alpha) + z * std::cos(alpha)) / length(alpha);
+    }
+    // What holds it there, and what is stored.
+    double moment(double alpha) const {
+        const double e = longer(alpha);
+        return (curve.force(e) + rate * std::min(0.0, e + clearance)) * slope(alpha);
+    }
+    double energy(double alpha) const {
+        const double e = longer(alpha);
+        return curve.energy(e) + rate * std::pow(std::min(0.0, e + clearance), 2) / 2;
+    }
+    // Where the spring is longer by e.
+    double angle(double e) const {
+        double low = -0.8, high = 0.8;  // ℓ rises throughout
+        for (int i = 0; i < 60; ++i) {
+            const double middle = (low + high) / 2;
+            (longer(middle) < e ? low : high) = middle;
+        }
+        return (low + high) / 2;
+    }
+};
+
+TEST(Curve, NeedsTheMomentOfTheHandCalculationAtEveryAngle) {
+    const Arm arm;
+    const Solved s(arm.text(0.24), "arm");
+    for (const Leg leg : legs) {
+        const LegRun& run = s.run("turn", leg);
+        const auto M = s.read("turn", "hinge.drive_moment", leg);
+        double size = 0;
+        for (const double alpha : {-0.24, 0.24}) size = std::max(size, std::abs(arm.moment(alpha)));
+        for (std::size_t k = 0; k < M.size(); ++k)
+            EXPECT_NEAR(M[k], arm.moment(run.path.points[k].load), 1e-8 * size)
+                << name(leg) << " " << run.curve.a[k];
+    }
+}
+
+TEST(Curve, StoresTheWorkOfTheMomentThatTurnsIt) {
+    const Arm arm;
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: arm\nunits: {length: m, angle: rad, force: N}\n" + arm.text(0.24), "arm"));
+    const auto all = channels(model);
+    const auto drive = static_cast<std::size_t>(find_channel(all, "hinge.drive_moment"));
+    for (const auto& way : ways_of(model, model.branches[0])) {
+        const double to = way.branch.to;
+        std::vector<double> ends{0, to};  // between them nothing has a knot
+        for (const double knot : {-0.03, -0.06, 0.02, 0.05, 0.08, -arm.clearance})
+            if (const double alpha = arm.angle(knot); alpha * to > 0 && std::abs(alpha) < std::abs(to))
+                ends.push_back(alpha);
+        std::ranges::sort(ends, {}, [](double a) { return std::abs(a); });
+        EXPECT_GT(ends.size(), 3u);
+        std::vector<double> at, weight;
+        for (std::size_t k = 1; k < ends.size(); ++k)
+            for (const auto& node : support::gauss(ends[k - 1], ends[k], 12)) {
+                at.push_back(node.x);
+                weight.push_back(node.weight);
+            }
+        const auto path = recursive::series::follow(way.model, way.branch);
+        std::vector<Equilibrium> polynomial;
+        for (const double a : at)
+            polynomial.push_back(recursive::series::evaluate(way.model, way.branch, path,
+                                                             recursive::series::find(path, a).value()));
+        for (const auto& [leg, points] :
+             {std::pair{Leg::equilibrium, reference::equilibrium::solve(way.model, way.branch, at).points},
+              {Leg::energy, reference::energy::solve(way.model, way.branch, at).points},
+              {Leg::series, polynomial}}) {
+            ASSERT_EQ(points.size(), at.size()) << name(leg);
+            double work = 0;
+            for (std::size_t k = 0; k < at.size(); ++k)
+                work += weight[k] * evaluate(way.model, all, points[k])[drive];
+            const double U = arm.energy(to);
+            EXPECT_NEAR(work, U, 1e-9 * U) << name(leg) << " " << work / U - 1;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

@@ -1,0 +1,199 @@
+// Trim: closed forms, what it leaves at rest, and every way in which it is no answer.
+#include "compare/trim.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "reference/energy/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+// A block that slides up and down on a spring of 20 N/mm, 0.4 m long as drawn, under 500 N.
+Scene block() {
+    return parse_scene(
+        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: high}}\n"
+        "joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}\n"
+        "springs:\n"
+        "  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}\n"
+        "  second: {bodies: [block, ground], from: high, to: low, rate: 10e3}\n"
+        "  across: {bodies: [block, ground], from: high, to: aside, rate: 0.001}\n"
+        "static_loads: {weight: {on: block, at: high, force: [0, 0, -500]}}\n"
+        "loads: {up: {on: block, at: high, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {top: {on: block, at: high}}\n",
+        "block.yaml");
+}
+
+Trim::Adjustment preload(const Scene& scene, const std::string& spring) {
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k)
+        if (scene.elastics[k].name == spring) {
+            const auto& e = std::get<AxialSpring>(scene.elastics[k].kind);
+            return {.name = "springs." + spring + ".preload",
+                    .what = FreeLength{static_cast<int>(k)},
+                    .per_unit = 1 / std::get<LinearRate>(e.law).k,
+                    .unit = ParameterUnit::newton};
+        }
+    throw std::logic_error(spring);
+}
+Trim::Condition height(std::optional<double> value = {}) { return {"top.z", ProbeCoordinate{0, 2}, value}; }
+
+// The paper's strut under the weight of a corner of a car, its spring as drawn.
+Scene mcpherson() {
+    Scene scene = support::scene("chrono_mcpherson");
+    const Wheel& wheel = scene.wheels[0];
+    scene.static_loads.push_back({"weight", DeadForce{{wheel.body, wheel.centre_local}, {0, 0, 3500}}});
+    std::string spring;
+    for (const auto& elastic : scene.elastics)
+        if (std::holds_alternative<AxialSpring>(elastic.kind)) spring = elastic.name;
+    scene.trim = Trim{{preload(scene, spring)}, {{"travel", WheelTravel{0}, std::nullopt}}};
+    return scene;
+}
+
+std::string complaint(const Scene& scene) {
+    try {
+        (void)trim(scene);
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
+    Scene scene = block();
+    scene.elastics.resize(1);
+    scene.trim = Trim{{preload(scene, "coil")}, {height()}};
+    const Trimmed found = trim(scene);
+    ASSERT_TRUE(found.record && found.record->reached()) << found.record->detail;
+    EXPECT_NEAR(found.record->adjusted[0].by, 500, 1e-6);
+    EXPECT_NEAR(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4 + 500 / 20e3, 1e-10);
+    EXPECT_TRUE(contains(found.record->adjusted[0].makes, "force 500 N in compression"))
+        << found.record->adjusted[0].makes;
+    EXPECT_EQ(found.record->confirmed_by, Leg::energy);
+    EXPECT_FALSE(found.scene.trim) << "trimmed once";
+}
+
+TEST(Trim, ConditionMayAskForAnotherHeight) {
+    Scene scene = block();
+    scene.elastics.resize(1);
+    scene.trim = Trim{{preload(scene, "coil")}, {height(-0.03)}};
+    const Trimmed found = trim(scene);
+    ASSERT_TRUE(found.record->reached()) << found.record->detail;
+    EXPECT_NEAR(found.record->adjusted[0].by, 500 - 0.03 * 20e3, 1e-6);
+    EXPECT_NEAR(found.record->conditions[0].asked, -30, 1e-12);
+}
+
+TEST(Trim, LeavesTheWheelAtRestWhereItWasDrawnOnEveryBranchAndByBothReferences) {
+    const Trimmed found = trim(mcpherson());
+    ASSERT_TRUE(found.record->reached()) << found.record->detail;
+    EXPECT_GT(found.record->adjusted[0].by, 3000);
+    EXPECT_LT(found.record->adjusted[0].by, 6000);
+    const Model model = compile(found.scene);
+    const auto list = channels(model);
+    const auto travel = static_cast<std::size_t>(find_channel(list, "travel"));
+    for (const auto& branch : model.branches) {
+        const Settled rest = settled(model, list, branch);
+        ASSERT_EQ(rest.outcome, Outcome::converged) << rest.detail;
+        EXPECT_LE(std::abs(rest.displacement[travel]), 1e-8) << branch.name;
+        const Way way = ways_of(model, branch).front();
+        const auto energy = reference::energy::solve(way.model, way.branch, std::vector<double>{0});
+        ASSERT_EQ(energy.outcome, Outcome::converged) << energy.detail;
+        EXPECT_LE(std::abs(evaluate(model, list, energy.points.front())[travel]), 1e-6) << branch.name;
+    }
+    EXPECT_LE(std::abs(found.record->conditions[0].confirmed), 1e-6);
+}
+
+TEST(Trim, SceneWithoutOneIsAsItWas) {
+    const Trimmed found = trim(block());
+    EXPECT_FALSE(found.record);
+    EXPECT_EQ(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4);
+}
+
+TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
+    Scene scene = block();
+    scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")}, {height()}};
+    EXPECT_TRUE(contains(complaint(scene), "2 adjusted until 1 conditions hold; as many are needed"));
+    scene.trim = Trim{};
+    EXPECT_TRUE(contains(complaint(scene), "as many are needed"));
+}
+
+TEST(Trim, AdjustmentThatMovesNothingIsNamed) {
+    Scene scene = block();  // across the way of the block
+    scene.trim = Trim{{preload(scene, "across")}, {height()}};
+    const std::string said = complaint(scene);
+    EXPECT_TRUE(contains(said, "'springs.across.preload' has no influence on top.z")) << said;
+}
+
+TEST(Trim, AdjustmentsThatDoTheSameAreNamed) {
+    Scene scene = block();
+    scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
+                      {height(), {"top.z again", ProbeCoordinate{0, 2}, 0.01}}};
+    const std::string said = complaint(scene);
+    EXPECT_TRUE(contains(said,
+                         "ambiguous: top.z and top.z again move only together, whatever "
+                         "springs.coil.preload and springs.second.preload do"))
+        << said;
+}
+
+TEST(Trim, ConditionThatNothingMovesIsNamed) {
+    Scene scene = block();
+    scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
+                      {height(), {"top.x", ProbeCoordinate{0, 0}, std::nullopt}}};
+    const std::string said = complaint(scene);
+    EXPECT_TRUE(contains(said, "no adjustment moves 'top.x'")) << said;
+}
+
+TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {
+    Scene scene = block();  // as drawn it is at rest, whatever the two springs share
+    scene.static_loads.clear();
+    scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
+                      {height(), {"top.z again", ProbeCoordinate{0, 2}, std::nullopt}}};
+    EXPECT_TRUE(contains(complaint(scene), "ambiguous")) << complaint(scene);
+}
+
+TEST(Trim, WhatCannotBeReachedIsSaidAndChangesNothing) {
+    Scene scene = mcpherson();
+    scene.trim->until[0].value = 2;  // [m]: no strut is that long
+    const Trimmed found = trim(scene);
+    ASSERT_TRUE(found.record);
+    EXPECT_FALSE(found.record->reached());
+    EXPECT_FALSE(found.record->detail.empty());
+    EXPECT_TRUE(found.scene.trim) << "the scene is the one given";
+}
+
+TEST(Trim, SidesOfASymmetricPairGetTheSame) {
+    // Two blocks that know nothing of each other.
+    Scene scene = block();
+    scene.elastics.resize(1);
+    const Scene one = scene;
+    scene.bodies.push_back({"other", one.bodies[0].design});
+    const auto other = [](Point p) {
+        if (p.body == 0) p.body = 1;
+        return p;
+    };
+    auto guide = std::get<Translational>(one.joints[0].kind);
+    guide.i = other(guide.i), guide.axis_i.body = 1;
+    scene.joints.push_back({"other guide", guide});
+    auto coil = std::get<AxialSpring>(one.elastics[0].kind);
+    coil.i = other(coil.i);
+    scene.elastics.push_back({"other coil", coil});
+    auto weight = std::get<DeadForce>(one.static_loads[0].kind);
+    weight.at.body = 1;
+    scene.static_loads.push_back({"other weight", weight});
+    scene.probes.push_back({"other", {1, Eigen::Vector3d::Zero()}});
+    scene.trim = Trim{{preload(scene, "coil"), preload(scene, "other coil")},
+                      {height(), {"other.z", ProbeCoordinate{1, 2}, std::nullopt}}};
+    const Trimmed found = trim(scene);
+    ASSERT_TRUE(found.record->reached()) << found.record->detail;
+    for (const auto& adjusted : found.record->adjusted) EXPECT_NEAR(adjusted.by, 500, 1e-6) << adjusted.name;
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

@@ -1,0 +1,311 @@
+// Along every branch of every scene: the work that is done on it is the energy that it stores.
+//
+// Power is read off forces: of the loads at the velocities of their points, of what moves a joint its effort at the
+// rate of its offset. Energy is read off deformations. No leg computes both: the recursion and the equilibrium leg
+// know no energy, the energy leg no power; whatever force a leg has wrong, or turns into the wrong direction, leaves a gap
+//
+//   ∫ P da - (U(end) - U(start)),   P = Σ f·ṗ + Σ m·ω + Σ effort · d(offset)/da + Σ ∂U/∂a of what moves a law.
+//
+// Where a bushing's formulation has no energy, what it takes up is the power of its forces. Where the energy leg answers
+// that nothing has one, the other two keep their books.
+//
+// The integral goes by Gauss' points, piece by piece of the branch as a power series, so that no curve's knot lies
+// within a piece; a leg's states and efforts are its own, the velocities are the series'. At the same points the legs
+// are compared with each other.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "compare/channels.hpp"
+#include "compare/deformation.hpp"
+#include "compare/legs.hpp"
+#include "compare/positions.hpp"
+#include "compare/trim.hpp"
+#include "models/compile.hpp"
+#include "models/overloaded.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/diagnosis.hpp"
+#include "recursive/series/path.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/quadrature.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+namespace series = recursive::series;
+
+double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
+
+// ---- Stored energy.
+
+// u(x) = ∫₀ˣ f, from knot to knot: two points are exact for a cubic.
+double energy(const LinearRate& law, double x) { return law.k * x * x / 2; }
+double energy(const elastocheck::Curve& law, double x) {
+    const double low = std::min(0.0, x), high = std::max(0.0, x);
+    std::vector<double> ends{low};
+    for (const double knot : law.knots)
+        if (knot > low && knot < high) ends.push_back(knot);
+    ends.push_back(high);
+    double u = 0;
+    for (std::size_t k = 1; k < ends.size(); ++k)
+        for (const auto& [at, weight] : support::gauss(ends[k - 1], ends[k], 2))
+            u += weight * force(ScalarLaw(law), at);
+    return x < 0 ? -u : u;
+}
+double energy(const ScalarLaw& law, double x) {
+    return std::visit([&](const auto& u) { return energy(u, x); }, law);
+}
+double energy(const LinearStiffness& law, const Vector6& x) { return x.dot(law.K * x) / 2; }
+double energy(const PerAxis& law, const Vector6& x) {
+    double u = 0;
+    for (std::size_t k = 0; k < 6; ++k) u += energy(law.axis[k], x[static_cast<Eigen::Index>(k)]);
+    return u;
+}
+
+// What drivers add to the preload of element k.
+Vector6 driven_preload(const Branch& branch, std::size_t k, double a) {
+    Vector6 sum = Vector6::Zero();
+    for (const auto& driver : branch.drivers)
+        if (const auto* p = std::get_if<Preload>(&driver.what); p && p->elastic == static_cast<int>(k))
+            sum += value(driver, a) * p->direction;
+    return sum;
+}
+
+double stored(const Model& model, const Branch& branch, const Equilibrium& state) {
+    double U = 0;
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        U += std::visit(
+            overloaded{[&](const AxialSpring& e) { return energy(e.law, deformation(e, k, branch, state)); },
+                       [&](const Bushing& e) {
+                           if (!has_energy(e.formulation)) return 0.0;
+                           const Vector6 x = deformation(e, state);
+                           const Vector6 b = e.preload + driven_preload(branch, k, state.load);
+                           return std::visit([&](const auto& u) { return energy(u, x); }, e.law) +
+                                  b.dot(x + e.undeformed);
+                       }},
+            model.elastics[k].kind);
+    return U;
+}
+
+// ---- Power.
+
+struct Power {
+    double sum = 0, turned_over = 0;  // Σ, Σ |.| of what each load and driver does [J per unit of a]
+    void add(double p) {
+        sum += p;
+        turned_over += std::abs(p);
+    }
+};
+
+double power(const LoadKind& load, const Equilibrium& state, const series::Rates& rates) {
+    const auto force = [&](const Point& at, const Vector3d& f) {
+        const auto b = static_cast<std::size_t>(at.body);
+        const Vector3d lever = state.poses[b].p * at.s_local;
+        return f.dot(rates.dr[b] + rates.omega[b].cross(lever));
+    };
+    const auto turned = [&](BodyId body, const Vector3d& v) -> Vector3d {
+        return pose(state.poses, body).p * v;
+    };
+    const auto moment = [&](BodyId body, const Vector3d& m) {
+        return m.dot(rates.omega[static_cast<std::size_t>(body)]);
+    };
+    return std::visit(
+        overloaded{[&](const DeadForce& l) { return force(l.at, l.f); },
+                   [&](const DeadMoment& l) { return moment(l.body, l.m); },
+                   [&](const FollowerForce& l) { return force(l.at, turned(l.at.body, l.f_local)); },
+                   [&](const FollowerMoment& l) { return moment(l.body, turned(l.body, l.m_local)); }},
+        load);
+}
+
+// What a bushing takes up whose forces are not the slopes of an energy: F' = ∂u/∂e + preload straight along the axes of
+// its frame, the force at its own marker on each body or, with the moment of the offset D, at p_j on both.
+double taken_up(const Bushing& e, const Vector6& driven, const Equilibrium& state,
+                const series::Rates& rates) {
+    if (e.formulation.conjugate) return std::nan("");  // no scene has one
+    const Vector6 x = deformation(e, state);
+    Vector6 stress = e.preload + driven;
+    if (const auto* law = std::get_if<LinearStiffness>(&e.law))
+        stress += law->K * x;
+    else
+        for (std::size_t k = 0; k < 6; ++k)
+            stress[static_cast<Eigen::Index>(k)] +=
+                force(std::get<PerAxis>(e.law).axis[k], x[static_cast<Eigen::Index>(k)]);
+    const auto turning = [&](BodyId b) -> Vector3d {
+        return b == ground ? Vector3d::Zero() : rates.omega[static_cast<std::size_t>(b)];
+    };
+    const auto moving = [&](const Marker& m) -> Vector3d {
+        if (m.body == ground) return Vector3d::Zero();
+        const auto b = static_cast<std::size_t>(m.body);
+        return rates.dr[b] + turning(m.body).cross(state.poses[b].p * m.s_local);
+    };
+    const Eigen::Quaterniond A = pose(state.poses, e.i.body).p * e.i.A_local;
+    const Vector3d D =
+        position(state.poses, e.j.body, e.j.s_local) - position(state.poses, e.i.body, e.i.s_local);
+    Vector3d apart = moving(e.j) - moving(e.i);
+    if (e.formulation.offset_moment) apart -= turning(e.i.body).cross(D);
+    return (A * stress.head<3>()).dot(apart) +
+           (A * stress.tail<3>()).dot(turning(e.j.body) - turning(e.i.body));
+}
+
+Power power(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+            const Equilibrium& state, const series::Rates& rates) {
+    Power all;
+    for (const auto& load : model.static_loads) all.add(power(load.kind, state, rates));
+    const auto effort = [&](int joint) {
+        for (const auto& channel : channels)
+            if (const auto* reads = std::get_if<Effort>(&channel.reads); reads && reads->joint == joint)
+                return evaluate(model, std::span(&channel, 1), state).front();
+        return std::nan("");
+    };
+    const auto element = [&](int k) -> const ElasticKind& {
+        return model.elastics[static_cast<std::size_t>(k)].kind;
+    };
+    for (const auto& driver : branch.drivers)
+        all.add(std::visit(
+            overloaded{[&](const Load& l) { return value(driver, state.load) * power(l.kind, state, rates); },
+                       [&](const Motion& m) { return driver.rate == 0 ? 0 : driver.rate * effort(m.joint); },
+                       [&](const FreeLength& f) {
+                           const auto& e = std::get<AxialSpring>(element(f.elastic));
+                           const double x =
+                               deformation(e, static_cast<std::size_t>(f.elastic), branch, state);
+                           return -driver.rate * force(e.law, x);
+                       },
+                       [&](const Preload& p) {
+                           const auto& e = std::get<Bushing>(element(p.elastic));
+                           return driver.rate * p.direction.dot(deformation(e, state) + e.undeformed);
+                       }},
+            driver.what));
+    return all;
+}
+
+// ---- A way of a branch, at Gauss' points of its pieces.
+
+struct Sampled {
+    series::Path path;
+    std::vector<double> a, weight;  // of ∫ da; both ends come first and last, with weight 0
+    std::vector<series::Rates> rates;
+    bool meets_knots = false;
+};
+
+Sampled sampled(const Way& way, int points_a_piece = 12) {
+    Sampled result;
+    result.path = series::follow(way.model, way.branch);
+    if (result.path.outcome != Outcome::converged) return result;
+    const double to = way.branch.to;
+    const auto add = [&](double a, double weight) {
+        result.a.push_back(a);
+        result.weight.push_back(weight);
+        result.rates.push_back(series::rates(result.path, series::find(result.path, a).value()));
+    };
+    add(0, 0);
+    for (const auto& piece : result.path.expansions) {
+        const double from = piece.load[0], end = from + piece.load[1] * piece.reach;
+        const double until = to > 0 ? std::min(to, end) : std::max(to, end);
+        if (until != from)
+            for (const auto& [a, weight] : support::gauss(from, until, points_a_piece)) add(a, weight);
+        if (piece.knots > 0 && until != to) result.meets_knots = true;
+    }
+    add(to, 0);
+    return result;
+}
+
+struct Books {
+    double work = 0, turned_over = 0, gained = 0;  // [J]
+    double gap() const { return std::abs(work - gained) / turned_over; }
+};
+
+Books books(const Way& way, const std::vector<Channel>& channels, const Sampled& s,
+            const std::vector<Equilibrium>& states) {
+    Books b;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+        const Power p = power(way.model, channels, way.branch, states[k], s.rates[k]);
+        for (std::size_t e = 0; e < way.model.elastics.size(); ++e)
+            if (const auto* bushing = std::get_if<Bushing>(&way.model.elastics[e].kind);
+                bushing && !has_energy(bushing->formulation))
+                b.gained += s.weight[k] * taken_up(*bushing, driven_preload(way.branch, e, states[k].load),
+                                                   states[k], s.rates[k]);
+        b.work += s.weight[k] * p.sum;
+        b.turned_over += std::abs(s.weight[k]) * p.turned_over;
+    }
+    b.gained += stored(way.model, way.branch, states.back()) - stored(way.model, way.branch, states.front());
+    return b;
+}
+
+struct Apart {
+    double mm = 0, deg = 0;
+    std::string where_mm, where_deg;
+};
+// Of two legs, on all positions and angles.
+Apart apart(const Way& way, const std::vector<Channel>& channels, const std::vector<Equilibrium>& x,
+            const std::vector<Equilibrium>& y) {
+    Apart worst;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const auto of_x = evaluate(way.model, channels, x[k]), of_y = evaluate(way.model, channels, y[k]);
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            if (!channels[c].kinematic()) continue;
+            const bool angle = channels[c].unit == Unit::deg;
+            const double off = std::abs(of_x[c] - of_y[c]);
+            double& most = angle ? worst.deg : worst.mm;
+            if (std::isnan(most) || off <= most) continue;
+            most = off;
+            (angle ? worst.where_deg : worst.where_mm) = fmt::format("{} at {}", channels[c].name, x[k].load);
+        }
+    }
+    return worst;
+}
+
+class EveryScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre) {
+    const auto trimmed = trim(support::scene(GetParam()));
+    ASSERT_TRUE(!trimmed.record || trimmed.record->reached()) << trimmed.record->detail;
+    const Model model = compile(trimmed.scene);
+    const auto all = channels(model);
+    ASSERT_FALSE(model.branches.empty());
+    for (const auto& branch : model.branches)
+        for (const auto& way : ways_of(model, branch)) {
+            const Sampled s = sampled(way);
+            ASSERT_EQ(s.path.outcome, Outcome::converged) << way.name << ": " << s.path.detail;
+            const auto equilibrium = reference::equilibrium::solve(way.model, way.branch, s.a);
+            const auto energy = reference::energy::solve(way.model, way.branch, s.a);
+            ASSERT_EQ(equilibrium.outcome, Outcome::converged) << way.name << ": " << equilibrium.detail;
+            const bool conservative = energy.outcome != Outcome::not_conservative;
+            if (conservative) {
+                ASSERT_EQ(energy.outcome, Outcome::converged) << way.name << ": " << energy.detail;
+            }
+            std::vector<Equilibrium> polynomial;
+            for (const double a : s.a)
+                polynomial.push_back(
+                    series::evaluate(way.model, way.branch, s.path, series::find(s.path, a).value()));
+
+            std::vector<std::pair<Leg, const std::vector<Equilibrium>*>> legs{
+                {Leg::equilibrium, &equilibrium.points}, {Leg::series, &polynomial}};
+            if (conservative) legs.emplace_back(Leg::energy, &energy.points);
+            for (const auto& [leg, states] : legs) {
+                const Books b = books(way, all, s, *states);
+                EXPECT_TRUE(b.turned_over > 0 && b.gap() <= 1e-9) << fmt::format(
+                    "{}, {} leg: work {:.12g} J, stored {:.12g} J, apart by {:.2g} of {:.4g} J", way.name,
+                    name(leg), b.work, b.gained, b.gap(), b.turned_over);
+            }
+            const auto expect = [&](Leg leg, const std::vector<Equilibrium>& states, double bound) {
+                const Apart off = apart(way, all, equilibrium.points, states);
+                EXPECT_TRUE(off.mm <= bound)
+                    << way.name << ", " << name(leg) << ": " << off.mm << " mm, " << off.where_mm;
+                EXPECT_TRUE(off.deg <= bound)
+                    << way.name << ", " << name(leg) << ": " << off.deg << " deg, " << off.where_deg;
+            };
+            if (conservative) expect(Leg::energy, energy.points, s.meets_knots ? 1e-6 : 1e-8);
+            expect(Leg::series, polynomial, 1e-9);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(VirtualWork, EveryScene, testing::ValuesIn(support::scene_names()),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace elastocheck::compare

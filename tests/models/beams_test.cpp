@@ -1,0 +1,341 @@
+// Beams of a scene file: the Timoshenko beam, where their nodes are, what goes wrong.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "models/reader/scene_file.hpp"
+#include "tests/models/mistakes.hpp"
+
+namespace elastocheck {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double pi = std::numbers::pi;
+
+// A cantilever along x and then along y, its end a body of its own.
+std::string cantilever(const std::string& beam,
+                       const std::string& units = "length: m, angle: rad, force: N") {
+    return "elastocheck: 1\nname: cantilever\nunits: {" + units + R"(}
+points: {root: [0, 0, 0], bend: [3, 0, 0], tip: [3, 2, 0], up: [0, 0, 1]}
+bodies: {tip: {origin: tip}}
+beams:
+  bar: {bodies: [ground, tip], )" +
+           beam + R"(}
+loads: {push: {on: tip, at: tip, force: [0, 0, 1]}}
+branches: {up: {load: push, to: 1, steps: 1}}
+probes: {tip: {on: tip, at: tip}}
+)";
+}
+const std::string section = "E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13";
+
+const Bushing& segment(const Scene& scene, std::size_t k) {
+    return std::get<Bushing>(scene.elastics.at(k).kind);
+}
+Matrix6 K_of(const Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
+
+// e = B (Δr_i, Δπ_i, Δr_j, Δπ_j) for small motions:  d = Aᵀ (Δr_j + Δπ_j × s_j - Δr_i - Δπ_i × s_i),  θ = Aᵀ (Δπ_j - Δπ_i).
+Eigen::Matrix<double, 6, 12> deformation(const Bushing& b) {
+    const auto cross = [](const Vector3d& s) {  // π × s = cross(s) π
+        Eigen::Matrix3d m;
+        m << 0, s.z(), -s.y(), -s.z(), 0, s.x(), s.y(), -s.x(), 0;
+        return m;
+    };
+    const Eigen::Matrix3d A = b.i.A_local.toRotationMatrix();
+    Eigen::Matrix<double, 6, 12> B = Eigen::Matrix<double, 6, 12>::Zero();
+    B.block<3, 3>(0, 0) = -A.transpose();
+    B.block<3, 3>(0, 3) = -A.transpose() * cross(b.i.s_local);
+    B.block<3, 3>(0, 6) = A.transpose();
+    B.block<3, 3>(0, 9) = A.transpose() * cross(b.j.s_local);
+    B.block<3, 3>(3, 3) = -A.transpose();
+    B.block<3, 3>(3, 9) = A.transpose();
+    return B;
+}
+
+// The displacement and rotation of body 0, the tip, under a small wrench: ground is left out of K.
+Vector6 tip_motion(const Scene& scene, const Vector6& wrench) {
+    const auto n = static_cast<Eigen::Index>(6 * scene.bodies.size());
+    MatrixXd K = MatrixXd::Zero(n, n);
+    for (const Elastic& elastic : scene.elastics) {
+        const auto& b = std::get<Bushing>(elastic.kind);
+        const auto B = deformation(b);
+        const Eigen::Matrix<double, 12, 12> k = B.transpose() * K_of(b) * B;
+        const BodyId ends[] = {b.i.body, b.j.body};
+        for (int r = 0; r < 2; ++r)
+            for (int c = 0; c < 2; ++c)
+                if (ends[r] != ground && ends[c] != ground)
+                    K.block<6, 6>(6 * ends[r], 6 * ends[c]) += k.block<6, 6>(6 * r, 6 * c);
+    }
+    VectorXd f = VectorXd::Zero(n);
+    f.head<6>() = wrench;
+    return VectorXd(K.partialPivLu().solve(f)).head<6>();
+}
+
+// Przemieniecki's 12×12, with x along the beam.
+TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
+    const Scene scene = parse_scene(
+        cantilever("through: [root, bend], segments: 1, " + section + ", shear_y: 0.5, shear_z: 0.7, up: z"),
+        "b.yaml");
+    Scene moved = scene;  // the tip's origin to its end, as it is not at `bend`
+    auto b = std::get<Bushing>(moved.elastics.at(0).kind);
+    const double L = 3, EA = 10, EI_y = 14, EI_z = 22, GJ = 39, GA_y = 1.5, GA_z = 2.1;
+    EXPECT_EQ(b.i.s_local, Vector3d(1.5, 0, 0));
+    EXPECT_EQ(b.formulation.frame, Formulation::Frame::middle);
+    b.j.s_local = Vector3d(-1.5, 0, 0);
+    const auto B = deformation(b);
+    const Eigen::Matrix<double, 12, 12> K = B.transpose() * K_of(b) * B;
+
+    const double p_y = 12 * EI_z / (GA_y * L * L), p_z = 12 * EI_y / (GA_z * L * L);
+    Eigen::Matrix<double, 12, 12> book = Eigen::Matrix<double, 12, 12>::Zero();
+    const auto set = [&](int r, int c, double k) { book(r - 1, c - 1) = book(c - 1, r - 1) = k; };
+    set(1, 1, EA / L), set(7, 1, -EA / L), set(7, 7, EA / L);
+    set(4, 4, GJ / L), set(10, 4, -GJ / L), set(10, 10, GJ / L);
+    const double y3 = 12 * EI_z / (L * L * L * (1 + p_y)), y2 = 6 * EI_z / (L * L * (1 + p_y));
+    set(2, 2, y3), set(8, 2, -y3), set(8, 8, y3);
+    set(6, 2, y2), set(12, 2, y2), set(8, 6, -y2), set(12, 8, -y2);
+    const double z3 = 12 * EI_y / (L * L * L * (1 + p_z)), z2 = 6 * EI_y / (L * L * (1 + p_z));
+    set(3, 3, z3), set(9, 3, -z3), set(9, 9, z3);
+    set(5, 3, -z2), set(11, 3, -z2), set(9, 5, z2), set(11, 9, z2);
+    for (const int k : {6, 12}) set(k, k, (4 + p_y) * EI_z / ((1 + p_y) * L));
+    for (const int k : {5, 11}) set(k, k, (4 + p_z) * EI_y / ((1 + p_z) * L));
+    set(12, 6, (2 - p_y) * EI_z / ((1 + p_y) * L));
+    set(11, 5, (2 - p_z) * EI_y / ((1 + p_z) * L));
+    Eigen::Index r = 0, c = 0;
+    EXPECT_LE((K - book).cwiseAbs().maxCoeff(&r, &c), 1e-13 * book.cwiseAbs().maxCoeff())
+        << "at " << r << ", " << c;
+}
+
+// Small loads on a cantilever round a corner: bending of both legs, torsion of the first. Exact for any number.
+TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
+    const double a = 3, b = 2, EI_y = 14, EI_z = 22, EA = 10, GJ = 39;
+    for (const int n : {2, 3, 5, 12, 40}) {
+        const Scene scene = parse_scene(
+            cantilever(fmt::format("through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
+            "b.yaml");
+        ASSERT_EQ(scene.bodies.size(), static_cast<std::size_t>(n));
+        ASSERT_EQ(scene.elastics.size(), static_cast<std::size_t>(n));
+        // z across the plane: w = F (a³ + b³)/(3EI_y) + F b² a/(GJ)
+        const double up = tip_motion(scene, Vector6::Unit(2))[2];
+        EXPECT_NEAR(up, (a * a * a + b * b * b) / (3 * EI_y) + b * b * a / GJ, 1e-9) << n;
+        // x in the plane: the second leg bends, the first takes the force and its moment F b
+        const double fore = tip_motion(scene, Vector6::Unit(0))[0];
+        EXPECT_NEAR(fore, b * b * b / (3 * EI_z) + a / EA + b * b * a / EI_z, 1e-9) << n;
+    }
+}
+
+TEST(Beam, ADiameterIsTheRoundSection) {
+    const Scene rod =
+        parse_scene(cantilever("through: [root, bend], segments: 1, E: 2000, G: 800, diameter: 20",
+                               "length: mm, angle: deg, force: kN"),
+                    "b.yaml");
+    const double L = 3e-3, E = 2000e9, G = 800e9, D = 20e-3;
+    Vector6 k;
+    const double I = pi * std::pow(D, 4) / 64, A = pi * D * D / 4;
+    k << E * A / L, 12 * E * I / std::pow(L, 3), 12 * E * I / std::pow(L, 3), 2 * G * I / L, E * I / L,
+        E * I / L;
+    EXPECT_LE(((K_of(segment(rod, 0)).diagonal() - k).array() / k.array()).abs().maxCoeff(), 1e-14);
+
+    const auto text = [](const std::string& wall) {
+        return cantilever("through: [root, bend], segments: 1, E: 2, G: 8, diameter: 0.02" + wall);
+    };
+    const Matrix6 tube = K_of(segment(parse_scene(text(", wall: 0.002"), "b.yaml"), 0));
+    EXPECT_NEAR(tube(0, 0) / (2 * pi / 4 * (0.02 * 0.02 - 0.016 * 0.016) / 3), 1, 1e-13);
+    EXPECT_NEAR(tube(3, 3) / (8 * pi / 32 * (std::pow(0.02, 4) - std::pow(0.016, 4)) / 3), 1, 1e-13);
+    const Matrix6 solid = K_of(segment(parse_scene(text(""), "b.yaml"), 0));
+    const Matrix6 thick = K_of(segment(parse_scene(text(", wall: 0.01"), "b.yaml"), 0));
+    EXPECT_LE((solid - thick).cwiseAbs().maxCoeff(), 1e-12 * solid.maxCoeff());
+}
+
+TEST(Beam, UnitsOfTheSectionAreThoseOfTheScene) {
+    const Scene mm = parse_scene(
+        cantilever("through: [root, bend], segments: 1, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z",
+                   "length: mm, angle: deg, force: kN"),
+        "b.yaml");
+    const double E = 2e9, G = 3e9, L = 3e-3;
+    const Vector6 k = K_of(segment(mm, 0)).diagonal();
+    EXPECT_NEAR(k[0] / (E * 5e-6 / L), 1, 1e-14);
+    EXPECT_NEAR(k[3] / (G * 13e-12 / L), 1, 1e-14);
+    EXPECT_NEAR(k[4] / (E * 7e-12 / L), 1, 1e-14);
+    bool noted = false;
+    for (const Number& number : mm.numbers)
+        if (number.path == "beams.bar.I_y") noted = number.unit == "mm⁴" && number.value == 7;
+    EXPECT_TRUE(noted);
+}
+
+TEST(Beam, SegmentsAreSharedOutByLengthWithOneALegAtLeast) {
+    const auto nodes = [](int n) {
+        const Scene scene = parse_scene(
+            cantilever(fmt::format("through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
+            "b.yaml");
+        std::string places;
+        for (std::size_t b = 1; b < scene.bodies.size(); ++b)
+            places += fmt::format("{} {:.4g},{:.4g}  ", scene.bodies[b].name, scene.bodies[b].design.r.x(),
+                                  scene.bodies[b].design.r.y());
+        return places;
+    };
+    EXPECT_EQ(nodes(2), "bar.1 3,0  ");
+    EXPECT_EQ(nodes(3), "bar.1 1.5,0  bar.2 3,0  ");
+    EXPECT_EQ(nodes(5), "bar.1 1,0  bar.2 2,0  bar.3 3,0  bar.4 3,1  ");
+}
+
+TEST(Beam, ANodeIsABodyForTheRestOfTheScene) {
+    const std::string text = cantilever("through: [root, bend, tip], segments: 5, " + section + ", up: z") +
+                             "bushings: {clamp: {bodies: [bar.bend, ground], at: bend, rates: [1, 1, 1]}, "
+                             "other: {bodies: [bar.1, bar.4], "
+                             "at: bend, rates: [1, 1, 1]}}\n";
+    const Scene scene = parse_scene(text, "b.yaml");
+    const auto& clamp = std::get<Bushing>(scene.elastics.at(0).kind);
+    EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(clamp.i.body)).name, "bar.3");
+    EXPECT_LE(clamp.i.s_local.norm(), 1e-15);
+    const auto& other = std::get<Bushing>(scene.elastics.at(1).kind);
+    EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(other.j.body)).name, "bar.4");
+}
+
+TEST(Beam, ARingBeginsAndEndsOnOneBody) {
+    const Scene scene = parse_scene(
+        replaced(cantilever("through: [root, bend, tip, root], segments: 9, " + section + ", up: z"),
+                 "[ground, tip]", "[tip, tip]"),
+        "b.yaml");
+    EXPECT_EQ(scene.elastics.size(), 9U);
+    EXPECT_EQ(segment(scene, 0).i.body, segment(scene, 8).j.body);
+}
+
+// ---- Mirrors.
+
+const std::string axle = R"(elastocheck: 1
+name: axle
+units: {length: mm, angle: deg, force: N}
+mirror: left -> right
+points: {end_left: [0, 500, 0], corner_left: [200, 400, 10], clamp_left: [200, 300, 10], o: [0, 0, 0]}
+bodies: {link_left: {origin: end_left}, rod_left: {origin: o}}
+bushings:
+  mount_left: {bodies: [antiroll.clamp_left, ground], at: clamp_left, rates: [1, 2, 3]}
+  near_left: {bodies: [antiroll.2, ground], at: corner_left, rates: [1, 2, 3]}
+beams:
+  antiroll: {bodies: [link_left, link_right], segments: 9, E: 206e3, G: 79e3, diameter: 22,
+             through: [end_left, corner_left, clamp_left, clamp_right, corner_right, end_right]}
+  torsion_left: {bodies: [rod_left, ground], through: [o, clamp_left, end_left], segments: 3, E: 2, G: 1,
+                 A: 1, I_y: 1, I_z: 2, J: 3, up: [1, 2, 3]}
+loads: {push_left: {on: link_left, at: end_left, force: [0, 0, 1]}}
+branches: {up: {load: push_left, to: 1, steps: 1}}
+probes: {tip_left: {on: link_left, at: end_left}}
+)";
+
+const Elastic& named(const Scene& scene, const std::string& name) {
+    for (const Elastic& elastic : scene.elastics)
+        if (elastic.name == name) return elastic;
+    throw std::out_of_range(name);
+}
+std::string body_name(const Scene& scene, BodyId body) {
+    return body == ground ? "ground" : scene.bodies.at(static_cast<std::size_t>(body)).name;
+}
+Vector3d place(const Scene& scene, const Marker& m) {
+    return m.s_local + (m.body == ground ? Vector3d(Vector3d::Zero())
+                                         : scene.bodies.at(static_cast<std::size_t>(m.body)).design.r);
+}
+
+TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
+    const Scene scene = parse_scene(axle, "axle.yaml");
+    int of_the_beam = 0;
+    for (const Body& body : scene.bodies) of_the_beam += body.name.starts_with("antiroll.");
+    EXPECT_EQ(of_the_beam, 8);
+    const std::pair<const char*, const char*> pairs[] = {{"mount_left", "mount_right"},
+                                                         {"near_left", "near_right"}};
+    for (const auto& [left, right] : pairs) {
+        const auto& l = std::get<Bushing>(named(scene, left).kind);
+        const auto& r = std::get<Bushing>(named(scene, right).kind);
+        EXPECT_LE(
+            (scene.bodies[static_cast<std::size_t>(l.i.body)].design.r.cwiseProduct(Vector3d(1, -1, 1)) -
+             scene.bodies[static_cast<std::size_t>(r.i.body)].design.r)
+                .norm(),
+            1e-15);
+        EXPECT_NE(l.i.body, r.i.body);
+        EXPECT_LE((place(scene, l.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, r.i)).norm(), 1e-15);
+    }
+    EXPECT_EQ(body_name(scene, std::get<Bushing>(named(scene, "near_right").kind).i.body), "antiroll.7");
+    for (int k = 1; k <= 9; ++k) {  // the segments are each other's images
+        const auto& a = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", k)).kind);
+        const auto& b = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", 10 - k)).kind);
+        EXPECT_LE((place(scene, a.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, b.i)).norm(), 1e-15)
+            << k;
+        EXPECT_LE((K_of(a) - K_of(b)).cwiseAbs().maxCoeff(), 1e-12 * K_of(a).maxCoeff()) << k;
+    }
+}
+
+TEST(BeamMirror, ABeamOfOneSideHasATwinWithBodiesOfItsOwn) {
+    const Scene scene = parse_scene(axle, "axle.yaml");
+    for (int k = 1; k <= 3; ++k) {
+        const auto& l = std::get<Bushing>(named(scene, fmt::format("torsion_left.{}", k)).kind);
+        const auto& r = std::get<Bushing>(named(scene, fmt::format("torsion_right.{}", k)).kind);
+        const std::string left = body_name(scene, l.j.body);
+        EXPECT_EQ(body_name(scene, r.j.body), k == 3 ? "ground" : fmt::format("torsion_right.{}", k));
+        EXPECT_EQ(left, k == 3 ? "ground" : fmt::format("torsion_left.{}", k));
+        for (const auto& [m_l, m_r] : {std::pair{l.i, r.i}, std::pair{l.j, r.j}}) {
+            EXPECT_LE((place(scene, m_l).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, m_r)).norm(), 1e-15);
+            const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
+            EXPECT_LE((S * m_l.A_local.toRotationMatrix() * S - m_r.A_local.toRotationMatrix()).norm(),
+                      1e-14);
+        }
+    }
+}
+
+// ---- Mistakes.
+
+TEST(Beam, SaysWhatIsWrong) {
+    const std::string sound = cantilever(
+        "through: [root, bend, tip], segments: 5, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z");
+    const std::string names =
+        "bodies, through, segments, E, G, diameter, wall, A, I_y, I_z, J, shear_y, shear_z, up";
+    expect_complaints(
+        sound,
+        {{"segments: 5", "segment: 5",
+          "beams.bar: unknown field 'segment', did you mean 'segments'? allowed: " + names},
+         {"segments: 5, ", "", "beams.bar.segments: missing, it must be given"},
+         {"segments: 5", "segments: 1", "beams.bar.segments: '1' for 2 legs; allowed: at least one a leg"},
+         {"segments: 5", "segments: 1001",
+          "beams.bar.segments: expected a whole number from 1 to 1000, found '1001'"},
+         {"[root, bend, tip]", "[root]",
+          "beams.bar.through: expected a list of two hardpoints or more, found a list of 1"},
+         {"[root, bend, tip]", "root",
+          "beams.bar.through: expected a list of two hardpoints or more, found 'root'"},
+         {"[root, bend, tip]", "[root, bent, tip]",
+          "beams.bar.through: no hardpoint is called 'bent', did you mean 'bend'? defined: bend, root, tip, "
+          "up"},
+         {"[root, bend, tip]", "[root, bend, bend]",
+          "beams.bar.through: 'bend' is where the hardpoint before it is; each leg needs a length"},
+         {"bodies: [ground, tip], through: [root, bend, tip], segments: 5",
+          "bodies: [tip, tip], through: [root, bend], segments: 1",
+          "beams.bar.bodies: 'tip' twice, with nothing between; one segment needs two different bodies"},
+         {"E: 2", "E: 0", "beams.bar.E: '0' is too small; allowed: above zero"},
+         {"J: 13", "J: -1", "beams.bar.J: '-1' is too small; allowed: above zero"},
+         {", J: 13", "", "beams.bar.J: missing, it must be given"},
+         {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "up: z",
+          "beams.bar: no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J"},
+         {"A: 5", "diameter: 1",
+          "beams.bar.I_y: given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J"},
+         {"A: 5", "wall: 1, A: 5", "beams.bar.wall: of a tube without a diameter; give its diameter"},
+         {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "diameter: 1, wall: 0.6",
+          "beams.bar.wall: '0.6' is more than half the diameter"},
+         {", up: z", "",
+          "beams.bar: up is missing: y and z of its cross-section are not the same, and it says where z "
+          "points"},
+         {"up: z", "up: x", "beams.bar.up: along one of the legs, across which z must be"},
+         {"bodies: {tip", "bodies: {bar.3: {origin: bend}, tip",
+          "beams.bar: needs a body of its own called 'bar.3', but there is one already; call that one "
+          "something else"}});
+    expect_complaints(axle, {{"segments: 9", "segments: 8",
+                              "beams.antiroll.segments: '8' cannot be shared out evenly over the two sides; "
+                              "one more or one less can"},
+                             {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
+                              "beams.antiroll: shared by both sides, as 'left' is not in its name, but "
+                              "refers to 'clamp_left' and not "
+                              "to 'clamp_right'"}});
+}
+
+}  // namespace
+}  // namespace elastocheck

@@ -1,0 +1,428 @@
+// Curves: what goes through a table, how the file says so, and what a preload makes of it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "models/curve.hpp"
+#include "models/reader/interpolant.hpp"
+#include "tests/models/laws_scene.hpp"
+#include "tests/models/scene_numbers.hpp"
+#include "tests/support/folder.hpp"
+
+namespace elastocheck {
+namespace {
+
+using reader::interpolant;
+using reader::TablePoint;
+using Points = std::vector<TablePoint>;
+
+// ---- The interpolant.
+
+// Tables of every shape: even and uneven, steep, flat at the ends and inside, of 2 to 12 points.
+std::vector<Points> tables() {
+    std::mt19937 random(1984);
+    std::uniform_real_distribution<double> any(0, 1);
+    std::vector<Points> all;
+    for (int n = 0; n < 400; ++n) {
+        Points points{{any(random) - 0.5, 1e3 * (any(random) - 0.5)}};
+        const auto count = 2 + random() % 11;
+        while (points.size() < count) {
+            const double h = n % 2 ? 0.01 : 0.05 * std::pow(any(random) + 0.01, 3);
+            const double rise = random() % 4 == 0 ? 0 : 1e3 * std::pow(any(random), 5);
+            points.push_back({points.back().x + h, points.back().f + rise});
+        }
+        all.push_back(points);
+    }
+    return all;
+}
+
+double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
+double slope(const std::array<double, 4>& c, double t) { return c[1] + t * (2 * c[2] + t * 3 * c[3]); }
+
+double width(const Curve& curve, std::size_t k) { return curve.knots[k + 1] - curve.knots[k]; }
+
+double largest_force(const Points& points) {
+    return std::max(std::abs(points.front().f), std::abs(points.back().f));
+}
+
+TEST(Interpolant, PassesThroughEveryPointFromBothSides) {
+    for (const Points& points : tables()) {
+        const Curve curve = interpolant(points);
+        ASSERT_EQ(curve.knots.size(), points.size());
+        ASSERT_EQ(curve.pieces.size(), points.size() + 1);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            EXPECT_EQ(curve.knots[k], points[k].x);
+            EXPECT_EQ(value(curve.pieces[k + 1], 0), points[k].f);
+            const double from_the_left =
+                k == 0 ? value(curve.pieces[0], 0) : value(curve.pieces[k], width(curve, k - 1));
+            EXPECT_NEAR(from_the_left, points[k].f, 4e-15 * largest_force(points));
+        }
+    }
+}
+
+TEST(Interpolant, HasOneSlopeAtEveryPoint) {
+    for (const Points& points : tables()) {
+        const Curve curve = interpolant(points);
+        EXPECT_EQ(curve.pieces[0][1], curve.pieces[1][1]);
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            const double h = width(curve, k - 1), secant = (points[k].f - points[k - 1].f) / h;
+            EXPECT_NEAR(slope(curve.pieces[k], h), curve.pieces[k + 1][1], 8e-15 * secant);
+        }
+    }
+}
+
+// The slope of a cubic is least at an end or where its second derivative is zero.
+TEST(Interpolant, NeverFalls) {
+    for (const Points& points : tables()) {
+        const Curve curve = interpolant(points);
+        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+            const auto& c = curve.pieces[k + 1];
+            const double h = width(curve, k), secant = (points[k + 1].f - points[k].f) / h;
+            double least = std::min(slope(c, 0), slope(c, h));
+            if (c[3] > 0) least = std::min(least, slope(c, std::clamp(-c[2] / (3 * c[3]), 0.0, h)));
+            EXPECT_GE(least, -4e-15 * secant);
+        }
+        EXPECT_GE(curve.pieces.front()[1], 0);
+        EXPECT_GE(curve.pieces.back()[1], 0);
+    }
+}
+
+// Three points (0, 0), (1, 1), (3, 5): secants 1 and 2. Inside 1/m = (5/9)/1 + (4/9)/2; at the ends (4·1 - 1·2)/3 and
+// (5·2 - 2·1)/3.
+TEST(Interpolant, HasTheSlopesOfFritschAndButland) {
+    const Curve curve = interpolant({{0, 0}, {1, 1}, {3, 5}});
+    EXPECT_DOUBLE_EQ(curve.pieces[1][1], 2.0 / 3);
+    EXPECT_DOUBLE_EQ(curve.pieces[2][1], 9.0 / 7);
+    EXPECT_DOUBLE_EQ(curve.pieces[3][1], 8.0 / 3);
+}
+
+TEST(Interpolant, IsStraightWhereThePointsAre) {
+    const Curve line = interpolant({{-2, -6}, {-1, -3}, {0.5, 1.5}, {4, 12}});
+    for (const double x : {-9.0, -2.0, -1.3, 0.0, 0.5, 3.0, 4.0, 11.0})
+        EXPECT_NEAR(force(line, x), 3 * x, 1e-14);
+    const Curve two = interpolant({{1, 5}, {2, 9}});
+    for (const double x : {-3.0, 1.0, 1.7, 8.0}) EXPECT_DOUBLE_EQ(force(two, x), 5 + 4 * (x - 1));
+    const Curve flat = interpolant({{0, 0}, {1, 7}, {2, 7}, {3, 7}, {4, 9}});
+    for (const double x : {1.0, 1.2, 1.999, 2.5, 3.0}) EXPECT_EQ(force(flat, x), 7);
+}
+
+// The energy of the pieces, term by term, against quadrature of the same interpolant told otherwise: by Hermite's
+// basis h_00, h_10, h_01, h_11 and slopes from the curve at the points.
+TEST(Interpolant, HasTheEnergyThatQuadratureFinds) {
+    const auto hermite = [](double s, double h, double f_0, double m_0, double f_1, double m_1) {
+        return (1 + 2 * s) * (1 - s) * (1 - s) * f_0 + s * (1 - s) * (1 - s) * h * m_0 +
+               s * s * (3 - 2 * s) * f_1 + s * s * (s - 1) * h * m_1;
+    };
+    const double node = 0.5 * std::sqrt(0.6);  // Gauss, 3 points: exact to degree 5
+    for (const Points& points : tables()) {
+        const Curve curve = interpolant(points);
+        double exact = 0, quadrature = 0, size = 0;
+        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+            const auto& c = curve.pieces[k + 1];
+            const double h = width(curve, k);
+            exact += h * (c[0] + h * (c[1] / 2 + h * (c[2] / 3 + h * c[3] / 4)));
+            const auto f = [&](double s) {
+                return hermite(s, h, points[k].f, c[1], points[k + 1].f, curve.pieces[k + 2][1]);
+            };
+            quadrature += h / 18 * (5 * f(0.5 - node) + 8 * f(0.5) + 5 * f(0.5 + node));
+            size += h * largest_force(points);
+        }
+        EXPECT_NEAR(exact, quadrature, 4e-15 * size);
+    }
+}
+
+// ---- Curves in the file.
+
+Curve curve_of(const Scene& scene) { return std::get<Curve>(element<AxialSpring>(scene, "coil").law); }
+Curve curve_of(const std::string& curve) { return curve_of(laws(spring_with("curve: {" + curve + "}"))); }
+
+// Where curves are compared: on both sides of all knots and far beyond them [m].
+std::vector<double> positions() {
+    std::vector<double> all;
+    for (int n = -300; n <= 300; ++n) all.push_back(n * 0.5e-3);
+    return all;
+}
+
+void expect_equal(const Curve& a, const std::function<double(double)>& b, double tolerance) {
+    double worst = 0, where = 0;
+    for (const double x : positions())
+        if (const double gap = std::abs(force(a, x) - b(x)); !(gap <= worst)) worst = gap, where = x;
+    EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << worst << " N at " << where << " m";
+}
+
+const std::string one_sided = "table: [[0, 0], [10, 900], [20, 4000], [35, 4000], [50, 9500]]";
+
+TEST(Curve, IsInSi) {
+    const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]]");
+    EXPECT_EQ(curve.knots, (std::vector<double>{-0.05, 0, 0.05}));
+    EXPECT_EQ(force(curve, -0.05), -900);
+    EXPECT_EQ(force(curve, 0.05), 1400);
+    EXPECT_TRUE(curve.known_outside);
+}
+
+TEST(Curve, OutsideGoesOnWithTheSlopeOfItsEnd) {
+    const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: linear");
+    for (const double x : {0.05, 0.2, 3.0}) {
+        EXPECT_NEAR(force(curve, x), 1400 + curve.pieces.back()[1] * (x - 0.05), 1e-9);
+        EXPECT_NEAR(force(curve, -x), -900 - curve.pieces.front()[1] * (x - 0.05), 1e-9);
+    }
+    EXPECT_GT(curve.pieces.back()[1], 28e3);  // steeper than the last secant
+    EXPECT_FALSE(curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown").known_outside);
+}
+
+TEST(Curve, SymmetricIsOdd) {
+    const Curve curve = curve_of(one_sided + ", symmetric: true");
+    expect_equal(
+        curve, [&](double x) { return -force(curve, -x); }, 2e-12);
+    const Curve half = curve_of(one_sided);
+    for (const double x : {0.01, 0.02, 0.03, 0.05}) EXPECT_DOUBLE_EQ(force(curve, x), force(half, x));
+    const Curve whole = curve_of(
+        "table: [[-50, -9500], [-35, -4000], [-20, -4000], [-10, -900], [0, 0], [10, 900], [20, 4000], [35, "
+        "4000], "
+        "[50, 9500]]");
+    expect_equal(
+        curve, [&](double x) { return force(whole, x); }, 0);
+    expect_equal(
+        curve_of(one_sided + ", symmetric: false"), [&](double x) { return force(half, x); }, 0);
+}
+
+// f(x) = scale · t(x - offset)
+TEST(Curve, ScaleMultipliesTheForceAndOffsetMovesTheTable) {
+    for (const char* symmetric : {"true", "false"}) {
+        const std::string table = one_sided + ", symmetric: " + symmetric;
+        const Curve t = curve_of(table), f = curve_of(table + ", scale: 1.1, offset: 2");
+        expect_equal(
+            f, [&](double x) { return 1.1 * force(t, x - 0.002); }, 1e-9);
+        EXPECT_EQ(f.knots.back(), 0.05 + 0.002);
+    }
+}
+
+// Lengths in mm or m, angles in deg or rad, forces in N or kN: one law.
+TEST(Curve, IsTheSameInAnyUnits) {
+    const auto in = [](const char* length, double L, const char* angle, double A, const char* f, double F) {
+        const auto row = [](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", x, y); };
+        const std::string rows = row(-0.05 * L, -900 * F) + ", " + row(0, 0) + ", " + row(0.05 * L, 1400 * F);
+        const std::string angles =
+            row(-0.2 * A, -30 * F * L) + ", " + row(0.1 * A, 11 * F * L) + ", " + row(0.3 * A, 12 * F * L);
+        const std::string end = row(0, 0) + ", " + row(0.01 * L, 900 * F) + ", " + row(0.02 * L, 4000 * F);
+        std::string text = laws_scene(
+            fmt::format(
+                "springs:\n  coil: {{bodies: [arm, ground], from: p, to: t, curve: {{table: [{}], offset: "
+                "{:.17g}}}, "
+                "preload: {:.17g}, bump_stop: {{clearance: {:.17g}, curve: {{table: [{}]}}}}, "
+                "rebound_stop: {{clearance: 0, rate: {:.17g}}}}}\n"
+                "torsion_springs:\n  bar: {{bodies: [arm, ground], at: p, axis: y, curve: {{table: [{}]}}, "
+                "preload_moment: {:.17g}}}\n"
+                "bushings:\n  mount: {{bodies: [arm, ground], at: p, curves: {{x: {{table: [{}]}}, ry: "
+                "{{table: "
+                "[{}]}}}}, undeformed: [{:.17g}, 0, 0], undeformed_angles: [0, {:.17g}, 0]}}",
+                rows, 0.002 * L, 500 * F, 0.01 * L, end, 3e5 * F / L, angles, 7 * F * L, rows, angles,
+                0.001 * L, 0.01 * A),
+            fmt::format("length: {}, angle: {}, force: {}", length, angle, f),
+            "drive: springs.coil.free_length, to: 1, steps: 1");
+        for (const auto& [from, to] :
+             {std::pair<std::string, double>{"[50, 0, 0]", 0}, {"[50, 0, 400]", 0.4}}) {
+            const std::string point = fmt::format("[{:.17g}, 0, {:.17g}]", 0.05 * L, to * L);
+            text.replace(text.find(from), from.size(), point);
+        }
+        Scene scene = parse_scene(text, "laws.yaml");
+        scene.branches[0].to = 1;  // a unit of length
+        return numbers(scene);
+    };
+    const auto si = in("m", 1, "rad", 1, "N", 1);
+    for (const auto& other : {in("mm", 1e3, "rad", 1, "kN", 1e-3), in("mm", 1e3, "deg", 180 / M_PI, "N", 1),
+                              in("m", 1, "deg", 180 / M_PI, "kN", 1e-3)}) {
+        ASSERT_EQ(other.size(), si.size());
+        for (std::size_t k = 0; k < si.size(); ++k) {
+            ASSERT_EQ(si[k].first, other[k].first);
+            // Coefficients are differences of forces divided by lengths: round-off of the larger ones.
+            const double size = si[k].first.find(".c_") == std::string::npos ? std::abs(si[k].second) : 1e8;
+            EXPECT_NEAR(si[k].second, other[k].second, 1e-14 * size) << si[k].first;
+        }
+    }
+}
+
+// ---- CSV files.
+
+struct Beside {
+    support::Folder folder;
+    explicit Beside(const std::string& csv, const std::string& file = "coil.csv") {
+        folder.write("scene.yaml", laws_scene(spring_with("curve: {file: " + file + "}")));
+        folder.write("coil.csv", csv);
+    }
+};
+
+TEST(CurveFile, IsTheTableBesideTheScene) {
+    const Curve table = curve_of(one_sided);
+    for (const std::string csv :
+         {"0,0\n10,900\n20,4000\n35,4000\n50,9500\n", "0, 0\n10,\t900\n20 ,4e3\n+35,4000\n50,9500",
+          "deflection [mm], force [N]\n0,0\n10,900\n20,4000\n35,4000\n50,9500\n",
+          "# measured\n\n  # twice\nx,f\n0,0\n10,900\n\n20,4000\n# the end stop\n35,4000\n50,9500\n\n",
+          "x,f\r\n0,0\r\n10,900\r\n20,4000\r\n35,4000\r\n50,9500\r\n",
+          "\xEF\xBB\xBF"
+          "0,0\n10,900\n20,4000\n35,4000\n50,9500\n"}) {
+        SCOPED_TRACE(csv);
+        const Beside beside(csv);
+        const Curve read = curve_of(read_scene(beside.folder.path / "scene.yaml"));
+        EXPECT_EQ(read.knots, table.knots);
+        EXPECT_EQ(read.pieces, table.pieces);
+    }
+}
+
+TEST(CurveFile, MayBeInAFolderBelow) {
+    support::Folder folder;
+    folder.write("scene.yaml", laws_scene(spring_with("curve: {file: rubber/coil.csv}")));
+    std::filesystem::create_directory(folder.path / "rubber");
+    folder.write("rubber/coil.csv", "0,0\n10,900\n");
+    EXPECT_EQ(force(curve_of(read_scene(folder.path / "scene.yaml")), 0.01), 900);
+}
+
+// Its numbers are not the scene's: it is varied by scale and offset.
+TEST(CurveFile, HasNoNumbersThatCanBeSet) {
+    const Beside beside("0,0\n10,900\n");
+    const Scene scene = read_scene(beside.folder.path / "scene.yaml");
+    for (const Number& number : scene.numbers)
+        EXPECT_EQ(number.path.find("curve"), std::string::npos) << number.path;
+}
+
+TEST(CurveFile, IsRefusedWithItsOwnLine) {
+    const std::pair<std::string, std::string> cases[] = {
+        {"x,f\n0,0\n10,900\n20,800\n",
+         ":4: springs.coil.curve.file: row 3: force '800' is below that of the row before; it may stay, but "
+         "not fall"},
+        {"0,0\n# note\n10,900\n10,901\n",
+         ":4: springs.coil.curve.file: row 3: deflection '10' is not above that of the row before"},
+        {"0,0\n10,900,3\n",
+         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a list of 3"},
+        {"0,0\n10;900\n",
+         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a list of 1"},
+        {"0,0\n10,many\n", ":2: springs.coil.curve.file: expected a number, found 'many'"},
+        {"x,f\nx,f\n0,0\n10,900\n", ":2: springs.coil.curve.file: expected a number, found 'x'"},
+        {"0,0\n10,\n", ":2: springs.coil.curve.file: expected a number, found ''"},
+        {"0,nan\n10,900\n", ":1: springs.coil.curve.file: expected a number, found 'nan'"},
+        {"0,0\n10,1e31\n",
+         ":2: springs.coil.curve.file: '1e31' is out of range; allowed: 0, or 1e-30 to 1e+30 in size"},
+        {"x,f\n10,900\n",
+         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a list of 1"},
+        {"",
+         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a list of 0"},
+    };
+    for (const auto& [csv, message] : cases) {
+        const Beside beside(csv);
+        try {
+            read_scene(beside.folder.path / "scene.yaml");
+            ADD_FAILURE() << csv << " was accepted";
+        } catch (const SceneError& error) {
+            EXPECT_EQ(error.what(), (beside.folder.path / "coil.csv").string() + message);
+        }
+    }
+}
+
+TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
+    std::string rows;
+    for (int n = 0; n <= 10000; ++n) rows += fmt::format("{},{}\n", n, n);
+    const std::tuple<std::string, std::string, std::string> cases[] = {
+        {"none.csv", "", ":11: springs.coil.curve.file: 'none.csv': no such file"},
+        {".", "", ":11: springs.coil.curve.file: '.': a directory; a file is needed"},
+        {"../coil.csv", "0,0\n1,1\n",
+         ":11: springs.coil.curve.file: '../coil.csv' leads out of the scene's folder; allowed: a file in "
+         "it, or in a "
+         "folder below"},
+        {"/tmp/coil.csv", "0,0\n1,1\n",
+         ":11: springs.coil.curve.file: '/tmp/coil.csv' leads out of the scene's folder; allowed: a file in "
+         "it, or in a "
+         "folder below"},
+        {"coil.csv", "0,0\n1,\xFF\n", ":11: springs.coil.curve.file: 'coil.csv': not plain text (UTF-8)"},
+        {"coil.csv", std::string((1 << 20) + 1, '#'),
+         ":11: springs.coil.curve.file: 'coil.csv': larger than 1 MiB, which no table is"},
+    };
+    for (const auto& [file, csv, message] : cases) {
+        const Beside beside(csv, file);
+        const std::string scene = (beside.folder.path / "scene.yaml").string();
+        try {
+            read_scene(scene);
+            ADD_FAILURE() << file << " was accepted";
+        } catch (const SceneError& error) {
+            EXPECT_EQ(error.what(), scene + message);
+        }
+    }
+    const Beside beside(rows);
+    try {
+        read_scene(beside.folder.path / "scene.yaml");
+        ADD_FAILURE();
+    } catch (const SceneError& error) {
+        EXPECT_EQ(error.what(), (beside.folder.path / "coil.csv").string() +
+                                    ":1: springs.coil.curve.file: 10001 rows; a table has 10000 at most");
+    }
+}
+
+// Whatever happens to the text of a table, the scene has a curve of finite numbers that never falls, or an error says where.
+TEST(CurveFile, DamagedGivesACurveOrAnError) {
+    const std::string sound =
+        "# measured\nx [mm], f [N]\n-50,-9500\n-35,-4000\n0,0\n10,900\n20,4000\n50,9500\n";
+    const char* const tokens[] = {",",  "\n", "#",  "-",  "e", "1e30", "nan", "inf",
+                                  "\"", ";",  "\r", "\t", "x", "\xFF", "0"};
+    std::mt19937 random(2718);
+    const Beside beside(sound);
+    int curves = 0, errors = 0;
+    for (int n = 0; n < 600; ++n) {
+        std::string damaged = sound;
+        for (unsigned k = 0; k <= random() % 3; ++k)
+            if (random() % 2)
+                damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+            else
+                damaged.insert(random() % damaged.size(), tokens[random() % std::size(tokens)]);
+        beside.folder.write("coil.csv", damaged);
+        try {
+            const Curve curve = curve_of(read_scene(beside.folder.path / "scene.yaml"));
+            ++curves;
+            for (std::size_t k = 0; k < curve.pieces.size(); ++k) {
+                for (const double c : curve.pieces[k]) ASSERT_TRUE(std::isfinite(c)) << damaged;
+                ASSERT_GE(curve.pieces[k][1], 0) << damaged;
+            }
+        } catch (const SceneError& error) {
+            ++errors;
+            ASSERT_TRUE(std::string(error.what()).starts_with(beside.folder.path.string())) << error.what();
+        }
+    }
+    EXPECT_GT(curves, 60);
+    EXPECT_GT(errors, 60);
+}
+
+// ---- Springs with curves: f(ℓ - ℓ₀) = -P at the design length ℓ = 400 mm.
+
+double design_force(const AxialSpring& spring) { return force(spring.law, 0.4 - spring.free_length); }
+
+TEST(SpringCurve, AFreeLengthOrNoneCountsTheDeflectionFromThere) {
+    const std::string curve = "curve: {table: [[-50, -900], [0, 10], [50, 1400]]}";
+    EXPECT_DOUBLE_EQ(element<AxialSpring>(laws(spring_with(curve)), "coil").free_length, 0.4);
+    EXPECT_DOUBLE_EQ(design_force(element<AxialSpring>(laws(spring_with(curve)), "coil")), 10);
+    EXPECT_EQ(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil").free_length,
+              0.45);
+    EXPECT_NEAR(design_force(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil")),
+                -900, 1e-9);
+}
+
+TEST(SpringCurve, APreloadIsMetWhereverTheCurveHasIt) {
+    for (const char* table : {"[[-80, -6000], [-50, -900], [-10, -10], [0, 0], [50, 1400]]",
+                              "[[-50, -900], [0, 0]]", "[[-100, -9000], [-40, -2000], [5, 30]]"})
+        for (const double preload :
+             {9500.0, 8000.0, 6000.0, 3500.0, 900.0, 700.1, 11.0, 1.0, 0.0, -1.0, -30.0, -5000.0}) {
+            const auto spring = element<AxialSpring>(
+                laws(spring_with(fmt::format("curve: {{table: {}}}, preload: {}", table, preload))), "coil");
+            EXPECT_NEAR(design_force(spring), -preload, 1e-11 * 9500) << table;
+        }
+    const auto edge = element<AxialSpring>(
+        laws(
+            spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown}, preload: 900")),
+        "coil");
+    EXPECT_DOUBLE_EQ(edge.free_length, 0.45);
+}
+
+}  // namespace
+}  // namespace elastocheck

@@ -1,0 +1,270 @@
+// What the command makes of a scene before it solves it, and beside: templates, trim, formulations, all of it kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.hpp"
+
+namespace {
+
+namespace support = elastocheck::support;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+
+const std::string scenes = ELASTOCHECK_SCENES;
+
+Said elastocheck_says(const std::string& arguments) {
+    return support::says(std::string(ELASTOCHECK_COMMAND) + " " + arguments);
+}
+
+std::vector<std::string> shipped() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes))
+        if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    return names;
+}
+
+// ---- elastocheck new
+
+TEST(New, ListsEverySceneWithALine) {
+    const Said said = elastocheck_says("new");
+    EXPECT_EQ(said.code, 0) << said.err;
+    for (const auto& name : shipped()) EXPECT_TRUE(contains("\n" + said.out, "\n" + name + " ")) << name;
+    EXPECT_TRUE(contains(said.out, "McPherson strut (Kang 2004, section 3)")) << said.out;
+}
+
+TEST(New, PrintsTheSceneAsItIsAndItStandsAlone) {
+    const Folder folder;
+    for (const auto& name : shipped()) {
+        const std::string file = (folder.path / (name + ".yaml")).string();
+        const Said said = elastocheck_says("new " + name + " > " + file);
+        EXPECT_EQ(said.code, 0) << name << said.err;
+        EXPECT_EQ(text_of(file), text_of(scenes + "/" + name + ".yaml")) << name;
+        // Nothing has to lie beside it: it is read (trimmed or not) from a folder of its own.
+        const Said read = elastocheck_says("inspect " + file);
+        EXPECT_NE(read.code, 2) << name << ": " << read.err;
+    }
+}
+
+TEST(New, UnknownNameIsAnsweredWithTheNearest) {
+    const Said said = elastocheck_says("new mcphersn");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(said.out.empty());
+    EXPECT_TRUE(
+        contains(said.err, "new: no template is called 'mcphersn', did you mean 'mcpherson'? there are:"))
+        << said.err;
+}
+
+// ---- trim
+
+std::string block(const std::string& trim, const std::string& more = "") {
+    return "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
+           "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: "
+           "high}}\n"
+           "joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}\n"
+           "springs:\n  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}\n"
+           "  across: {bodies: [block, ground], from: high, to: aside, rate: 0.001}\n" +
+           more + "loads: {up: {on: block, at: high, force: [0, 0, 1]}}\n" + trim +
+           "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {top: {on: block, at: high}}\n";
+}
+
+TEST(TrimCommand, EveryCommandStartsFromTheTrimmedScene) {
+    const Folder folder;
+    const auto scene = folder.write(
+        "block.yaml", block("trim: {adjust: [springs.coil.preload], until: [top.z], under: {up: -500}}\n"));
+    const Said inspected = elastocheck_says("inspect " + scene);
+    EXPECT_EQ(inspected.code, 0) << inspected.err;
+    for (const char* part :
+         {"trim, found by the equilibrium leg", "confirmed by the energy leg", "springs.coil.preload",
+          "+500 N: force 500 N in compression, free length 425 mm", "until top.z"})
+        EXPECT_TRUE(contains(inspected.out, part)) << part << "\n" << inspected.out;
+    // Without the trim the block would begin 25 mm lower.
+    const Said solved = elastocheck_says("solve " + scene + " --method equilibrium");
+    EXPECT_TRUE(contains(solved.out, "up,equilibrium,0,")) << solved.out;
+    EXPECT_FALSE(contains(solved.out, ",375,")) << solved.out;
+    const std::string out = (folder.path / "out").string();
+    const Said compared = elastocheck_says("compare " + scene + " -o " + out);
+    EXPECT_EQ(compared.code, 0) << compared.err << compared.out;
+    const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
+    const auto& trim = result["scenes"][0]["trim"];
+    EXPECT_NEAR(trim["adjusted"][0]["by"].get<double>(), 500, 1e-6);
+    EXPECT_LE(std::abs(trim["conditions"][0]["missed_by_confirming_leg"].get<double>()), 1e-6);
+    EXPECT_EQ(trim["confirmed_by"], "energy");
+}
+
+TEST(TrimCommand, QuestionThatIsIllPosedIsBadInputWithItsLine) {
+    const Folder folder;
+    const auto scene = folder.write(
+        "block.yaml", block("trim: {adjust: [springs.across.preload], until: [top.z], under: {up: -500}}\n"));
+    const Said said = elastocheck_says("inspect " + scene);
+    EXPECT_EQ(said.code, 2) << said.out;
+    EXPECT_TRUE(contains(said.err, "block.yaml:11: trim: 'springs.across.preload' has no influence on top.z"))
+        << said.err;
+}
+
+TEST(TrimCommand, WhatIsNotReachedLeavesNothingToJudge) {
+    const Folder folder;
+    // The rod stops the block 0.5 m above where it hangs.
+    const auto scene = folder.write(
+        "block.yaml",
+        "elastocheck: 1\nname: rod\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {pivot: [0, 0, 0], tip: [1, 0, 0], low: [1, 0, -1]}\nbodies: {rod: {origin: pivot}}\n"
+        "joints: {pivot: {type: revolute, bodies: [rod, ground], at: pivot, axis: y}}\n"
+        "springs: {coil: {bodies: [rod, ground], from: tip, to: low, rate: 20e3}}\n"
+        "loads: {up: {on: rod, at: tip, force: [0, 0, 1]}}\n"
+        "trim: {adjust: [springs.coil.preload], until: {tip.z: 3}}\n"
+        "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {tip: {on: rod, at: tip}}\n");
+    for (const char* command : {"inspect", "solve", "compare", "converge", "trade"}) {
+        const Said said = elastocheck_says(std::string(command) + " " + scene);
+        EXPECT_EQ(said.code, 3) << command << said.err;
+        EXPECT_TRUE(contains(
+            said.err,
+            "block.yaml:9: trim: the conditions cannot be met: the nearest that was reached misses 'tip.z'"))
+            << said.err;
+    }
+    const Said gated = elastocheck_says("gate " + scene + " --accept --reason first");
+    EXPECT_EQ(gated.code, 3) << gated.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "baselines"));
+}
+
+// ---- inspect
+
+TEST(Inspect, SaysWhatElementsAre) {
+    const Folder folder;
+    const auto scene = folder.write(
+        "all.yaml",
+        "elastocheck: 1\nname: all\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 0.5, 0], d: [0, 1, 0], low: [1, 0, -0.5]}\n"
+        "bodies: {arm: {origin: a}, other: {origin: d}}\n"
+        "joints: {hinge: {type: revolute, bodies: [arm, ground], at: a, axis: y}}\n"
+        "springs:\n"
+        "  coil: {bodies: [arm, ground], from: b, to: low, rate: 20e3, bump_stop: {clearance: 0.03, rate: "
+        "300e3}}\n"
+        "  curved: {bodies: [arm, ground], from: b, to: low, curve: {table: [[-0.05, -900], [0, 0], [0.05, "
+        "1400]]}}\n"
+        "torsion_springs: {bar: {bodies: [arm, ground], at: a, axis: y, rate: 40}}\n"
+        "bushings:\n"
+        "  mount: {bodies: [other, ground], at: d, rates: [1e6, 1e6, 1e6], rotational_rates: [10, 10, 10],\n"
+        "          formulation: {frame: j, angles: cardan}}\n"
+        "beams: {leaf: {bodies: [arm, other], through: [b, d], E: 206e9, G: 79e9, diameter: 0.02, segments: "
+        "4}}\n"
+        "loads: {up: {on: arm, at: b, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {tip: {on: other, at: d}}\n");
+    const Said said = elastocheck_says("inspect " + scene);
+    EXPECT_EQ(said.code, 0) << said.err;
+    for (const char* part :
+         {"axial spring, 20 N/mm", "stop, touches when 30 mm shorter, 300 N/mm", "curve from -50 to 50 mm, ",
+          "torsion spring, ", "bushing, frame on j, Cardan angles", "leaf.1 ... 4", "beam in 4 segments"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+}
+
+TEST(Inspect, TellsTheSizeBeforeAndAfter) {
+    const Said said = elastocheck_says("inspect " + scenes + "/four_bar.yaml");
+    EXPECT_TRUE(contains(said.out, "the scene  ") && contains(said.out, "as solved  ")) << said.out;
+}
+
+TEST(Inspect, NamesWhatIsCondensedWithItsReason) {
+    const Said said = elastocheck_says("inspect " + scenes + "/front_axle.yaml");
+    for (const char* part : {"left out or condensed, because no output depends on it",
+                             "body 'drop_link_left': a link with a ball at each end and no load: it is the "
+                             "distance joint 'drop_link_left'",
+                             "the scene  11 bodies", "as solved  9 bodies"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+}
+
+// ---- wheel and ride rate
+
+TEST(Rates, AreSaidWhereAWheelIsLiftedAndRideRatesWhereItHasATyre) {
+    const Said tyre = elastocheck_says("compare " + scenes + "/tyre_on_road.yaml");
+    EXPECT_EQ(tyre.code, 0) << tyre.err;
+    for (const char* part : {"wheel rate from 0 to 60 mm: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n",
+                             "wheel rate from 0 to 1500 N: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n"})
+        EXPECT_TRUE(contains(tyre.out, part)) << part << "\n" << tyre.out;
+    EXPECT_FALSE(contains(tyre.out, "from 0 to 2000 N")) << "the tyre bears a part of that\n" << tyre.out;
+    const Said strut = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 10");
+    EXPECT_TRUE(contains(strut.out, "wheel rate from 0 to ")) << strut.out;
+    EXPECT_FALSE(contains(strut.out, "ride rate")) << strut.out;
+}
+
+// ---- compare --formulations
+
+TEST(FormulationsCommand, ShowsTheSpreadBesideUncertaintyAndDeviation) {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const Said said =
+        elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 10 --formulations -o " + out);
+    EXPECT_EQ(said.code, 0) << said.err;
+    for (const char* part :
+         {"formulations of the bushings (8): K2_strut_mount, K3_arm_front, K4_arm_rear",
+          "largest less smallest value over 7 formulations",
+          "not solved: frame in the middle: loaded idle mode: ", "without offset moment",
+          "The tool you compare with may differ from this one by the spread", "both be right"})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
+    EXPECT_EQ(result["scenes"][0]["formulations"]["spread"]["rows"].size(), 10u);
+    EXPECT_TRUE(text_of(out + "/formulations.csv").starts_with("branch,output,unit,spread,"));
+}
+
+TEST(FormulationsCommand, SceneWithoutAChoiceCouldNotBeJudged) {
+    const Said said =
+        elastocheck_says("compare " + scenes + "/two_spring_arch.yaml --steps 4 --formulations");
+    EXPECT_EQ(said.code, 3) << said.out;
+    EXPECT_TRUE(contains(said.out, "inconclusive: the scene has no bushing that leaves a choice"))
+        << said.out;
+}
+
+// ---- no energy
+
+TEST(NoEnergy, IsSaidAndTheSeriesJudges) {
+    const Folder folder;
+    std::string scene = text_of(scenes + "/mcpherson.yaml");
+    const std::string load = "force: [0, 0, 1]}";
+    const auto at = scene.find(load);
+    ASSERT_NE(at, scene.npos);
+    scene.replace(at, load.size(), "force: [0, 0, 1], follows: true}");
+    const std::string out = (folder.path / "out").string();
+    const Said said =
+        elastocheck_says("compare " + folder.write("kick.yaml", scene) + " --steps 10 -o " + out);
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    for (const char* part : {"energy       not conservative", "series       converged",
+                             "the equilibrium leg and series judge each other; no energy exists: ",
+                             "'vertical'", "or series where no energy exists", "conclusive: "})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
+    const auto& branch = result["scenes"][0]["branches"][0];
+    EXPECT_EQ(branch["second_reference"], "series");
+    EXPECT_EQ(branch["reference_uncertainty"]["of"], "series");
+    EXPECT_EQ(branch["legs"].size(), 4u);
+}
+
+// ---- --keep-all
+
+TEST(KeepAll, SolvesTheWholeSceneToTheSameNumbers) {
+    const Folder folder;
+    const auto scene = folder.write(
+        "s.yaml",
+        "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: a}, idler: {origin: c}}\n"
+        "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: y}\n"
+        "  hanger: {type: revolute, bodies: [idler, bar], at: c, axis: y}\n"
+        "bushings: {k: {bodies: [bar, ground], at: b, rates: [1e4, 1e4, 1e4]}}\n"
+        "loads: {up: {on: bar, at: b, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 100, steps: 2}}\n"
+        "probes: {tip: {on: bar, at: b}}\n");
+    const Said less = elastocheck_says("inspect " + scene),
+               all = elastocheck_says("inspect " + scene + " --keep-all");
+    EXPECT_EQ(all.code, 0) << all.err;
+    EXPECT_TRUE(contains(less.out, "body 'idler': it hangs on one other body")) << less.out;
+    EXPECT_TRUE(contains(less.out, "coordinates            6")) << less.out;
+    EXPECT_TRUE(contains(all.out, "coordinates           12")) << all.out;
+    for (const char* command : {"solve ", "compare "})
+        EXPECT_EQ(elastocheck_says(command + scene + " --keep-all").code, 0) << command;
+}
+
+}  // namespace
