@@ -283,7 +283,11 @@ Trimmed trim(const Scene& scene) {
     for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
         Answer failed;
         const auto J = responses(problem, p, failed);
-        if (!J) return give_up(failed, "beside the state reached");
+        if (!J && record.iterations == 0) return give_up(failed, "beside the state reached");
+        if (!J) {
+            stuck = fmt::format("; beside it: {}: {}", elastocheck::name(failed.outcome), failed.detail);
+            break;
+        }
         if (const std::string why = ill_posed(trim, *J); !why.empty()) {
             // Where it was well-posed before, the way there has led to where it can go no farther.
             if (record.iterations == 0 || here.missed.norm() <= acceptable) throw std::invalid_argument(why);
@@ -299,8 +303,9 @@ Trimmed trim(const Scene& scene) {
             if (next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm()) break;
         }
         if (!(next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())) {
-            if (!(here.missed.norm() <= acceptable) && next.outcome != Outcome::converged)
-                return give_up(next, "on the way to the conditions");
+            // Conditions out of reach are left at a singular state, on whose other side rounding decides what is met.
+            if (next.outcome != Outcome::converged)
+                stuck = fmt::format("; farther: {}: {}", elastocheck::name(next.outcome), next.detail);
             break;
         }
         p += share * dp;
