@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "recursive/assembly.hpp"
+#include "recursive/pattern.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -309,8 +310,10 @@ Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
     const State<double> q = design_state<double>(model);
     MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);
     VectorXd unused(diagnosis.rows);
-    assemble<double>(model, inputs_as_drawn<double>(model), q, M, unused);
-    const VectorXd D = equilibration<double>(M);
+    SaddleMatrix<double> kept = saddle_matrix(model);
+    assemble<double>(model, inputs_as_drawn<double>(model), q, kept, unused);
+    M = sparse(kept);
+    const VectorXd D = equilibration(kept);
     const auto nullity = diagnosis.null_space.cols();
     return {condition_number(M, nullity), condition_number(D.asDiagonal() * M * D.asDiagonal(), nullity)};
 }

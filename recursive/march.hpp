@@ -225,8 +225,13 @@ Real strain_of_held(const March<Real>& s, const State<Real>& q) {
     }
     for (int c = system.idle; c < system.borders(); ++c) {
         const auto y = system.held.col(c).tail(system.m);
-        const auto Phi_q = system.M.bottomLeftCorner(system.m, system.n);
-        const Real left = (Phi_q.transpose() * y).norm(), whole = y.cwiseAbs().dot(Phi_q.rowwise().norm());
+        Vector<Real> force;
+        constraint_force(system.M, y, force);
+        Real whole = 0;
+        for (int row = 0; row < system.m; ++row)
+            whole +=
+                std::abs(y[row]) * std::hypot(system.M.part(row, 0).norm(), system.M.part(row, 1).norm());
+        const Real left = force.norm();
         if (whole > 0) worst = std::max(worst, left / whole);
     }
     return worst;

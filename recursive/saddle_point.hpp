@@ -18,20 +18,21 @@
 // error that the published method leaves, and feeding it back grows it.
 #pragma once
 
+#include "recursive/saddle_matrix.hpp"
 #include "recursive/sparse_lu.hpp"
 
 namespace elastocheck::recursive {
 
 template <class Real>
 struct SaddlePoint {
-    int n = 0, m = 0;     // 6nb, rows of Φ
-    Matrix<Real> M;       // raw, [(n+m) × (n+m)]; assembled by the caller, symmetric
-    Vector<Real> scale;   // D, powers of two
-    int idle = 0;         // how many columns of `held` are idle modes; the rest are redundant combinations
-    Matrix<Real> held;    // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
-    Vector<Real> weight;  // W: 1 for Δr [m], L for Δπ, 1 for λ
-    Matrix<Real> moves;   // 1 where an entry of `held` may be other than zero
-    // M̂ with its border, entry by entry of the pattern; where an entry of M lies (column by column), -1 for
+    int n = 0, m = 0;      // 6nb, rows of Φ
+    SaddleMatrix<Real> M;  // raw [(n+m) × (n+m)]; assembled by the caller
+    Vector<Real> scale;    // D, powers of two
+    int idle = 0;          // how many columns of `held` are idle modes; the rest are redundant combinations
+    Matrix<Real> held;     // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
+    Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
+    Matrix<Real> moves;    // 1 where an entry of `held` may be other than zero
+    // M̂ with its border, entry by entry of the pattern; where an entry of M lies among its values, -1 - ... for
     // one of the border; what it is multiplied by.
     std::vector<Real> values, scaling;
     std::vector<int> source;
@@ -39,18 +40,18 @@ struct SaddlePoint {
     Vector<Real> rhs, solution;
     SparseLU<Real> lu;
 
-    auto K() { return M.topLeftCorner(n, n); }
     int borders() const { return static_cast<int>(held.cols()); }
 };
 
 // D of the matrix M, by a few Ruiz sweeps: every row of D M D has its largest entry in (½, 2].
 template <class Real>
-Vector<Real> equilibration(const Matrix<Real>& M) {
-    const Matrix<Real> size = M.cwiseAbs();
-    Vector<Real> d = Vector<Real>::Ones(M.rows()), largest(M.rows());
+Vector<Real> equilibration(const SaddleMatrix<Real>& M) {
+    Vector<Real> d = Vector<Real>::Ones(M.n + M.m), largest(M.n + M.m);
     for (int sweep = 0; sweep < 10; ++sweep) {
         largest.setZero();
-        for (Eigen::Index j = 0; j < d.size(); ++j) largest = largest.cwiseMax(size.col(j) * d[j]);
+        for_each_entry(M, [&](int i, int j, int at) {
+            largest[i] = std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(at)]) * d[j]);
+        });
         for (Eigen::Index k = 0; k < d.size(); ++k)
             if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
     }
@@ -103,7 +104,7 @@ void scale_entries(SaddlePoint<Real>& system) {
         b.normalize();
     }
     const Pattern& pattern = system.lu.order.pattern;
-    const Real* const M = system.M.data();
+    const Real* const M = system.M.values.data();
     const int inner = pattern.first[static_cast<std::size_t>(N)];
     for (int e = 0; e < inner; ++e) {
         const auto at = static_cast<std::size_t>(e);
@@ -150,7 +151,7 @@ void analyse(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
             const bool inside = i < N && j < N;
             const auto flat = [&](int row, int column) { return static_cast<int>(column * N) + row; };
             system.source.push_back(
-                inside ? flat(i, j)
+                inside ? system.M.at(i, j)
                        : -1 - (i < N ? flat(i, j - static_cast<int>(N)) : flat(j, i - static_cast<int>(N))));
             system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : Real(1));
         }
@@ -169,7 +170,7 @@ SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
     SaddlePoint<Real> system;
     system.n = from.n;
     system.m = from.m;
-    system.M = from.M.cast<Real>();
+    system.M = from.M.template cast<Real>();
     system.scale = from.scale.cast<Real>();
     system.idle = from.idle;
     system.held = from.held.cast<Real>();
