@@ -273,19 +273,20 @@ Diagnosis diagnose(const Model& model) {
         IdleMode mode;
         Eigen::Index largest = 0;  // the sign is free: the largest entry counts as positive
         (void)idle.col(c).cwiseAbs().maxCoeff(&largest);
-        mode.dq = (idle(largest, c) < 0 ? -1 : 1) * (physical.asDiagonal() * idle.col(c));
+        const VectorXd dq = (idle(largest, c) < 0 ? -1 : 1) * (physical.asDiagonal() * idle.col(c));
+        mode.dq = dq.sparseView();
         (void)idle.col(c).reshaped(6, nb).colwise().norm().maxCoeff(&largest);
         mode.body = static_cast<BodyId>(largest);
-        mode.description = describe(model, q, mode.body, mode.dq.segment<3>(6 * largest),
-                                    mode.dq.segment<3>(6 * largest + 3), L);
+        mode.description =
+            describe(model, q, mode.body, dq.segment<3>(6 * largest), dq.segment<3>(6 * largest + 3), L);
         result.idle.push_back(mode);
     }
 
-    result.null_space.setZero(n + m, idle.cols() + redundant.cols());
-    result.null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
+    MatrixXd null_space = MatrixXd::Zero(n + m, idle.cols() + redundant.cols());
+    null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
     if (redundant.cols() > 0)  // λ of the unscaled rows
-        result.null_space.bottomRightCorner(m, redundant.cols()) =
-            row_norm.cwiseInverse().asDiagonal() * redundant;
+        null_space.bottomRightCorner(m, redundant.cols()) = row_norm.cwiseInverse().asDiagonal() * redundant;
+    result.null_space = null_space.sparseView();
 
     // f_ext(0) - f_elast, projected on what the constraints leave free.
     VectorXd f(n);

@@ -11,6 +11,7 @@
 //                         element's own axes
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@
 namespace elastocheck::recursive {
 
 struct IdleMode {
-    BodyId body = ground;     // the body that moves most
-    Eigen::VectorXd dq;       // [6nb], unit in (Δr, L Δπ)
+    BodyId body = ground;            // the body that moves most
+    Eigen::SparseVector<double> dq;  // [6nb], unit in (Δr, L Δπ)
     std::string description;  // "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'"
 };
 
@@ -44,8 +45,9 @@ struct Diagnosis {
     std::vector<bool> determined;
     std::vector<std::vector<int>> redundant_sets;  // positions in Model::joints, ascending
     std::vector<IdleMode> idle;
-    Eigen::MatrixXd
-        null_space;  // of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d]
+    // Of eq. (24): idle modes (Δq, 0), then redundant combinations (0, λ) [(6nb + m) × d], each of as few bodies
+    // or joints as can be, none of them perpendicular to another on purpose.
+    Eigen::SparseMatrix<double> null_space;
 
     int degrees_of_freedom() const { return coordinates - rank; }
 };
