@@ -1,6 +1,7 @@
 #include "recursive/analysis.hpp"
 
 #include "recursive/assembly.hpp"
+#include "recursive/loops.hpp"
 #include "recursive/pattern.hpp"
 
 namespace elastocheck::recursive {
@@ -22,8 +23,8 @@ Analysis analyse(const Model& model) {
     system.weight.setOnes(n + m);
     for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
     assemble<double>(model, inputs, q, system.M, Phi);
-    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space.toDense(),
-            pattern(model));
+    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
+            pattern(model), loops(model));
 
     assemble_consistent<double>(model, nothing, inputs, q, Vector<double>::Zero(m), system.M, Phi);
     result.pivot_ratio = factorise(system);
