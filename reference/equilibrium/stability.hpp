@@ -29,7 +29,16 @@ struct Stiffness {
     double round_off = 0;
     int negative = 0;
 };
-Stiffness stiffness(const System& system, const Eigen::MatrixXd& J, const NullSpaces& idle);
+Stiffness stiffness(const System& system, const Linearisation& at);
+
+// The two ways to it. Small systems ask M itself, for all of its eigenvalues. Large ones never form it: by Sylvester,
+// K = -∂(balance)/∂q, whose symmetric part with ρ Φ_qᵀ Φ_q added is positive definite, is positive definite on Z, and
+// where it is not, and for the size of the least eigenvalue, M⁻¹ is asked, which is a solution of the linearised system:
+//
+//   ⎡ -K   Φ_qᵀ ⎤ ⎧ x ⎫   ⎧ -b ⎫
+//   ⎣ Φ_q   0   ⎦ ⎩ λ ⎭ = ⎩  0 ⎭      x = Z M⁻¹ Zᵀ b
+Stiffness dense_stiffness(const System& system, const Linearisation& at);
+Stiffness sparse_stiffness(const System& system, const Linearisation& at);
 
 enum class Stability {
     kept,
@@ -38,14 +47,15 @@ enum class Stability {
 };
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to);
 
-// Whether the constraints, which may divide too, have done so on a step from J to J. The determinant of J has
-// that of Φ_q in it twice and does not notice; that of
+// Whether the constraints, which may divide too, have done so on a step. The determinant of J has that of Φ_q in it
+// twice and does not notice; that of
 //
 //   ⎡ Φ_q  U ⎤
 //   ⎣ Zᵀ   0 ⎦     Z, U: null spaces of Φ_q and Φ_qᵀ where the step begins
 //
-// changes its sign where Φ_q loses rank.
-bool constraints_keep_their_side(const System& system, const Eigen::MatrixXd& J_from,
-                                 const Eigen::MatrixXd& J_to);
+// changes its sign where Φ_q loses rank. Times its transpose where the step begins, whose determinant is the same there,
+// it is  ⎡ Φ_q Φ_q(from)ᵀ + U Uᵀ   Φ_q Z ⎤
+//        ⎣          0                1   ⎦, so that Z is not needed: det (Φ_q Φ_q(from)ᵀ + U Uᵀ) stays positive.
+bool constraints_keep_their_side(const System& system, const Linearisation& from, const Linearisation& to);
 
 }  // namespace elastocheck::reference::equilibrium
