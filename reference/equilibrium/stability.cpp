@@ -1,10 +1,12 @@
 #include "reference/equilibrium/stability.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace elastocheck::reference::equilibrium {
@@ -14,35 +16,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of Φ_q, whose rows have sizes of order one: less is a redundant row.
-constexpr double rank_threshold = 1e-10;
-
 // What round-off leaves of an eigenvalue, over the largest entry of ∂(balance)/∂q.
 constexpr double eigenvalue_round_off = 1e-13;
 
 // How far below its least node the parabola may go before the step is halved.
 constexpr double deepest_dip = 0.5;
-
-MatrixXd null_space(const MatrixXd& A) {
-    if (A.rows() == 0) return MatrixXd::Identity(A.cols(), A.cols());
-    Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    qr.setThreshold(rank_threshold);
-    qr.compute(A.transpose());
-    const MatrixXd Q = qr.householderQ();
-    return Q.rightCols(Q.cols() - qr.rank());
-}
-
-// The least eigenvalue of a matrix that is nearly symmetric: each of S + N, S symmetric, is within |N| of one of S
-// (Bauer and Fike). Several times cheaper than to ask the matrix itself, which is done where N may matter.
-std::optional<double> least_if_symmetric(const MatrixXd& M) {
-    constexpr double may_matter = 1e-3;
-    const MatrixXd S = (M + M.transpose()) / 2;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S, Eigen::EigenvaluesOnly);
-    if (solver.info() != Eigen::Success) return std::nullopt;
-    const double least = solver.eigenvalues()[0];
-    if (!((M - S).norm() <= may_matter * std::abs(least))) return std::nullopt;
-    return least;
-}
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -133,45 +111,70 @@ struct Inverse {
     }
 };
 
-// The eigenvalues of M next to zero, by Arnoldi's method on M⁻¹, of which they are the largest: as far as they are found
-// to a part in 1e8 when the largest is, or `all` that can be.
-std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool all) {
-    constexpr Index most = 200;
-    constexpr double found = 1e-8;
+// The eigenvalues of a matrix of Arnoldi's, and how much of each eigenvector is in the last of his vectors. Where an
+// energy makes M symmetric, so is H, nearly: each eigenvalue of S + N, S symmetric, is within |N| of one of S (Bauer and
+// Fike), and those of S are cheaper, and real where two are alike.
+struct Ritz {
+    Eigen::VectorXcd theta;
+    VectorXd last;
+};
+std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
+    constexpr double may_matter = 1e-3;
+    if (const MatrixXd S = (H + H.transpose()) / 2; conservative) {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+        if (solver.info() != Eigen::Success) return std::nullopt;
+        if ((H - S).norm() <= may_matter * solver.eigenvalues().cwiseAbs().maxCoeff())
+            return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+    }
+    const Eigen::EigenSolver<MatrixXd> solver(H);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+}
+
+// The eigenvalues of M next to zero, by Arnoldi's method on M⁻¹, of which they are the largest: the first ones, to a part
+// in 1e8, as soon as the very first is found, or `all`, which are all that are not equal where no more are free than
+// `most`.
+std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative, bool all) {
+    constexpr Index most = 200, between_looks = 4;
+    constexpr double found = 1e-8, round_off = 1e-14;
     const Index size = std::min(most, free);
-    MatrixXd Q(n, size + 1), H = MatrixXd::Zero(size + 1, size);
-    VectorXd start(n);  // anything that is no eigenvector of anything: the fractions of multiples of the golden ratio
-    for (Index k = 0; k < n; ++k) start[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
-    start = inverse(start);
-    if (!start.allFinite() || start.norm() == 0) return std::nullopt;
-    Q.col(0) = start.normalized();
+    MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
+    VectorXd next(n);  // anything that is no eigenvector of anything: fractions of multiples of the golden ratio
+    for (Index k = 0; k < n; ++k) next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
+    next = inverse(next);
+    double left = next.norm();
+    if (!(std::isfinite(left) && left > 0)) return std::nullopt;
     for (Index k = 0; k < size; ++k) {
-        VectorXd next = inverse(Q.col(k));
-        if (!next.allFinite()) return std::nullopt;
+        if (k > 0) H(k, k - 1) = left;
+        Q.col(k) = next / left;
+        next = inverse(Q.col(k));
         for (int pass = 0; pass < 2; ++pass) {
             const VectorXd part = Q.leftCols(k + 1).transpose() * next;
             next -= Q.leftCols(k + 1) * part;
             H.col(k).head(k + 1) += part;
         }
-        const double left = next.norm();
-        H(k + 1, k) = left;
-        const bool last = k + 1 == size || left <= 1e-14 * H.topLeftCorner(k + 1, k + 1).norm();
-        if (!last) Q.col(k + 1) = next / left;
-        if (!last && (all || k % 4 != 3)) continue;
-        const Eigen::EigenSolver<MatrixXd> solver(H.topLeftCorner(k + 1, k + 1));
-        if (solver.info() != Eigen::Success) return std::nullopt;
-        const auto& theta = solver.eigenvalues();
-        const auto vectors = solver.eigenvectors();
-        const double largest = theta.cwiseAbs().maxCoeff();
+        left = next.norm();
+        if (!std::isfinite(left)) return std::nullopt;
+        const MatrixXd H_k = H.topLeftCorner(k + 1, k + 1);
+        const bool last = k + 1 == size || left <= round_off * H_k.norm();
+        if (!last && (all || (k + 1) % between_looks != 0)) continue;
+        const auto values = ritz(H_k, conservative);
+        if (!values) return std::nullopt;
+        std::vector<Index> order(static_cast<std::size_t>(k + 1));
+        std::iota(order.begin(), order.end(), 0);
+        std::ranges::sort(order, std::greater{}, [&](Index j) { return std::abs(values->theta[j]); });
+        const double largest = std::abs(values->theta[order.front()]);
+        const bool complete = last && (size == free || left <= round_off * largest);
         Spectrum spectrum;
-        bool of_largest = false;
-        for (Index j = 0; j <= k; ++j) {
-            const double error = left * std::abs(vectors(k, j)) / vectors.col(j).norm();
-            if (!last && !(error <= found * std::abs(theta[j]))) continue;
-            of_largest |= std::abs(theta[j]) == largest;
-            if (std::abs(theta[j]) > 1e-14 * largest) spectrum.see(1. / theta[j]);
+        Index seen = 0;
+        for (const Index j : order) {
+            const double theta = std::abs(values->theta[j]);
+            if (theta <= round_off * largest || (!complete && left * values->last[j] > found * theta)) break;
+            spectrum.see(1. / values->theta[j]);
+            ++seen;
         }
-        if (of_largest) return spectrum;
+        if (seen > 0) return spectrum;
+        if (last) return std::nullopt;
     }
     return std::nullopt;
 }
@@ -188,29 +191,9 @@ MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
 
 }  // namespace
 
-Stiffness dense_stiffness(const System& system, const Linearisation& at) {
-    const Index n = 6 * system.bodies;
-    const MatrixXd A = balance_rows(system, at.J);
-    const MatrixXd Z = null_space(constraint_rows(system, at.J));
-    if (Z.cols() == 0) return {};
-
-    const double size = A.cwiseAbs().maxCoeff();
-    MatrixXd M = -Z.transpose() * A * Z;
-    // Idle modes are held as stiffly as anything else, and drop out of the question.
-    const MatrixXd held = Z.transpose() * at.modes.right.topRows(n);
-    M += std::max(size, 1.0) * held * held.transpose();
-
-    const double round_off = eigenvalue_round_off * size;
-    if (system.conservative)
-        if (const auto least = least_if_symmetric(M)) return {*least, round_off};
-    const Eigen::EigenSolver<MatrixXd> solver(M, false);
-    if (solver.info() != Eigen::Success) return {nan, nan};
-    Spectrum spectrum;
-    for (const auto& mu : solver.eigenvalues()) spectrum.see(mu);
-    return spectrum.of(system, round_off);
-}
-
-Stiffness sparse_stiffness(const System& system, const Linearisation& at) {
+Stiffness stiffness(const System& system, const Linearisation& at) {
+    if (!is_finite(at.J)) return {nan, nan};
+    if (system.bodies == 0) return {};
     const Index n = 6 * system.bodies, m = system.constraint_rows, k = at.modes.count();
     const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
     const Index free = n - (m - redundant) - (k - redundant);
@@ -220,15 +203,8 @@ Stiffness sparse_stiffness(const System& system, const Linearisation& at) {
     const bool surely =
         system.conservative &&
         surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
-    const auto spectrum = next_to_zero(Inverse(at, n), n, free, !surely);
+    const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
     return spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
-}
-
-Stiffness stiffness(const System& system, const Linearisation& at) {
-    if (!is_finite(at.J)) return {nan, nan};
-    if (system.bodies == 0) return {};
-    constexpr int small = 100;  // unknowns of the bodies
-    return 6 * system.bodies <= small ? dense_stiffness(system, at) : sparse_stiffness(system, at);
 }
 
 bool constraints_keep_their_side(const System& system, const Linearisation& from, const Linearisation& to) {

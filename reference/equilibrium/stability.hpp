@@ -31,14 +31,15 @@ struct Stiffness {
 };
 Stiffness stiffness(const System& system, const Linearisation& at);
 
-// The two ways to it. Small systems ask M itself, for all of its eigenvalues. Large ones never form it: by Sylvester,
-// K = -∂(balance)/∂q, whose symmetric part with ρ Φ_qᵀ Φ_q added is positive definite, is positive definite on Z, and
-// where it is not, and for the size of the least eigenvalue, M⁻¹ is asked, which is a solution of the linearised system:
+// M is never formed. By Debreu, it is positive definite where K + ρ Φ_qᵀ Φ_q is for some ρ, K the symmetric part of
+// -∂(balance)/∂q, of which it is a part; and its eigenvalues next to zero are the largest of its inverse, which is in the
+// solution of the linearised system:
 //
 //   ⎡ -K   Φ_qᵀ ⎤ ⎧ x ⎫   ⎧ -b ⎫
 //   ⎣ Φ_q   0   ⎦ ⎩ λ ⎭ = ⎩  0 ⎭      x = Z M⁻¹ Zᵀ b
-Stiffness dense_stiffness(const System& system, const Linearisation& at);
-Stiffness sparse_stiffness(const System& system, const Linearisation& at);
+//
+// Where M is not surely definite, 200 of them are asked for: all, of all suspensions here. Beyond, a pair of negative
+// eigenvalues that has come far past zero within one step may be overlooked where there is no energy.
 
 enum class Stability {
     kept,
