@@ -1,14 +1,11 @@
 // Saying why a branch ended.
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-
 #include "reference/equilibrium/walk.hpp"
 
 namespace elastocheck::reference::equilibrium {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::string body_with_largest(const System& system, const VectorXd& n) {
@@ -48,12 +45,10 @@ VectorXd gap(Walk& walk, double a, VectorXd x) {
     const int m = system.constraint_rows;
     const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        const MatrixXd Phi_q =
-            derivatives(system, {a}, x, walk.counts).J.bottomLeftCorner(m, 6 * system.bodies);
+        const Sparse J = derivatives(system, {a}, x, walk.counts).J;
+        if (!is_finite(J)) break;
         VectorXd dx = VectorXd::Zero(system.equations());
-        Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-        decomposition.setThreshold(1e-10);
-        dx.head(6 * system.bodies) = -decomposition.compute(Phi_q).solve(Phi());
+        dx.head(6 * system.bodies) = -least_squares(J.bottomLeftCorner(m, 6 * system.bodies), Phi());
         if (!dx.allFinite()) break;
         x = moved(system, x, dx);
         ++walk.counts.factorisations;
@@ -114,7 +109,7 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         if (!std::isfinite(attempt.residual))
             return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
         const VectorXd left_over = residual(system, loading_at(walk, t), attempt.x);
-        const MatrixXd& U = walk.here.linearised.modes.left;
+        const Sparse& U = walk.here.linearised.modes.left;
         constexpr double mostly = 0.9;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
             return unanswerable(system, U * (U.transpose() * left_over));

@@ -1,6 +1,6 @@
 #include "reference/equilibrium/linearisation.hpp"
 
-#include <Eigen/QR>
+#include <cmath>
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -9,9 +9,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the equilibrated matrix: what its QR with column pivoting has below this on its diagonal, over the largest,
-// is null. Healthy models stay above 1e-6.
+// Of the equilibrated matrix: a column that its QR finds this close to those before it is null. Healthy models stay
+// above 1e-6.
 constexpr double null_threshold = 1e-11;
+
+// Of the equilibrated matrix too: with a condition number below it has no null space, and is not asked for one.
+constexpr double surely_regular = 1e8;
 
 // Sweeps of the equilibration; each halves the logarithm of what the sizes are apart.
 constexpr int equilibration_sweeps = 10;
@@ -19,61 +22,72 @@ constexpr int equilibration_sweeps = 10;
 // What a tracked mode may have as stiffness, over the largest entry of J, and still be called idle.
 constexpr double idle_stiffness = 1e-10;
 
-// An orthonormal basis of the columns, oriented as they are (R with a positive diagonal).
-MatrixXd orthonormal(const MatrixXd& columns) {
-    if (columns.cols() == 0) return columns;
-    const Eigen::HouseholderQR<MatrixXd> qr(columns);
-    MatrixXd Q = qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
-    for (Index k = 0; k < Q.cols(); ++k)
-        if (qr.matrixQR()(k, k) < 0) Q.col(k) = -Q.col(k);
+// Of a mode's length: what is below is round-off, and no part of it.
+constexpr double no_part = 1e-14;
+
+// An orthonormal basis of the columns, oriented as they are: Gram and Schmidt, twice, which is as good as Householder
+// and leaves apart what shares no row.
+Sparse orthonormal(const Sparse& columns) {
+    Sparse Q(columns.rows(), columns.cols());
+    std::vector<Eigen::SparseVector<double>> done;
+    for (Index k = 0; k < columns.cols(); ++k) {
+        Eigen::SparseVector<double> q = columns.col(k);
+        for (int pass = 0; pass < 2; ++pass)
+            for (const auto& before : done)
+                if (const double part = before.dot(q); part != 0) q -= part * before;
+        q /= q.norm();
+        q.prune(1., no_part);
+        Q.startVec(k);
+        for (Eigen::SparseVector<double>::InnerIterator at(q); at; ++at)
+            Q.insertBack(at.index(), k) = at.value();
+        done.push_back(std::move(q));
+    }
+    Q.finalize();
     return Q;
 }
 
-// Rank is judged on the equilibrated matrix D_r J D_c (Ruiz: rows and columns of size one),
-// because stiff and soft elements side by side are no sign of singularity.
-// Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
-NullSpaces null_spaces(const MatrixXd& J) {
-    VectorXd D_r = VectorXd::Ones(J.rows()), D_c = VectorXd::Ones(J.cols());
-    MatrixXd A = J;
+// D_r A D_c with rows and columns of size one (Ruiz).
+struct Equilibrated {
+    Sparse A;
+    VectorXd D_r, D_c;
+};
+Equilibrated equilibrated(const Sparse& J) {
+    Equilibrated of{J, VectorXd::Ones(J.rows()), VectorXd::Ones(J.cols())};
+    const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
     for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
-        const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
-        const VectorXd r = A.cwiseAbs().rowwise().maxCoeff().unaryExpr(scale);
-        const VectorXd c = A.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(scale);
-        A = r.asDiagonal() * A * c.asDiagonal();
-        D_r.array() *= r.array();
-        D_c.array() *= c.array();
+        VectorXd r = VectorXd::Zero(J.rows()), c = VectorXd::Zero(J.cols());
+        for (Index k = 0; k < J.cols(); ++k)
+            for (Sparse::InnerIterator at(of.A, k); at; ++at) {
+                const double size = std::abs(at.value());
+                r[at.row()] = std::max(r[at.row()], size);
+                c[k] = std::max(c[k], size);
+            }
+        r = r.unaryExpr(scale), c = c.unaryExpr(scale);
+        for (Index k = 0; k < J.cols(); ++k)
+            for (Sparse::InnerIterator at(of.A, k); at; ++at) at.valueRef() *= r[at.row()] * c[k];
+        of.D_r.array() *= r.array();
+        of.D_c.array() *= c.array();
     }
-    // A P = Q R with |r_00| ≥ |r_11| ≥ ..., R = [R_1 R_2; 0 ~0]: then A P [-R_1⁻¹ R_2; 1] = 0, and Q's last columns are
-    // what A never reaches. The factors of ten that r_kk may be off a singular value do not matter beside the gap
-    // between healthy and null.
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-    const Index n = A.rows();
-    const auto diagonal = qr.matrixQR().diagonal().cwiseAbs();
-    Index rank = 0;
-    while (rank < n && diagonal[rank] > null_threshold * diagonal[0]) ++rank;
-    const Index k = n - rank;
-    if (k == 0) return {MatrixXd(n, 0), MatrixXd(n, 0)};
-    MatrixXd V = MatrixXd::Zero(n, k), last = MatrixXd::Zero(n, k);
-    V.topRows(rank) = -qr.matrixQR()
-                           .topLeftCorner(rank, rank)
-                           .triangularView<Eigen::Upper>()
-                           .solve(MatrixXd(qr.matrixQR().topRightCorner(rank, k)));
-    V.bottomRows(k).setIdentity();
-    last.bottomRows(k).setIdentity();
-    const MatrixXd right = qr.colsPermutation() * V, left = qr.householderQ() * last;
-    return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
+    return of;
 }
 
-void border(Linearisation& at) {
-    const Index n = at.J.rows(), k = at.modes.count();
-    MatrixXd B = MatrixXd::Zero(n + k, n + k);
-    B.topLeftCorner(n, n) = at.J;
-    B.topRightCorner(n, k) = at.modes.left;
-    B.bottomLeftCorner(k, n) = at.modes.right.transpose();
-    at.bordered.compute(B);
-    const auto diagonal = at.bordered.matrixLU().diagonal();
-    at.orientation = static_cast<int>(at.bordered.permutationP().determinant());
-    for (Index i = 0; i < n + k; ++i) at.orientation *= diagonal[i] > 0 ? 1 : diagonal[i] < 0 ? -1 : 0;
+Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
+    const Index n = J.rows(), k = modes.count();
+    if (k == 0) return J;
+    const Sparse V_rows = modes.right.transpose();  // column j: what the modes have in unknown j
+    Sparse B(n + k, n + k);
+    B.reserve(J.nonZeros() + modes.left.nonZeros() + modes.right.nonZeros());
+    for (Index j = 0; j < n; ++j) {
+        B.startVec(j);
+        for (Sparse::InnerIterator at(J, j); at; ++at) B.insertBack(at.row(), j) = at.value();
+        for (Sparse::InnerIterator at(V_rows, j); at; ++at) B.insertBack(n + at.row(), j) = at.value();
+    }
+    for (Index j = 0; j < k; ++j) {
+        B.startVec(n + j);
+        for (Sparse::InnerIterator at(modes.left, j); at; ++at) B.insertBack(at.row(), n + j) = at.value();
+    }
+    B.finalize();
+    return B;
 }
 
 // With the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here, turned as little as possible, as
@@ -82,43 +96,83 @@ bool track(Linearisation& at) {
     const Index n = at.J.rows(), k = at.modes.count();
     MatrixXd ones = MatrixXd::Zero(n + k, k);
     ones.bottomRows(k).setIdentity();
-    const MatrixXd right = at.bordered.solve(ones), left = at.bordered.transpose().solve(ones);
+    const MatrixXd right = at.bordered.solve(ones), left = at.bordered.solve_transposed(ones);
     const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
-    if (!right.allFinite() || !left.allFinite() ||
-        !(stiffness <= idle_stiffness * at.J.cwiseAbs().maxCoeff()))
+    if (!right.allFinite() || !left.allFinite() || !(stiffness <= idle_stiffness * largest_entry(at.J)))
         return false;
-    at.modes = {orthonormal(right.topRows(n)), orthonormal(left.topRows(n))};
+    at.modes = {orthonormal(right.topRows(n).sparseView(1., no_part)),
+                orthonormal(left.topRows(n).sparseView(1., no_part))};
     return true;
 }
 
 }  // namespace
 
-Linearisation linearise(MatrixXd J, const Linearisation* before, Counts& counts) {
+// Rank is judged on the equilibrated matrix D_r J D_c, because stiff and soft elements side by side are no sign of
+// singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
+NullSpaces null_spaces(const Sparse& J) {
+    const auto [A, D_r, D_c] = equilibrated(J);
+    if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
+    const auto [right, left] = null_bases(A, null_threshold);
+    return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
+}
+
+Factors bordered_like(const Linearisation& like, const Sparse& J) {
+    return Factors(bordered_matrix(J, like.modes), &like.bordered);
+}
+
+Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
     Linearisation at;
     at.J = std::move(J);
-    if (at.J.rows() == 0 || !at.J.allFinite()) return at;
+    if (at.J.rows() == 0 || !is_finite(at.J)) return at;
     if (before != nullptr) {
         at.modes = before->modes;
-        border(at);
+        at.bordered = bordered_like(*before, at.J);
         ++counts.factorisations;
         at.modes_are_new = at.modes.count() > 0 && !track(at);
         if (!at.modes_are_new) return at;
     }
     at.modes = null_spaces(at.J);
-    border(at);
+    at.bordered = Factors(bordered_matrix(at.J, at.modes));
     counts.factorisations += 2;
     return at;
 }
 
-Rate answer(const Linearisation& at, const VectorXd& E_rate) {
-    const Index n = at.J.rows(), k = at.modes.count();
+Rate answer(const Factors& bordered, const VectorXd& E_rate) {
+    const Index n = E_rate.size(), k = bordered.size() - n;
     if (n == 0) return {};
-    if (at.orientation == 0)
-        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()), VectorXd::Zero(k)};
+    if (bordered.sign() == 0)
+        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()), VectorXd::Zero(std::max<Index>(k, 0))};
     VectorXd right = VectorXd::Zero(n + k);
     right.head(n) = -E_rate;
-    const VectorXd solution = at.bordered.solve(right);
+    const VectorXd solution = bordered.solve(right);
     return {solution.head(n), solution.tail(k)};
+}
+
+// The longer of A's sides first, so that only what is dependent is in the null space, which is the border of
+//
+//   ⎡ 1   A ⎤ ⎧ r ⎫   ⎧ b ⎫              ⎡ 1   Aᵀ ⎤ ⎧  x ⎫   ⎧ 0 ⎫
+//   ⎣ Aᵀ  0 ⎦ ⎩ x ⎭ = ⎩ 0 ⎭      or      ⎣ A   0  ⎦ ⎩ -y ⎭ = ⎩ b ⎭
+//
+// What is left over, r, is in no column's way, and x is no combination that A takes to nothing; or x is one of A's rows,
+// and what the border takes of b none of its columns.
+VectorXd least_squares(const Sparse& A, const VectorXd& b) {
+    const bool tall = A.rows() >= A.cols();
+    const Index first = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index k = 0; k < first; ++k) entries.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.);
+    for (Index k = 0; k < A.cols(); ++k)
+        for (Sparse::InnerIterator at(A, k); at; ++at) {
+            const Index i = tall ? at.row() : at.col(), j = first + (tall ? at.col() : at.row());
+            entries.emplace_back(static_cast<int>(i), static_cast<int>(j), at.value());
+            entries.emplace_back(static_cast<int>(j), static_cast<int>(i), at.value());
+        }
+    Sparse G(size, size);
+    G.setFromTriplets(entries.begin(), entries.end());
+    VectorXd right = VectorXd::Zero(size);
+    right.segment(tall ? 0 : first, b.size()) = -b;
+    Counts counts;
+    const VectorXd solution = answer(linearise(std::move(G), nullptr, counts).bordered, right).dx;
+    return solution.segment(tall ? first : 0, A.cols());
 }
 
 }  // namespace elastocheck::reference::equilibrium

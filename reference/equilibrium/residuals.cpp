@@ -31,6 +31,7 @@ struct Judge {
     const Equilibrium& state;
     Frames frames;
     std::vector<Balance> balances;
+    std::vector<std::vector<std::size_t>> constraints;  // per Model::joints
 
     Frame<double> frame(BodyId body) const {
         return body == ground ? ground_frame(system) : frames[static_cast<std::size_t>(body)];
@@ -45,11 +46,10 @@ struct Judge {
 
 // What a joint's constraints push with, one column a row and unit
 // reaction, as (force; moment about `at` / L) [6 × rows].
-MatrixXd transmitted_by(const Judge& judge, int joint, const Vector3d& at) {
+MatrixXd transmitted_by(const Judge& judge, std::size_t joint, const Vector3d& at) {
     MatrixXd columns(6, 0);
     const auto& constraints = judge.system.model->constraints;
-    for (std::size_t c = 0; c < constraints.size(); ++c) {
-        if (constraints[c].joint != joint) continue;
+    for (const std::size_t c : judge.constraints[joint]) {
         const auto [i, j] = bodies_of(constraints[c].kind);
         for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
@@ -74,7 +74,10 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         return {nan, nan, nan, nan};
     const double a = state.load;
     const System system = make_system(model, branch, {&a, 1});
-    Judge judge{system, state, {}, std::vector<Balance>(model.bodies.size())};
+    Judge judge{system, state, {}, std::vector<Balance>(model.bodies.size()), {}};
+    judge.constraints.resize(model.joints.size());
+    for (std::size_t c = 0; c < model.constraints.size(); ++c)
+        judge.constraints[static_cast<std::size_t>(model.constraints[c].joint)].push_back(c);
     Residuals worst;
 
     // A quaternion off the unit sphere is an error of direction;
@@ -125,7 +128,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
 
         // A joint without friction cannot transmit everything:
         // what lies outside the span of its constraints counts too.
-        const MatrixXd C = transmitted_by(judge, static_cast<int>(n), on_i.at);
+        const MatrixXd C = transmitted_by(judge, n, on_i.at);
         Vector6 left_over;
         left_over << on_i.force, on_i.moment / system.length;
         if (C.cols() > 0 && C.allFinite()) {

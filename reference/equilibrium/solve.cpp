@@ -28,7 +28,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     for (const double a : points) reach = std::max(reach, std::abs(a));
     auto failed = advance(walk, 1);
     if (failed) {
-        let_joints_carry(system);
+        let_joints_carry(system, walk.counts);
         Walk other = start(system, options);
         other.counts = walk.counts;
         const bool settled = !advance(other, 1);

@@ -1,9 +1,12 @@
 #include "reference/equilibrium/stability.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace elastocheck::reference::equilibrium {
@@ -11,9 +14,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-// Of Φ_q, whose rows have sizes of order one: less is a redundant row.
-constexpr double rank_threshold = 1e-10;
+using Eigen::VectorXd;
 
 // What round-off leaves of an eigenvalue, over the largest entry of ∂(balance)/∂q.
 constexpr double eigenvalue_round_off = 1e-13;
@@ -21,84 +22,216 @@ constexpr double eigenvalue_round_off = 1e-13;
 // How far below its least node the parabola may go before the step is halved.
 constexpr double deepest_dip = 0.5;
 
-MatrixXd null_space(const MatrixXd& A) {
-    if (A.rows() == 0) return MatrixXd::Identity(A.cols(), A.cols());
-    Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    qr.setThreshold(rank_threshold);
-    qr.compute(A.transpose());
-    const MatrixXd Q = qr.householderQ();
-    return Q.rightCols(Q.cols() - qr.rank());
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// What of J is ∂(balance)/∂q, and Φ_q.
+Sparse balance_rows(const System& system, const Sparse& J) {
+    return J.topLeftCorner(6 * system.bodies, 6 * system.bodies);
+}
+Sparse constraint_rows(const System& system, const Sparse& J) {
+    return J.bottomLeftCorner(system.constraint_rows, 6 * system.bodies);
 }
 
-// The least eigenvalue of a matrix that is nearly symmetric: each of S + N, S symmetric, is within |N| of one of S
-// (Bauer and Fike). Several times cheaper than to ask the matrix itself, which is done where N may matter.
-std::optional<double> least_if_symmetric(const MatrixXd& M) {
-    constexpr double may_matter = 1e-3;
-    const MatrixXd S = (M + M.transpose()) / 2;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S, Eigen::EigenvaluesOnly);
-    if (solver.info() != Eigen::Success) return std::nullopt;
-    const double least = solver.eigenvalues()[0];
-    if (!((M - S).norm() <= may_matter * std::abs(least))) return std::nullopt;
-    return least;
-}
-
-int sign_of_determinant(const MatrixXd& A) {
-    const Eigen::PartialPivLU<MatrixXd> lu(A);
-    int sign = static_cast<int>(lu.permutationP().determinant());
-    for (Index k = 0; k < A.rows(); ++k) {
-        const double pivot = lu.matrixLU()(k, k);
-        sign *= pivot > 0 ? 1 : pivot < 0 ? -1 : 0;
-    }
-    return sign;
-}
-
-}  // namespace
-
-Stiffness stiffness(const System& system, const MatrixXd& J, const NullSpaces& idle) {
-    const Index n = 6 * system.bodies;
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    if (!J.allFinite()) return {nan, nan};
-    if (n == 0) return {};
-    const MatrixXd Z = null_space(J.bottomLeftCorner(system.constraint_rows, n));
-    if (Z.cols() == 0) return {};
-
-    const double size = J.topLeftCorner(n, n).cwiseAbs().maxCoeff();
-    MatrixXd M = -Z.transpose() * J.topLeftCorner(n, n) * Z;
-    // Idle modes are held as stiffly as anything else, and drop out of the question.
-    const MatrixXd held = Z.transpose() * idle.right.topRows(n);
-    M += std::max(size, 1.0) * held * held.transpose();
-
-    const double round_off = eigenvalue_round_off * size;
-    if (system.conservative)
-        if (const auto least = least_if_symmetric(M)) return {*least, round_off};
-    const Eigen::EigenSolver<MatrixXd> solver(M, false);
-    if (solver.info() != Eigen::Success) return {nan, nan};
+// Of the eigenvalues μ of M, as Stiffness has it.
+struct Spectrum {
     double least = std::numeric_limits<double>::infinity(), modulus = least;
     int negative = 0;
-    for (const auto& mu : solver.eigenvalues()) {
+    void see(const std::complex<double>& mu) {
         const bool real = mu.imag() == 0;
         least = std::min(least, real ? mu.real() : std::abs(mu));
         modulus = std::min(modulus, std::abs(mu));
         negative += real && mu.real() < 0;
     }
-    if (system.conservative) return {least, round_off};
-    return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
+    Stiffness of(const System& system, double round_off) const {
+        if (system.conservative) return {least, round_off};
+        return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
+    }
+};
+
+// ---- Without M
+
+// What is idle is held: of every mode, an unknown that is large in it, as stiffly as anything else. A matrix with k null
+// vectors that k such make definite has no negative eigenvalue: each adds one positive at most.
+std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
+    std::vector<Index> held;
+    for (Index k = 0; k < modes.cols(); ++k) {
+        Index largest = -1;
+        double size = 0;
+        for (Sparse::InnerIterator at(modes, k); at; ++at)
+            if (at.row() < n && std::abs(at.value()) > size && std::ranges::find(held, at.row()) == held.end())
+                largest = at.row(), size = std::abs(at.value());
+        if (largest >= 0) held.push_back(largest);
+    }
+    return held;
 }
 
-bool constraints_keep_their_side(const System& system, const MatrixXd& J_from, const MatrixXd& J_to) {
+// Whether no eigenvalue of the symmetric part of M is below -round_off; `false` may also be for too weak a ρ, beside
+// what is negative in K, or for too strong a one, beside round-off.
+bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size, double round_off) {
+    constexpr double strengths[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
+    const Index n = K.rows();
+    Sparse held(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
+    std::vector<Eigen::Triplet<double>> diagonal;
+    for (int k = 0; k < n; ++k) diagonal.emplace_back(k, k, round_off);
+    for (const Index k : held_unknowns(idle.right, n))
+        diagonal.emplace_back(static_cast<int>(k), static_cast<int>(k), size);
+    held.setFromTriplets(diagonal.begin(), diagonal.end());
+    const Sparse S = (K + K_T) / 2 + held, constraints = Phi_T * Phi_q;
+    for (const double rho : strengths) {
+        const Eigen::SimplicialLDLT<Sparse> factors(Sparse(S + rho * size * constraints));
+        if (factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all()) return true;
+        if (Phi_q.rows() == 0) break;
+    }
+    return false;
+}
+
+// x = Z M⁻¹ Zᵀ b, what is idle left out of b and x: P = 1 - V (VᵀV)⁻¹ Vᵀ, V what the modes are of the bodies. Some of it
+// may be nothing, which the small number takes care of.
+struct Inverse {
+    const Linearisation& at;
+    Index n;
+    Sparse V;
+    Eigen::SimplicialLDLT<Sparse> gram;
+    Inverse(const Linearisation& linearised, Index size) : at(linearised), n(size) {
+        if (at.modes.count() == 0) return;
+        constexpr double nothing = 1e-14;
+        V = at.modes.right.topRows(n);
+        Sparse one(V.cols(), V.cols());
+        one.setIdentity();
+        gram.compute(Sparse(Sparse(V.transpose()) * V + nothing * one));
+    }
+    VectorXd without_idle(const VectorXd& b) const {
+        if (at.modes.count() == 0) return b;
+        return b - V * gram.solve(VectorXd(V.transpose() * b));
+    }
+    VectorXd operator()(const VectorXd& b) const {
+        VectorXd right = VectorXd::Zero(at.J.rows());
+        right.head(n) = without_idle(b);
+        return without_idle(answer(at.bordered, right).dx.head(n));
+    }
+};
+
+// The eigenvalues of a matrix of Arnoldi's, and how much of each eigenvector is in the last of his vectors. Where an
+// energy makes M symmetric, so is H, nearly: each eigenvalue of S + N, S symmetric, is within |N| of one of S (Bauer and
+// Fike), and those of S are cheaper, and real where two are alike.
+struct Ritz {
+    Eigen::VectorXcd theta;
+    VectorXd last;
+};
+std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
+    constexpr double may_matter = 1e-3;
+    if (const MatrixXd S = (H + H.transpose()) / 2; conservative) {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+        if (solver.info() != Eigen::Success) return std::nullopt;
+        if ((H - S).norm() <= may_matter * solver.eigenvalues().cwiseAbs().maxCoeff())
+            return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+    }
+    const Eigen::EigenSolver<MatrixXd> solver(H);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+}
+
+// The eigenvalues of M next to zero, by Arnoldi's method on M⁻¹, of which they are the largest: the first ones, to a part
+// in 1e8, as soon as the very first is found, or `all`, which are all that are not equal where no more are free than
+// `most`.
+std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative, bool all) {
+    constexpr Index most = 200, between_looks = 4;
+    constexpr double found = 1e-8, round_off = 1e-14;
+    const Index size = std::min(most, free);
+    MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
+    VectorXd next(n);  // anything that is no eigenvector of anything: fractions of multiples of the golden ratio
+    for (Index k = 0; k < n; ++k) next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
+    next = inverse(next);
+    double left = next.norm();
+    if (!(std::isfinite(left) && left > 0)) return std::nullopt;
+    for (Index k = 0; k < size; ++k) {
+        if (k > 0) H(k, k - 1) = left;
+        Q.col(k) = next / left;
+        next = inverse(Q.col(k));
+        for (int pass = 0; pass < 2; ++pass) {
+            const VectorXd part = Q.leftCols(k + 1).transpose() * next;
+            next -= Q.leftCols(k + 1) * part;
+            H.col(k).head(k + 1) += part;
+        }
+        left = next.norm();
+        if (!std::isfinite(left)) return std::nullopt;
+        const MatrixXd H_k = H.topLeftCorner(k + 1, k + 1);
+        const bool last = k + 1 == size || left <= round_off * H_k.norm();
+        if (!last && (all || (k + 1) % between_looks != 0)) continue;
+        const auto values = ritz(H_k, conservative);
+        if (!values) return std::nullopt;
+        std::vector<Index> order(static_cast<std::size_t>(k + 1));
+        std::iota(order.begin(), order.end(), 0);
+        std::ranges::sort(order, std::greater{}, [&](Index j) { return std::abs(values->theta[j]); });
+        const double largest = std::abs(values->theta[order.front()]);
+        const bool complete = last && (size == free || left <= round_off * largest);
+        Spectrum spectrum;
+        Index seen = 0;
+        for (const Index j : order) {
+            const double theta = std::abs(values->theta[j]);
+            if (theta <= round_off * largest || (!complete && left * values->last[j] > found * theta)) break;
+            spectrum.see(1. / values->theta[j]);
+            ++seen;
+        }
+        if (seen > 0) return spectrum;
+        if (last) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+// The self-stresses among the left null vectors: of what these are of the bodies, the combinations that are nothing.
+MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
+    constexpr double nothing = 1e-14;
     const Index n = 6 * system.bodies, m = system.constraint_rows;
-    if (m == 0) return true;
-    const MatrixXd Phi_q = J_from.bottomLeftCorner(m, n);
-    const MatrixXd Z = null_space(Phi_q), U = null_space(Phi_q.transpose());
-    if (m + Z.cols() != n + U.cols()) return false;  // at the singular point itself, by round-off
-    const auto bordered = [&](const MatrixXd& J) {
-        MatrixXd B = MatrixXd::Zero(m + Z.cols(), n + U.cols());
-        B.topLeftCorner(m, n) = J.bottomLeftCorner(m, n);
-        B.topRightCorner(m, U.cols()) = U;
-        B.bottomLeftCorner(Z.cols(), n) = Z.transpose();
-        return B;
-    };
-    return sign_of_determinant(bordered(J_from)) == sign_of_determinant(bordered(J_to));
+    const Sparse of_bodies = modes.left.topRows(n);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(Sparse(of_bodies.transpose()) * of_bodies));
+    const Index count = (solver.eigenvalues().array() <= nothing).count();
+    return modes.left.bottomRows(m) * solver.eigenvectors().leftCols(count);
+}
+
+}  // namespace
+
+Stiffness stiffness(const System& system, const Linearisation& at) {
+    if (!is_finite(at.J)) return {nan, nan};
+    if (system.bodies == 0) return {};
+    const Index n = 6 * system.bodies, m = system.constraint_rows, k = at.modes.count();
+    const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
+    const Index free = n - (m - redundant) - (k - redundant);
+    if (free == 0) return {};
+    const Sparse K = -balance_rows(system, at.J);
+    const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
+    const bool surely =
+        system.conservative &&
+        surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
+    const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
+    return spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+}
+
+bool constraints_keep_their_side(const System& system, const Linearisation& from, const Linearisation& to) {
+    if (system.constraint_rows == 0) return true;
+    const Index m = system.constraint_rows;
+    const Sparse begin = constraint_rows(system, from.J), end = constraint_rows(system, to.J);
+    Sparse S = end * Sparse(begin.transpose());
+    if (const MatrixXd U = from.modes.count() == 0 ? MatrixXd(m, 0) : self_stresses(system, from.modes); U.cols() > 0) {
+        // ⎡ S   U ⎤
+        // ⎣ -Uᵀ 1 ⎦ has the determinant of S + U Uᵀ
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Index j = 0; j < m; ++j)
+            for (Sparse::InnerIterator at(S, j); at; ++at)
+                entries.emplace_back(static_cast<int>(at.row()), static_cast<int>(j), at.value());
+        for (Index k = 0; k < U.cols(); ++k) {
+            const int border = static_cast<int>(m + k);
+            entries.emplace_back(border, border, 1.);
+            for (int i = 0; i < m; ++i)
+                if (U(i, k) != 0) {
+                    entries.emplace_back(i, border, U(i, k));
+                    entries.emplace_back(border, i, -U(i, k));
+                }
+        }
+        S = Sparse(m + U.cols(), m + U.cols());
+        S.setFromTriplets(entries.begin(), entries.end());
+    }
+    return Factors(S).sign() > 0;
 }
 
 // With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),  has its

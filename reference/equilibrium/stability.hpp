@@ -29,7 +29,17 @@ struct Stiffness {
     double round_off = 0;
     int negative = 0;
 };
-Stiffness stiffness(const System& system, const Eigen::MatrixXd& J, const NullSpaces& idle);
+Stiffness stiffness(const System& system, const Linearisation& at);
+
+// M is never formed. By Debreu, it is positive definite where K + ρ Φ_qᵀ Φ_q is for some ρ, K the symmetric part of
+// -∂(balance)/∂q, of which it is a part; and its eigenvalues next to zero are the largest of its inverse, which is in the
+// solution of the linearised system:
+//
+//   ⎡ -K   Φ_qᵀ ⎤ ⎧ x ⎫   ⎧ -b ⎫
+//   ⎣ Φ_q   0   ⎦ ⎩ λ ⎭ = ⎩  0 ⎭      x = Z M⁻¹ Zᵀ b
+//
+// Where M is not surely definite, 200 of them are asked for: all, of all suspensions here. Beyond, a pair of negative
+// eigenvalues that has come far past zero within one step may be overlooked where there is no energy.
 
 enum class Stability {
     kept,
@@ -38,14 +48,15 @@ enum class Stability {
 };
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to);
 
-// Whether the constraints, which may divide too, have done so on a step from J to J. The determinant of J has
-// that of Φ_q in it twice and does not notice; that of
+// Whether the constraints, which may divide too, have done so on a step. The determinant of J has that of Φ_q in it
+// twice and does not notice; that of
 //
 //   ⎡ Φ_q  U ⎤
 //   ⎣ Zᵀ   0 ⎦     Z, U: null spaces of Φ_q and Φ_qᵀ where the step begins
 //
-// changes its sign where Φ_q loses rank.
-bool constraints_keep_their_side(const System& system, const Eigen::MatrixXd& J_from,
-                                 const Eigen::MatrixXd& J_to);
+// changes its sign where Φ_q loses rank. Times its transpose where the step begins, whose determinant is the same there,
+// it is  ⎡ Φ_q Φ_q(from)ᵀ + U Uᵀ   Φ_q Z ⎤
+//        ⎣          0                1   ⎦, so that Z is not needed: det (Φ_q Φ_q(from)ᵀ + U Uᵀ) stays positive.
+bool constraints_keep_their_side(const System& system, const Linearisation& from, const Linearisation& to);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 
@@ -258,7 +257,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     if (std::isfinite(force) && force > 0) system.force = force;
 
     // What is stored at the design pose, in the scale so far.
-    system.at_design = sum(system, 0, 1, {}, design_unknowns(system));
+    system.at_design = held_at_design(system);
     const double stored = system.at_design.head(6 * system.bodies).lpNorm<Eigen::Infinity>();
     if (std::isfinite(stored) && stored > 1) {
         system.force *= stored;
@@ -267,20 +266,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     return system;
 }
 
-// E is linear in the reactions.
-void let_joints_carry(System& system) {
-    const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
-    if (n == 0 || m == 0 || !system.at_design.allFinite()) return;
-    const VectorXd x = design_unknowns(system);
-    Eigen::MatrixXd C(n, m);
-    for (Eigen::Index k = 0; k < m; ++k) {
-        VectorXd with = x;
-        with[7 * system.bodies + k] += 1;
-        C.col(k) = (sum(system, 0, 1, {}, with) - system.at_design).head(n);
-    }
-    system.carried -= C.completeOrthogonalDecomposition().solve(system.at_design.head(n));
-    system.at_design = sum(system, 0, 1, {}, design_unknowns(system));
-}
+VectorXd held_at_design(const System& system) { return sum(system, 0, 1, {}, design_unknowns(system)); }
 
 Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
     if (body == ground) return ground_frame(system);

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 
 #include "models/equilibrium_path.hpp"
@@ -45,6 +46,8 @@ struct LoadPath {
     Affine factor;
 };
 
+struct Pattern;  // of J (derivatives.hpp)
+
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
@@ -61,6 +64,7 @@ struct System {
     bool conservative = true;                          // no follower, no formulation without energy
     Eigen::VectorXd carried;                           // what the joints carry at the design pose [m]
     Eigen::VectorXd at_design;                         // E there, at a = 0 [n]
+    mutable std::shared_ptr<const Pattern> pattern;    // found when J is first asked for; a system has one user
 
     int unknowns() const { return 7 * bodies + constraint_rows; }
     int equations() const { return 6 * bodies + constraint_rows; }
@@ -86,14 +90,10 @@ struct Loading {
 // driver moves what its joint or element does not have.
 System make_system(const Model& model, const Branch& branch, std::span<const double> points);
 
-// Another way to let go: the joints carry at the design pose what they can, the least reactions with the least
-// imbalance. Where somebody holds all, forces that turn with no joint are let go of, and half-way between two stable
-// states there may be an unstable one; here the way is short where the joints are what holds.
-void let_joints_carry(System& system);
-
 Frame<double> frame_of(const System& system, const Eigen::VectorXd& x, BodyId body);
 
 Eigen::VectorXd design_unknowns(const System& system);
+Eigen::VectorXd held_at_design(const System& system);  // E there at a = 0, what is held left out
 Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
 Eigen::VectorXd moved(const System& system, const Eigen::VectorXd& x, const Eigen::VectorXd& dx);
@@ -172,6 +172,7 @@ Holding<T> holding(const System& system, std::size_t c, const T& a, const T& hel
 struct Part {
     BodyId i = ground, j = ground;
     int row = 0, rows = 0;
+    bool directions = false;  // are what its rows hold: wherever the bodies are, and with moments only
 };
 
 // `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)` its
@@ -212,8 +213,8 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
         const auto& kind = model.constraints[c].kind;
         const auto [i, j] = bodies_of(kind);
-        const Part part{i, j, row, rows(kind)};
         const bool directions = is_direction(kind);
+        const Part part{i, j, row, rows(kind), directions};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
         T R[3];
         for (int k = 0; k < part.rows; ++k)

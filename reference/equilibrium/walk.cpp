@@ -41,9 +41,10 @@ Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) 
     station.x = std::move(x);
     Derivatives by = derivatives(walk.system, loading_at(walk, t), station.x, walk.counts);
     station.linearised = linearise(std::move(by.J), last, walk.counts);
-    station.stiffness = stiffness(walk.system, station.linearised.J, station.linearised.modes);
+    station.stiffness = stiffness(walk.system, station.linearised);
+    station.E = std::move(by.E);
     station.E_rate = std::move(by.E_rate);
-    const Rate rate = answer(station.linearised, station.E_rate);
+    const Rate rate = answer(station.linearised.bordered, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
     station.curves = on_curves(walk.system, loading_at(walk, t), station.x, station.tangent);
@@ -76,18 +77,19 @@ bool is_continuation(const System& system, const Station& from, const Station& t
 Stability stability_between(Walk& walk, const Station& from, const Station& to) {
     const double h = to.t - from.t;
     const VectorXd dx = step_between(walk.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
-    const auto by = derivatives(walk.system, loading_at(walk, from.t + h / 2), moved(walk.system, from.x, dx),
-                                walk.counts);
-    return over_step(from.stiffness, stiffness(walk.system, by.J, from.linearised.modes), to.stiffness);
+    auto by = derivatives(walk.system, loading_at(walk, from.t + h / 2), moved(walk.system, from.x, dx),
+                          walk.counts);
+    const Linearisation middle = linearise(std::move(by.J), &from.linearised, walk.counts);
+    return over_step(from.stiffness, stiffness(walk.system, middle), to.stiffness);
 }
 
 // Whether a continuation is on this side of every singular point. On the way from the design pose somebody
 // holds the bodies, and only the settled state is judged.
 Verdict side_of(Walk& walk, const Station& next) {
     if (walk.stage == Stage::settling) return Verdict::accepted;
-    if (!next.linearised.modes_are_new && next.linearised.orientation != walk.here.linearised.orientation)
+    if (!next.linearised.modes_are_new && next.linearised.orientation() != walk.here.linearised.orientation())
         return Verdict::turned_over;
-    if (!constraints_keep_their_side(walk.system, walk.here.linearised.J, next.linearised.J))
+    if (!constraints_keep_their_side(walk.system, walk.here.linearised, next.linearised))
         return Verdict::turned_over;
     switch (stability_between(walk, walk.here, next)) {
         case Stability::kept: return Verdict::accepted;
@@ -110,7 +112,7 @@ Trial try_step(Walk& walk, double t) {
 
     trial.station = station_at(walk, t, attempt.x, &walk.here.linearised);
     Station& next = trial.station;
-    const VectorXd further = answer(next.linearised, residual(system, loading, next.x)).dx;
+    const VectorXd further = answer(next.linearised.bordered, next.E).dx;
     const double correction = further.norm();
     const double h = t - walk.here.t;
     if (!is_continuation(system, walk.here, next))
@@ -213,6 +215,16 @@ Walk start(const System& system, const Options& options) {
     walk.pieces = pieces_at(system, loading_at(walk, 0), design_unknowns(system));
     walk.here = station_at(walk, 0, design_unknowns(system), nullptr);
     return walk;
+}
+
+// E is linear in the reactions, and E at the design pose holds what they are to answer.
+void let_joints_carry(System& system, Counts& counts) {
+    const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
+    if (n == 0 || m == 0 || !system.at_design.allFinite()) return;
+    const Sparse J = derivatives(system, {0, 1}, design_unknowns(system), counts).J;
+    if (!is_finite(J)) return;
+    system.carried -= least_squares(J.topRightCorner(n, m), system.at_design.head(n));
+    system.at_design = held_at_design(system);
 }
 
 std::optional<Failure> begin_branch(Walk& walk, double reach) {

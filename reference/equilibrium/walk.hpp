@@ -30,6 +30,7 @@ struct Station {
     Eigen::VectorXd x;
     Linearisation linearised;
     Stiffness stiffness;
+    Eigen::VectorXd E;        // what is left [n]
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
     Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]
@@ -76,6 +77,11 @@ struct Failure {
 };
 
 Walk start(const System& system, const Options& options);  // at the design pose, held
+
+// Another way to let go: the joints carry at the design pose what they can, the least reactions with the least
+// imbalance. Where somebody holds all, forces that turn with no joint are let go of, and half-way between two stable
+// states there may be an unstable one; here the way is short where the joints are what holds.
+void let_joints_carry(System& system, Counts& counts);
 
 // After settling: from a = 0 along the branch, whose points reach out to `reach`.
 std::optional<Failure> begin_branch(Walk& walk, double reach);
