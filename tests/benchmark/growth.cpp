@@ -4,10 +4,11 @@
 // A cost is that of the whole command, reading and writing included: CPU seconds, user and system, of `elastocheck solve
 // --method METHOD` (or `elastocheck inspect`) on a family of one branch and five steps, the least of some runs; and the most memory it
 // had at a time. From both goes what the same command takes for a scene of one body, its start. The exponent is the slope of
-// least squares of the logarithm of what is left over that of the bodies, from `large` bodies on.
+// least squares of the logarithm of what is left over that of the bodies, of the three largest sizes.
 //
 // A method that is foretold to need more than the budget for the next size, by the exponent between its last two sizes (by a cube
-// where there is but one), is not asked from there on; and none may use up twice the budget. Both are said.
+// where there is but one), is not asked from there on; and none may use up twice the budget. Both are said, and so is an
+// exit code other than 0, whose cost is no part of the exponent.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -34,8 +35,6 @@ using namespace elastocheck;
 using families::Family;
 using families::Hinge;
 using families::Kind;
-
-constexpr int large = 300;
 
 const std::vector<Family> all_families{
     {Kind::chain}, {Kind::chain, 0, Hinge::revolute}, {Kind::tree},        {Kind::tree, 0, Hinge::revolute},
@@ -127,12 +126,13 @@ struct Growth {
     }
 };
 
-// Of log(cost - start) over log(bodies), by least squares from `large` on; NaN with less than two sizes.
+// Of log(cost - start) over log(bodies), by least squares over the three largest sizes; NaN with less than two.
 double exponent(const Growth& growth, double Cost::*what) {
     std::vector<std::pair<double, double>> points;
     for (const Row& row : growth.done())
-        if (const double more = row.cost.*what - growth.start.*what; row.bodies >= large && more > 0)
+        if (const double more = row.cost.*what - growth.start.*what; more > 0)
             points.emplace_back(std::log(row.bodies), std::log(more));
+    if (points.size() > 3) points.erase(points.begin(), points.end() - 3);
     const auto n = static_cast<double>(points.size());
     double x = 0, y = 0, xx = 0, xy = 0;
     for (const auto& [u, v] : points) x += u / n, y += v / n;
@@ -159,10 +159,9 @@ Growth grow(const Family& family, const std::string& method, const std::vector<i
     Growth growth{family, method, start, {}};
     for (const int bodies : sizes) {
         const double seconds = foretold(growth, bodies);
-        if (!growth.rows.empty() && !growth.rows.back().cost.outcome.empty()) {
-            const std::string why = growth.rows.back().cost.outcome;
-            growth.rows.push_back(
-                {bodies, {0, 0, why.starts_with("skipped") ? "skipped" : "skipped after " + why}});
+        const std::string before = growth.rows.empty() ? "" : growth.rows.back().cost.outcome;
+        if (before.starts_with("skipped") || before.starts_with("stopped")) {
+            growth.rows.push_back({bodies, {0, 0, "skipped"}});
         } else if (seconds > budget) {
             growth.rows.push_back({bodies, {0, 0, fmt::format("skipped: {:.0f} s foretold", seconds)}});
         } else {
