@@ -22,7 +22,14 @@ int main(int argc, char** argv) {
     app.add_option("--bodies", family.bodies, "how many")->required();
     app.add_option("--joints", hinge, "bushing (default) or revolute: what links hang on")
         ->check(CLI::IsMember({"bushing", "revolute"}).description(""));
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& done) {
+        return app.exit(done);
+    } catch (const CLI::ParseError& error) {
+        app.exit(error);
+        return 2;
+    }
     family.kind = kinds[static_cast<std::size_t>(std::ranges::find(known, kind) - known.begin())];
     family.hinge = hinge == "revolute" ? Hinge::revolute : Hinge::bushing;
     try {
