@@ -1,6 +1,7 @@
-// What every leg returns: the equilibria along one branch, and how the solution ended.
+// What every leg returns: the equilibria along one branch, or each as it is found, and how the solution ended.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -58,5 +59,9 @@ struct EquilibriumPath {
     std::vector<Equilibrium> points;  // all requested points, or those reached before the failure
     Counts counts;
 };
+
+// Takes each point as it is found, in their order, so that a path need not keep them: told of one, a leg returns the
+// path without points. What is handed over is the leg's own, and may be another point once this returns.
+using Visit = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

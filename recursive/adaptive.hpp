@@ -18,6 +18,7 @@
 #include <algorithm>
 
 #include "recursive/landing.hpp"
+#include "recursive/recording.hpp"
 #include "recursive/settle.hpp"
 
 namespace elastocheck::recursive {
@@ -60,20 +61,19 @@ Real share_of_reactions(March<Real>& s, const Going<Real>& going, const State<Re
     return allowed > 0 ? change / allowed : Real(0);
 }
 
-// Fills `path.points` at their equal increments up to `to`; `reached` counts them. Pre: just settled.
+// Records its points at their equal increments up to `to`. Pre: just settled.
 template <class Real>
-Outcome adapt(March<Real>& s, const Adaptive& method, double to, EquilibriumPath& path,
-              std::size_t& reached) {
+Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& recording) {
     const Real end = static_cast<Real>(to);
     const Going<Real> going{Drive::rate, static_cast<Real>(method.length_tolerance),
                             static_cast<Real>(method.angle_tolerance)};
-    const std::size_t last = path.points.size() - 1;
+    const std::size_t last = recording.points - 1, &reached = recording.reached;
     const auto parameter = [&](std::size_t k) {
         return to * static_cast<double>(k) / static_cast<double>(last);
     };
     const auto keep = [&](const State<Real>& q, const Vector<Real>& lambda, double a) {
         go_to(s, {1, static_cast<Real>(a)});
-        record<Real>(s.model, s.inputs, q, q, lambda, a, path.points[reached++]);
+        recording.keep(s.model, s.inputs, q, q, lambda, a);
     };
 
     Node<Real> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;

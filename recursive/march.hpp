@@ -432,11 +432,4 @@ void record(const Model& model, const Inputs<Real>& inputs, const State<Real>& q
     point.constraint_error = static_cast<double>(std::sqrt(sum));  // (31)
 }
 
-// Recorded points to be, so that the stepping allocates nothing.
-inline void make_room(const Model& model, int points, EquilibriumPath& path) {
-    const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()),
-                            std::vector<Wrench>(model.joints.size()), 0};
-    path.points.assign(static_cast<std::size_t>(points), blank);
-}
-
 }  // namespace elastocheck::recursive

@@ -61,11 +61,11 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
 }
 
 EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, double& stopped) {
+                      const Analysis& analysis, const Visit& visit, double& stopped) {
     switch (precision) {
-        case Precision::single: return sweep<float>(model, branch, options, analysis, stopped);
-        case Precision::twofold: return sweep<double>(model, branch, options, analysis, stopped);
-        case Precision::extended: return sweep<long double>(model, branch, options, analysis, stopped);
+        case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stopped);
+        case Precision::twofold: return sweep<double>(model, branch, options, analysis, visit, stopped);
+        case Precision::extended: return sweep<long double>(model, branch, options, analysis, visit, stopped);
     }
     return {};
 }
@@ -73,7 +73,7 @@ EquilibriumPath sweep(Precision precision, const Model& model, const Branch& bra
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis) {
+                      const Analysis& analysis, const Visit& visit) {
     check(model, branch);
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         if (options.precision != Precision::twofold)
@@ -81,19 +81,19 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
-        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points);
+        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points, visit);
     }
     double stopped = 0;
-    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis, stopped);
+    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis, visit, stopped);
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format("branch '{}': {}", branch.name,
                                   words(analysis.diagnosis, branch, options.method, path.outcome, stopped));
     return path;
 }
 
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options) {
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options, const Visit& visit) {
     check(model, branch);
-    return solve(model, branch, options, analyse(model));
+    return solve(model, branch, options, analyse(model), visit);
 }
 
 }  // namespace elastocheck::recursive

@@ -31,8 +31,9 @@ struct Options {
 //
 // Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis);
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {});
+                      const Analysis& analysis, const Visit& visit = {});
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {},
+                      const Visit& visit = {});
 
 // How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances
 // are formed from Equilibrium::reactions.

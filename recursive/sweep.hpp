@@ -8,28 +8,26 @@
 
 namespace elastocheck::recursive {
 
-// The recorded points as far as the sweep comes; where it does not converge, `stopped` is the parameter (NaN
+// The recorded points as far as the sweep comes, unless somebody visits them; where it does not converge, `stopped` is the parameter (NaN
 // while settling) and the words for it are the caller's.
 template <class Real>
 EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, double& stopped) {
+                      const Analysis& analysis, const Visit& visit, double& stopped) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
     March<Real> s(model, branch, analysis);
     EquilibriumPath path;
-    make_room(model, points + 1, path);
-    std::size_t reached = 0;
+    Recording recording(model, points + 1, path, visit);
     const auto finish = [&](Outcome outcome, double a) {
         path.outcome = outcome;
-        path.points.resize(reached);
+        recording.finish();
         path.counts = s.counts;
         stopped = a;
         return path;
     };
     const auto equal_steps = [&](const auto& method, const auto& where_lambda_acts) -> Outcome {
         const auto keep = [&](double a) {
-            record<Real>(s.model, s.inputs, s.q, where_lambda_acts, s.lambda, a, path.points[reached]);
-            ++reached;
+            recording.keep(s.model, s.inputs, s.q, where_lambda_acts, s.lambda, a);
         };
         keep(0);
         pass_kinks(s);  // where it settled
@@ -63,7 +61,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
             },
             [&](const Adaptive& method) {
                 if (const Outcome o = settle(s); o != Outcome::converged) return finish(o, settling);
-                const Outcome o = adapt(s, method, branch.to, path, reached);
+                const Outcome o = adapt(s, method, branch.to, recording);
                 return finish(o, static_cast<double>(s.a));
             },
             [&](const Series&) { return finish(Outcome::not_finite, settling); },  // never asked
@@ -72,10 +70,10 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
 }
 
 extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Analysis&,
-                                             double&);
+                                             const Visit&, double&);
 extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
-                                              double&);
+                                              const Visit&, double&);
 extern template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&,
-                                                   const Analysis&, double&);
+                                                   const Analysis&, const Visit&, double&);
 
 }  // namespace elastocheck::recursive

@@ -2,6 +2,7 @@
 
 namespace elastocheck::recursive {
 
-template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&, double&);
+template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
+                                       const Visit&, double&);
 
 }  // namespace elastocheck::recursive

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "recursive/recording.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
 #include "recursive/settle.hpp"
@@ -496,16 +497,17 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
     return point;
 }
 
-EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points) {
+EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
+                       const Visit& visit) {
+    constexpr std::size_t at_once = 64;  // points, so that the room for them does not grow with their number
     EquilibriumPath result;
     result.outcome = path.outcome;
     result.detail = path.detail;
     result.counts = path.counts;
     if (path.expansions.empty()) return result;
-    make_room(model, points + 1, result);
+    Recording recording(model, points + 1, result, visit);
     double whole = 0, before = 0;  // of τ, over all expansions
     for (const auto& expansion : path.expansions) whole += expansion.reach;
-    std::size_t reached = 0;
     std::vector<double> loads, taus;
     Matrix<double> powers, x;
     Vector<double> lambda(constraint_rows(model));
@@ -515,24 +517,23 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
     // Of what a branch moves, wrenches know the offsets of joints alone.
     const bool moves = std::ranges::any_of(
         branch.drivers, [](const Driver& driver) { return std::holds_alternative<Motion>(driver.what); });
-    for (std::size_t k = 0; k < path.expansions.size(); ++k) {
+    for (std::size_t k = 0; k < path.expansions.size();) {
         const Expansion& expansion = path.expansions[k];
         const bool last = k + 1 == path.expansions.size();
         taus.clear();
         loads.clear();
-        for (std::size_t next = reached; next < result.points.size(); ++next) {
+        for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once; ++next) {
             // As others write it, to the last bit: curves are compared at equal loads only.
             const double load = branch.to * static_cast<double>(next) / points;
             double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
                                          : (load - expansion.load[0]) / expansion.load[1];
             const bool beyond = tau > expansion.reach * (1 + 1e-12);
-            if (beyond && !(last && path.arc_length && next + 1 == result.points.size())) break;
+            if (beyond && !(last && path.arc_length && next + 1 == recording.points)) break;
             tau = std::clamp(tau, 0.0, expansion.reach);
             taus.push_back(tau);
             loads.push_back(path.arc_length ? polynomial(expansion.load, tau) : load);
         }
-        before += expansion.reach;
-        // All points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
+        // Many points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
         powers.resize(expansion.x.cols(), static_cast<Eigen::Index>(taus.size()));
         for (Eigen::Index c = 0; c < powers.cols(); ++c) {
             double power = 1;
@@ -547,10 +548,13 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
             displace(from, x.col(c), q);
             lambda = x.col(c).tail(lambda.size());
             if (moves) set_inputs<double>(model, branch, drawn, 1, load, inputs);
-            record<double>(model, inputs, q, q, lambda, load, result.points[reached++]);
+            recording.keep(model, inputs, q, q, lambda, load);
         }
+        if (taus.size() == at_once) continue;  // there may be more on it
+        before += expansion.reach;
+        ++k;
     }
-    result.points.resize(reached);
+    recording.finish();
     return result;
 }
 

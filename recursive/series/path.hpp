@@ -75,7 +75,8 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
 
 // The same at `points` equal increments of the load factor from 0 to branch.to, as far as the path leads;
 // with arc length as parameter at equal increments of it along the whole path.
-EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points);
+EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
+                       const Visit& visit = {});
 
 // Its derivative with the load factor, exact for the polynomial.
 struct Rates {

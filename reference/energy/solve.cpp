@@ -64,7 +64,7 @@ Failure reason(const Path& path, const State& last, double a, const Failure& fai
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
-                      const Options& options) {
+                      const Options& options, const Visit& visit) {
     if (!stands_on(model, branch))
         throw std::invalid_argument("the model does not stand on branch '" + branch.name +
                                     "', or it goes two ways");
@@ -105,7 +105,10 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         if (const auto failure = advance(path, walk, a))
             return fail(reason(path, walk.state, a, *failure), "at " + in_units(a),
                         reached + in_units(walk.state.a));
-        result.points.push_back(equilibrium(path, walk.state));
+        if (visit)
+            visit(equilibrium(path, walk.state));
+        else
+            result.points.push_back(equilibrium(path, walk.state));
     }
     return result;
 }

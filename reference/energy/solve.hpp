@@ -43,7 +43,7 @@ struct Options {
 //
 // Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
-                      const Options& options = {});
+                      const Options& options = {}, const Visit& visit = {});
 
 // How well a state, from any leg, satisfies this leg's conditions at its value of the parameter: the
 // constraints, and the gradient of the potential left over after the best multipliers. `direction` includes

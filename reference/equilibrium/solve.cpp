@@ -9,7 +9,7 @@
 namespace elastocheck::reference::equilibrium {
 
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
-                      const Options& options) {
+                      const Options& options, const Visit& visit) {
     EquilibriumPath path;
     const auto ended = [&](const Failure& failed) {
         path.outcome = failed.outcome;
@@ -42,7 +42,12 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     if (!failed) failed = begin_branch(walk, reach);
     for (auto a = points.begin(); a != points.end() && !failed; ++a) {
         failed = advance(walk, *a);
-        if (!failed) path.points.push_back(state_of(system, loading_at(walk, *a), walk.here.x));
+        if (failed) break;
+        Equilibrium point = state_of(system, loading_at(walk, *a), walk.here.x);
+        if (visit)
+            visit(point);
+        else
+            path.points.push_back(std::move(point));
     }
     path.counts = walk.counts;
     return failed ? ended(*failed) : path;

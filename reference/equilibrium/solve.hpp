@@ -23,7 +23,7 @@ struct Options {
 // a = 0 is settled: static loads and preloads, what the drivers hold, constraints that the design pose
 // misses.
 //
-// The path has one Equilibrium a point, up to the first that is not reached. It ends, whatever the points,
+// The path has one Equilibrium a point, or `visit` is handed it, up to the first that is not reached. It ends, whatever the points,
 // where the branch does: `branch_lost` where it turns back or steepens, `singular` where it divides or loses
 // its stability, `inconsistent_constraints` where the joints cannot be closed, by name, `loaded_idle_mode`
 // where a load meets no resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome
@@ -34,7 +34,7 @@ struct Options {
 //
 // Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
-                      const Options& options = {});
+                      const Options& options = {}, const Visit& visit = {});
 
 // How well a state, from any leg, satisfies this leg's equations at a = state.load; balances are formed from
 // Equilibrium::reactions. NaN where the state has not one pose a body and one reaction a joint. Throws as
