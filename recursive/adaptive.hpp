@@ -48,8 +48,10 @@ void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& 
 template <class Real>
 Real share_of_reactions(March<Real>& s, const Going<Real>& going, const State<Real>& q,
                         const Vector<Real>& one, const Vector<Real>& other) {
-    const auto Phi_q_transposed = s.system.M.topRightCorner(s.n(), s.m());
-    const auto force = [&](const auto& lambda) { return size_of_force<Real>(s, Phi_q_transposed * lambda); };
+    const auto force = [&](const auto& lambda) {
+        constraint_force(s.system.M, lambda, s.force);
+        return size_of_force(s, s.force);
+    };
     const Real largest = std::max(force(one), force(other)), change = force(s.x.tail(s.m()));
     elastic_force<Real>(s.model, s.inputs, q, s.force);
     const Real acts = std::max({largest, size_of_force(s, s.applied), size_of_force(s, s.force)});

@@ -1,6 +1,7 @@
 #include "recursive/analysis.hpp"
 
 #include "recursive/assembly.hpp"
+#include "recursive/loops.hpp"
 #include "recursive/pattern.hpp"
 
 namespace elastocheck::recursive {
@@ -18,12 +19,12 @@ Analysis analyse(const Model& model) {
     set_inputs<double>(model, nothing, drawn, 0, 0, inputs);
 
     Vector<double> Phi(m);
-    system.M.setZero(n + m, n + m);
+    system.M = saddle_matrix(model);
     system.weight.setOnes(n + m);
     for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
     assemble<double>(model, inputs, q, system.M, Phi);
-    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space.toDense(),
-            pattern(model));
+    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
+            pattern(model), loops(model));
 
     assemble_consistent<double>(model, nothing, inputs, q, Vector<double>::Zero(m), system.M, Phi);
     result.pivot_ratio = factorise(system);
@@ -32,10 +33,10 @@ Analysis analyse(const Model& model) {
     result.Phi_d = Phi;
     // What is left of stiffness times length by rounding moves nothing.
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * L;
-    const double stiffest = n > 0 ? system.M.topLeftCorner(n, n).diagonal().cwiseAbs().maxCoeff() : 0;
     const auto largest = [](const Vector<double>& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; };
-    result.at_rest = largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest &&
-                     largest(Phi) <= rounding;
+    result.at_rest =
+        largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
+        largest(Phi) <= rounding;
     return result;
 }
 

@@ -12,17 +12,11 @@ namespace elastocheck::recursive {
 // ⎣ Φ_q      0   ⎦  → M, everything else zero,  and Φ(q) → Phi
 template <class Real>
 void assemble_constraints(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
-                          Matrix<Real>& M, Vector<Real>& Phi) {
-    const int n = coordinates(model);
-    M.setZero();
+                          SaddleMatrix<Real>& M, Vector<Real>& Phi) {
+    std::fill_n(M.values.begin(), 36 * M.blocks(), Real(0));
     for_each_row<Real>(model, inputs, q, [&](int k, const Row<Real>& row) {
-        const auto put = [&](BodyId b, const Vector6<Real>& block) {
-            if (b == ground) return;
-            M.row(n + k).template segment<6>(6 * b) += block.transpose();
-            M.col(n + k).template segment<6>(6 * b) += block;
-        };
-        put(row.i, row.on_i());
-        put(row.j, row.on_j());
+        if (row.i != ground) M.part(k, 0) = row.on_i();
+        if (row.j != ground) M.part(k, 1) = row.on_j();
         Phi[k] = row.Phi;
     });
 }
@@ -30,7 +24,7 @@ void assemble_constraints(const Model& model, const Inputs<Real>& inputs, const 
 // ⎡ K(q)    Φ_q(q)ᵀ ⎤
 // ⎣ Φ_q(q)    0     ⎦  → M     (24)
 template <class Real>
-void assemble(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, Matrix<Real>& M,
+void assemble(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, SaddleMatrix<Real>& M,
               Vector<Real>& Phi) {
     assemble_constraints<Real>(model, inputs, q, M, Phi);
     add_stiffness<Real>(model, inputs, q, M);
@@ -39,7 +33,7 @@ void assemble(const Model& model, const Inputs<Real>& inputs, const State<Real>&
 // The same with the consistent tangent ∂G/∂q in place of K (tangent.hpp).
 template <class Real>
 void assemble_consistent(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                         const State<Real>& q, const Vector<Real>& lambda, Matrix<Real>& M,
+                         const State<Real>& q, const Vector<Real>& lambda, SaddleMatrix<Real>& M,
                          Vector<Real>& Phi) {
     assemble_constraints<Real>(model, inputs, q, M, Phi);
     add_consistent_tangent<Real>(model, branch, inputs, q, lambda, M);

@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <numeric>
@@ -316,14 +315,6 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
     return mode;
 }
 
-// κ₂ without the `nullity` smallest singular values.
-double condition_number(const MatrixXd& M, Eigen::Index nullity) {
-    if (M.rows() <= nullity) return 1;
-    const Eigen::JacobiSVD<MatrixXd> svd(M);
-    const auto& s = svd.singularValues();
-    return s[0] / s[s.size() - 1 - nullity];
-}
-
 }  // namespace
 
 Diagnosis diagnose(const Model& model) {
@@ -393,16 +384,6 @@ std::string idle_modes(const Diagnosis& diagnosis) {
     std::string all;
     for (const auto& mode : diagnosis.idle) all += (all.empty() ? "" : "; ") + mode.description;
     return all;
-}
-
-Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
-    const State<double> q = design_state<double>(model);
-    MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);
-    VectorXd unused(diagnosis.rows);
-    assemble<double>(model, inputs_as_drawn<double>(model), q, M, unused);
-    const VectorXd D = equilibration<double>(M);
-    const auto nullity = diagnosis.null_space.cols();
-    return {condition_number(M, nullity), condition_number(D.asDiagonal() * M * D.asDiagonal(), nullity)};
 }
 
 }  // namespace elastocheck::recursive

@@ -1,6 +1,8 @@
 // What all methods march with: the state, the system, and the pieces of a step.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "models/equilibrium_path.hpp"
@@ -48,12 +50,34 @@ inline constexpr int swings = 2;
 inline constexpr int kinked = 2;
 }  // namespace guard
 
-// Whether a held idle mode moves an end of the element.
+// An elastic element that an idle mode moves, and where among the mode's entries its two bodies are; -1 where they are
+// not.
+struct Moved {
+    std::size_t element = 0;
+    int at_i = -1, at_j = -1;
+};
+// Of every idle mode, in the order of the elements.
 template <class Real>
-bool is_moved(const SaddlePoint<Real>& system, const ElasticKind& element, int mode) {
-    const auto moves = [&](BodyId b) { return b != ground && system.moves(6 * b, mode) != Real(0); };
-    const auto [i, j] = bodies_of(element);
-    return moves(i) || moves(j);
+std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Real>& held) {
+    std::vector<std::vector<std::size_t>> on_body(model.bodies.size());
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const auto [i, j] = bodies_of(model.elastics[k].kind);
+        for (const BodyId b : {i, j})
+            if (b != ground) on_body[static_cast<std::size_t>(b)].push_back(k);
+    }
+    std::vector<std::vector<Moved>> all(static_cast<std::size_t>(held.idle));
+    for (int c = 0; c < held.idle; ++c) {
+        auto& moved = all[static_cast<std::size_t>(c)];
+        for (int e = held.begin(c); e < held.end(c); e += 6)
+            for (const std::size_t k :
+                 on_body[static_cast<std::size_t>(held.row[static_cast<std::size_t>(e)] / 6)]) {
+                const auto [i, j] = bodies_of(model.elastics[k].kind);
+                moved.push_back({k, held.at(c, i), held.at(c, j)});
+            }
+        std::ranges::sort(moved, {}, &Moved::element);
+        moved.erase(std::ranges::unique(moved, {}, &Moved::element).begin(), moved.end());
+    }
+    return all;
 }
 
 // Whether the element may push where its stiffness notices nothing: by its preload, where a curve has force and no
@@ -103,7 +127,8 @@ struct March {
     Real missed = 0;  // what qⁿ may be from equilibrium: what W Δqⁿ⁻¹ differed from the one before it by [m]
     int swings = 0;  // steps in a row that reversed the one before and were larger
 
-    // Elastic elements on bodies that idle modes move, and those of them that push even where K knows of nothing.
+    std::vector<std::vector<Moved>> moved;  // of every idle mode
+    // The elastic elements among these, and those of them that push even where K knows of nothing.
     std::vector<std::size_t> at_idle, pushing;
 
     std::vector<CurvePlace> curves;
@@ -129,13 +154,14 @@ struct March {
         x.setZero(n + m);
         if (Phi_d.norm() <= Real(guard::closed)) Phi_d.setZero();
         set_inputs<Real>(model, branch, drawn, Real(0), Real(0), inputs);
-        for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-            const ElasticKind& kind = model.elastics[k].kind;
-            bool moved = false;
-            for (int c = 0; c < system.idle; ++c) moved = moved || is_moved(system, kind, c);
-            if (moved) at_idle.push_back(k);
-            if (moved && may_push(branch, kind, static_cast<int>(k))) pushing.push_back(k);
-        }
+        moved = moved_elements(model, system.held);
+        for (const auto& elements : moved)
+            for (const Moved& each : elements) at_idle.push_back(each.element);
+        std::ranges::sort(at_idle);
+        at_idle.erase(std::ranges::unique(at_idle).begin(), at_idle.end());
+        std::ranges::copy_if(at_idle, std::back_inserter(pushing), [this](std::size_t k) {
+            return may_push(branch, model.elastics[k].kind, static_cast<int>(k));
+        });
         curves = curves_of(model);
         sides.assign(curves.size(), 0);
         sides_ahead = sides;
@@ -182,9 +208,17 @@ void go_to(March<Real>& s, Place<Real> place) {
 // The part of the external force that works on the idle modes now held, as a share of the whole.
 template <class Real>
 Real load_on_idle_modes(const March<Real>& s, const Vector<Real>& force, Real whole) {
+    const Held<Real>& held = s.system.held;
     Real worst = 0;
-    for (int c = 0; c < s.system.idle; ++c)
-        if (whole > 0) worst = std::max(worst, std::abs(s.system.held.col(c).head(s.n()).dot(force)) / whole);
+    for (int c = 0; c < held.idle; ++c) {
+        Real work = 0;
+        for (int e = held.begin(c); e < held.end(c); e += 6) {
+            const auto at = static_cast<std::size_t>(e);
+            work += Eigen::Map<const Vector6<Real>>(held.value.data() + e)
+                        .dot(force.template segment<6>(held.row[at]));
+        }
+        if (whole > 0) worst = std::max(worst, std::abs(work) / whole);
+    }
     return worst;
 }
 template <class Real>
@@ -197,37 +231,57 @@ Real size_of_force(const March<Real>& s, const Vector<Real>& force) {
 //   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
 //   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
 template <class Real>
-Real strain_of_held(const March<Real>& s, const State<Real>& q) {
-    const auto& system = s.system;
+Real strain_of_held(March<Real>& s, const State<Real>& q) {
+    const Held<Real>& held = s.system.held;
     Real worst = 0;
-    for (int c = 0; c < system.idle; ++c) {
+    for (int c = 0; c < held.idle; ++c) {
         Real energy = 0, single = 0;
-        for (const std::size_t k : s.at_idle) {
-            if (!is_moved(system, s.model.elastics[k].kind, c)) continue;
+        for (const auto& [k, at_i, at_j] : s.moved[static_cast<std::size_t>(c)]) {
             const auto e = element_stiffness<Real>(s.model.elastics[k].kind, s.inputs.rest[k], q);
             const Vector6<Real> rates = e.K.diagonal().cwiseAbs();  // a curve may fall
             const Real k_T = rates.template head<3>().sum(), k_R = rates.template tail<3>().sum();
             Vector6<Real> de = Vector6<Real>::Zero();
-            const auto end = [&](BodyId b, const Vector3<Real>& lever, Real sign) {
-                if (b == ground) return;
-                const Vector6<Real> z = system.held.col(c).template segment<6>(6 * b);
+            const auto end = [&](int at, const Vector3<Real>& lever, Real sign) {
+                if (at < 0) return;
+                const Eigen::Map<const Vector6<Real>> z(held.value.data() + at);
                 const Vector3<Real> v = z.template head<3>(), w = z.template tail<3>();
                 de.template head<3>() += sign * (v - lever.cross(w));
                 de.template tail<3>() += sign * w;
                 single += k_T * (v.squaredNorm() + static_cast<Real>(s.length * s.length) * w.squaredNorm()) +
                           k_R * w.squaredNorm();
             };
-            end(e.i, e.s_i, -1);
-            end(e.j, e.s_j, +1);
+            end(at_i, e.s_i, -1);
+            end(at_j, e.s_j, +1);
             energy += de.dot(e.K * de);
         }
         if (single > 0) worst = std::max(worst, std::sqrt(std::abs(energy) / single));
     }
-    for (int c = system.idle; c < system.borders(); ++c) {
-        const auto y = system.held.col(c).tail(system.m);
-        const auto Phi_q = system.M.bottomLeftCorner(system.m, system.n);
-        const Real left = (Phi_q.transpose() * y).norm(), whole = y.cwiseAbs().dot(Phi_q.rowwise().norm());
-        if (whole > 0) worst = std::max(worst, left / whole);
+    for (int c = held.idle; c < held.size(); ++c) {
+        const SaddleMatrix<Real>& M = s.system.M;
+        // What y puts on the bodies of its rows, each of them once.
+        const auto each_end = [&](auto&& visit) {
+            for (int e = held.begin(c); e < held.end(c); ++e) {
+                const int row = held.row[static_cast<std::size_t>(e)] - M.n;
+                for (int end = 0; end < 2; ++end)
+                    if (const BodyId b = M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
+                        b != ground)
+                        visit(row, end, s.force.template segment<6>(6 * b),
+                              held.value[static_cast<std::size_t>(e)]);
+            }
+        };
+        Real left = 0, whole = 0;
+        each_end([](int, int, auto&& f, Real) { f.setZero(); });
+        each_end([&](int row, int end, auto&& f, Real y) { f += y * M.part(row, end); });
+        each_end([&](int, int, auto&& f, Real) {
+            left += f.squaredNorm();
+            f.setZero();
+        });
+        for (int e = held.begin(c); e < held.end(c); ++e) {
+            const int row = held.row[static_cast<std::size_t>(e)] - M.n;
+            whole += std::abs(held.value[static_cast<std::size_t>(e)]) *
+                     std::sqrt(M.part(row, 0).squaredNorm() + M.part(row, 1).squaredNorm());
+        }
+        if (whole > 0) worst = std::max(worst, std::sqrt(left) / whole);
     }
     return worst;
 }
@@ -272,7 +326,7 @@ bool has_diverged(March<Real>& s) {
 
 // The factors now in the system, of its matrix at q.
 template <class Real>
-Outcome judge(const March<Real>& s, const State<Real>& q, Real pivot_ratio) {
+Outcome judge(March<Real>& s, const State<Real>& q, Real pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
     // More than what blurs is real, and holding it would be a quiet wrong number.
@@ -287,7 +341,7 @@ Outcome judge(const March<Real>& s, const State<Real>& q, Real pivot_ratio) {
 // does: an equilibrium that is none. `missed` is how far q may be from equilibrium [m], which blurs as |Φ| does.
 template <class Real>
 Outcome judge_push(March<Real>& s, const State<Real>& q, Real missed) {
-    if (s.system.idle == 0) return Outcome::converged;
+    if (s.system.held.idle == 0) return Outcome::converged;
     Real blur = s.Phi.norm(), whole = size_of_force(s, s.applied), share = 0;
     if (s.consistent ? s.at_idle.empty() : s.pushing.empty()) {
         share = load_on_idle_modes(s, s.applied, whole);

@@ -29,7 +29,7 @@ std::vector<PaperStep> paper(const Model& model, const Branch& branch, int N) {
         assemble<double>(model, inputs, q, system.M, Phi);
         factorise(system);
         back_substitute<double>(system, f_ext - f_before - stored + carried, driven, x);
-        carried = system.M.topRightCorner(system.n, system.m) * x.tail(system.m);
+        constraint_force(system.M, x.tail(system.m), carried);
         advance(q, x.head(system.n));
 
         path.push_back({q, x.tail(system.m)});

@@ -1,5 +1,6 @@
 #include "recursive/pattern.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "recursive/overloaded.hpp"
@@ -20,12 +21,12 @@ Mask both(const Mask& u, const Mask& v) { return {u[0] || v[0], u[1] || v[1], u[
 bool has_lever(const Point& point) { return point.body == ground || !point.s_local.isZero(0); }
 
 struct Touched {
-    int n, size;                // 6nb, 6nb + m
-    std::vector<char> entries;  // [size × size], symmetric
+    int n;                                 // 6nb
+    std::vector<std::vector<int>> column;  // the rows of every one, as they come [6nb + m]
 
     void entry(int i, int j) {
-        entries[static_cast<std::size_t>(i * size + j)] = 1;
-        entries[static_cast<std::size_t>(j * size + i)] = 1;
+        column[static_cast<std::size_t>(j)].push_back(i);
+        column[static_cast<std::size_t>(i)].push_back(j);
     }
     // The halves of a body: where Δr and Δπ begin, -1 for what is not there.
     static int r(BodyId b) { return b == ground ? -1 : 6 * b; }
@@ -54,6 +55,12 @@ void touch(Touched& t, const AxialSpring& e) {
 // The frame rides on i: the force turns with it, and its lever reaches to p_j.
 void touch(Touched& t, const Bushing& e) {
     t.among({t.r(e.i.body), t.pi(e.i.body), t.r(e.j.body), t.pi(e.j.body)});
+}
+
+// Each number once, rising.
+void sort_once(std::vector<int>& numbers) {
+    std::ranges::sort(numbers);
+    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
 }
 
 // Rows of Φ from k on, and the curvature of the constraint.
@@ -108,7 +115,7 @@ void touch(Touched& t, const DirectionAtAngle& c, int k) {
 
 Pattern pattern(const Model& model) {
     const int n = coordinates(model), size = n + constraint_rows(model);
-    Touched t{n, size, std::vector<char>(static_cast<std::size_t>(size * size), 0)};
+    Touched t{n, std::vector<std::vector<int>>(static_cast<std::size_t>(size))};
     for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a load on the body
     for (const auto& elastic : model.elastics) std::visit([&](const auto& e) { touch(t, e); }, elastic.kind);
     const auto touch_load = [&](const LoadKind& load) {
@@ -131,13 +138,41 @@ Pattern pattern(const Model& model) {
         row += rows(constraint.kind);
     }
     Pattern result{size, {}, {}};
-    for (int j = 0; j < size; ++j) {
+    for (auto& rows : t.column) {
         result.first.push_back(static_cast<int>(result.row.size()));
-        for (int i = 0; i < size; ++i)
-            if (t.entries[static_cast<std::size_t>(i * size + j)]) result.row.push_back(i);
+        sort_once(rows);
+        result.row.insert(result.row.end(), rows.begin(), rows.end());
     }
     result.first.push_back(static_cast<int>(result.row.size()));
     return result;
+}
+
+SaddleMatrix<double> saddle_matrix(const Model& model) {
+    SaddleMatrix<double> M{coordinates(model), constraint_rows(model), {}, {}, {}, {}};
+    std::vector<std::vector<BodyId>> neighbours(model.bodies.size());
+    const auto connect = [&](BodyId i, BodyId j) {
+        if (i == ground || j == ground || i == j) return;
+        neighbours[static_cast<std::size_t>(i)].push_back(j);
+        neighbours[static_cast<std::size_t>(j)].push_back(i);
+    };
+    const auto between = [](const auto& kind) { return std::array{kind.i.body, kind.j.body}; };
+    for (const auto& elastic : model.elastics) {
+        const auto [i, j] = std::visit(between, elastic.kind);
+        connect(i, j);
+    }
+    for (const auto& constraint : model.constraints) {
+        const auto ends = std::visit(between, constraint.kind);
+        connect(ends[0], ends[1]);
+        M.ends.insert(M.ends.end(), static_cast<std::size_t>(rows(constraint.kind)), ends);
+    }
+    for (auto& bodies : neighbours) {
+        M.first.push_back(static_cast<int>(M.neighbour.size()));
+        sort_once(bodies);
+        M.neighbour.insert(M.neighbour.end(), bodies.begin(), bodies.end());
+    }
+    M.first.push_back(static_cast<int>(M.neighbour.size()));
+    M.values.assign(static_cast<std::size_t>(M.part_at(M.m, 0)), 0);
+    return M;
 }
 
 }  // namespace elastocheck::recursive

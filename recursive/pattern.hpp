@@ -4,11 +4,15 @@
 #pragma once
 
 #include "models/model.hpp"
+#include "recursive/saddle_matrix.hpp"
 #include "recursive/sparse_lu.hpp"
 
 namespace elastocheck::recursive {
 
 // The entries of [(6nb + m) × (6nb + m)], on any branch.
 Pattern pattern(const Model& model);
+
+// The matrix itself, all zero: its blocks.
+SaddleMatrix<double> saddle_matrix(const Model& model);
 
 }  // namespace elastocheck::recursive

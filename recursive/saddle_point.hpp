@@ -18,75 +18,127 @@
 // error that the published method leaves, and feeding it back grows it.
 #pragma once
 
+#include <map>
+
+#include "recursive/saddle_matrix.hpp"
 #include "recursive/sparse_lu.hpp"
 
 namespace elastocheck::recursive {
 
+// The directions that are held: idle modes first, then redundant combinations, each with the places where it may be
+// other than zero. Those that have places in common have them all in common, and follow each other.
+template <class Real>
+struct Held {
+    int idle = 0;              // how many are idle modes
+    std::vector<int> first;    // of every direction, and where the last one ends [d + 1]
+    std::vector<int> with;     // the first of those that a direction shares its places with [d]
+    std::vector<int> row;      // of every entry, rising within a direction: whole bodies of an idle mode
+    std::vector<Real> value;   // z or y, physical units, unit in `weight`
+    std::vector<Real> border;  // b in scaled coordinates, of unit length
+
+    int size() const { return static_cast<int>(with.size()); }
+    int begin(int c) const { return first[static_cast<std::size_t>(c)]; }
+    int end(int c) const { return first[static_cast<std::size_t>(c) + 1]; }
+    // Where the entries of a body are among those of an idle mode; -1 where the mode leaves it alone.
+    int at(int c, BodyId b) const {
+        const auto from = row.begin() + begin(c), to = row.begin() + end(c);
+        const auto found = std::lower_bound(from, to, 6 * b);
+        return b == ground || found == to || *found != 6 * b ? -1 : static_cast<int>(found - row.begin());
+    }
+    Eigen::Map<Vector<Real>> values(int c) { return {value.data() + begin(c), end(c) - begin(c)}; }
+    Eigen::Map<const Vector<Real>> values(int c) const {
+        return {value.data() + begin(c), end(c) - begin(c)};
+    }
+
+    template <class Other>
+    Held<Other> cast() const {
+        return {idle, first, with, row, {value.begin(), value.end()}, {border.begin(), border.end()}};
+    }
+};
+
 template <class Real>
 struct SaddlePoint {
-    int n = 0, m = 0;     // 6nb, rows of Φ
-    Matrix<Real> M;       // raw, [(n+m) × (n+m)]; assembled by the caller, symmetric
-    Vector<Real> scale;   // D, powers of two
-    int idle = 0;         // how many columns of `held` are idle modes; the rest are redundant combinations
-    Matrix<Real> held;    // z or y, physical units, unit in `weight`, zero in the other part [(n+m) × d]
-    Vector<Real> weight;  // W: 1 for Δr [m], L for Δπ, 1 for λ
-    Matrix<Real> moves;   // 1 where an entry of `held` may be other than zero
-    // M̂ with its border, entry by entry of the pattern; where an entry of M lies (column by column), -1 for
-    // one of the border; what it is multiplied by.
+    int n = 0, m = 0;      // 6nb, rows of Φ
+    SaddleMatrix<Real> M;  // raw [(n+m) × (n+m)]; assembled by the caller
+    Vector<Real> scale;    // D, powers of two
+    Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
+    Held<Real> held;
+    // M̂ with its border, entry by entry of the pattern; where an entry of M lies among its values, -1 - where one
+    // of the border does; what it is multiplied by.
     std::vector<Real> values, scaling;
     std::vector<int> source;
-    Matrix<Real> border;  // b in scaled coordinates, of unit length [(n+m) × d]
     Vector<Real> rhs, solution;
     SparseLU<Real> lu;
 
-    auto K() { return M.topLeftCorner(n, n); }
-    int borders() const { return static_cast<int>(held.cols()); }
+    int borders() const { return held.size(); }
 };
 
 // D of the matrix M, by a few Ruiz sweeps: every row of D M D has its largest entry in (½, 2].
 template <class Real>
-Vector<Real> equilibration(const Matrix<Real>& M) {
-    const Matrix<Real> size = M.cwiseAbs();
-    Vector<Real> d = Vector<Real>::Ones(M.rows()), largest(M.rows());
+Vector<Real> equilibration(const SaddleMatrix<Real>& M) {
+    Vector<Real> d = Vector<Real>::Ones(M.n + M.m), largest(M.n + M.m);
     for (int sweep = 0; sweep < 10; ++sweep) {
         largest.setZero();
-        for (Eigen::Index j = 0; j < d.size(); ++j) largest = largest.cwiseMax(size.col(j) * d[j]);
+        for_each_entry(M, [&](int i, int j, int at) {
+            largest[i] = std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(at)]) * d[j]);
+        });
         for (Eigen::Index k = 0; k < d.size(); ++k)
             if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
     }
     return d.unaryExpr([](Real value) { return std::exp2(std::round(std::log2(value))); });
 }
 
-// Makes the columns of `held` unit and mutually perpendicular in the norm W, each in its own part.
+// W² at the places of a direction.
+template <class Real>
+auto weights(const SaddlePoint<Real>& system, int c) {
+    return [&system, from = system.held.begin(c)](Eigen::Index e) {
+        const Real w = system.weight[system.held.row[static_cast<std::size_t>(from + e)]];
+        return w * w;
+    };
+}
+
+// Makes the held directions unit, and those with places in common mutually perpendicular, in the norm W.
 template <class Real>
 void orthonormalise(SaddlePoint<Real>& system) {
-    const auto W2 = system.weight.array().square();
-    for (int c = 0; c < system.borders(); ++c) {
-        auto z = system.held.col(c);
-        z.array() *= system.moves.col(c).array();
-        for (int b = 0; b < c; ++b) {
-            const Real overlap = (z.array() * W2 * system.held.col(b).array()).sum();
-            z -= overlap * system.held.col(b);
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        auto z = held.values(c);
+        const auto W2 = weights(system, c);
+        const auto inner = [&](const auto& a, const auto& b) {
+            Real sum = 0;
+            for (Eigen::Index e = 0; e < z.size(); ++e) sum += a[e] * W2(e) * b[e];
+            return sum;
+        };
+        for (int b = held.with[static_cast<std::size_t>(c)]; b < c; ++b) {
+            const Real overlap = inner(z, held.values(b));
+            z -= overlap * held.values(b);
         }
-        z /= std::sqrt((z.array().square() * W2).sum());
+        z /= std::sqrt(inner(z, z));
     }
 }
 
 // The border of every held direction around the pattern of M.
-inline Pattern bordered(const Pattern& inner, const Eigen::MatrixXd& moves) {
-    const auto N = inner.size, d = static_cast<int>(moves.cols());
+template <class Real>
+Pattern bordered(const Pattern& inner, const Held<Real>& held) {
+    const int N = inner.size, d = held.size();
     Pattern all{N + d, {}, {}};
+    std::vector<int> of_row, first_of_row;
+    sort_into_rows(static_cast<std::size_t>(N), first_of_row, of_row, nullptr, [&](auto&& put) {
+        for (int c = 0; c < d; ++c)
+            for (int e = held.begin(c); e < held.end(c); ++e)
+                put(held.row[static_cast<std::size_t>(e)], N + c, 0);
+    });
+    const auto append = [&](const std::vector<int>& list, int from, int to) {
+        all.row.insert(all.row.end(), list.begin() + from, list.begin() + to);
+    };
     for (int j = 0; j < N + d; ++j) {
         all.first.push_back(static_cast<int>(all.row.size()));
+        const auto column = static_cast<std::size_t>(j);
         if (j < N) {
-            const auto column = static_cast<std::size_t>(j);
-            all.row.insert(all.row.end(), inner.row.begin() + inner.first[column],
-                           inner.row.begin() + inner.first[column + 1]);
-            for (int c = 0; c < d; ++c)
-                if (moves(j, c) != 0) all.row.push_back(N + c);
+            append(inner.row, inner.first[column], inner.first[column + 1]);
+            append(of_row, first_of_row[column], first_of_row[column + 1]);
         } else {
-            for (int i = 0; i < N; ++i)
-                if (moves(i, j - N) != 0) all.row.push_back(i);
+            append(held.row, held.begin(j - N), held.end(j - N));
         }
     }
     all.first.push_back(static_cast<int>(all.row.size()));
@@ -96,51 +148,107 @@ inline Pattern bordered(const Pattern& inner, const Eigen::MatrixXd& moves) {
 // Gathers M̂ and its border from M and what is held.
 template <class Real>
 void scale_entries(SaddlePoint<Real>& system) {
-    const int N = system.n + system.m;
-    for (int c = 0; c < system.borders(); ++c) {
-        auto b = system.border.col(c);
-        b = system.scale.array() * system.weight.array().square() * system.held.col(c).array();
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        const auto W2 = weights(system, c);
+        Eigen::Map<Vector<Real>> b(held.border.data() + held.begin(c), held.end(c) - held.begin(c));
+        for (Eigen::Index e = 0; e < b.size(); ++e) {
+            const auto at = static_cast<std::size_t>(held.begin(c) + e);
+            b[e] = system.scale[held.row[at]] * W2(e) * held.value[at];
+        }
         b.normalize();
     }
-    const Pattern& pattern = system.lu.order.pattern;
-    const Real* const M = system.M.data();
-    const int inner = pattern.first[static_cast<std::size_t>(N)];
-    for (int e = 0; e < inner; ++e) {
-        const auto at = static_cast<std::size_t>(e);
-        const int source = system.source[at];
-        system.values[at] = source >= 0 ? M[source] * system.scaling[at] : system.border.data()[-1 - source];
+    const Real* const M = system.M.values.data();
+    for (std::size_t e = 0; e < system.values.size(); ++e) {
+        const int source = system.source[e];
+        system.values[e] =
+            source >= 0 ? M[source] * system.scaling[e] : held.border[static_cast<std::size_t>(-1 - source)];
     }
-    for (auto at = static_cast<std::size_t>(inner); at < pattern.entries(); ++at)
-        system.values[at] = system.border.data()[-1 - system.source[at]];
+}
+
+// The places of the directions in the columns of `null_space`: of an idle mode the bodies that it moves, wherever
+// the branch leads; of a redundant combination all rows of the loops of joints that it is in (`loop` of every row:
+// joints of two loops know nothing of each other). Directions that share a place are given all of each other's.
+inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
+                           const Vector<double>& weight, int n, const std::vector<int>& loop) {
+    using Column = Eigen::SparseMatrix<double>::InnerIterator;
+    const auto at = [](auto k) { return static_cast<std::size_t>(k); };
+    const auto d = static_cast<int>(null_space.cols());
+    // A place is a body, or, behind the bodies, a loop. Each remembers the first direction there.
+    const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
+    std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
+    std::vector<std::vector<int>> of_leader(at(d));
+    const auto lead = [&](int c) {
+        while (leader[at(c)] != c) c = leader[at(c)] = leader[at(leader[at(c)])];
+        return c;
+    };
+    for (int c = 0; c < d; ++c) {
+        leader[at(c)] = c;
+        std::map<int, double> share;  // squared, of each place
+        double whole = 0;
+        for (Column e(null_space, c); e; ++e) {
+            const auto row = static_cast<int>(e.row());
+            const int place = row < n ? row / 6 : bodies + loop[at(row - n)];
+            const double size = weight[row] * e.value();
+            share[place] += size * size;
+            whole += size * size;
+        }
+        for (const auto& [place, size] : share) {
+            if (!(size > 1e-10 * whole)) continue;
+            if (first_there[at(place)] < 0) {
+                first_there[at(place)] = c;
+            } else {
+                const int one = lead(first_there[at(place)]), other = lead(c);
+                leader[at(std::max(one, other))] = std::min(one, other);
+            }
+        }
+    }
+    const auto give = [&](int place, int row) {
+        if (first_there[at(place)] >= 0) of_leader[at(lead(first_there[at(place)]))].push_back(row);
+    };
+    for (int row = 0; row < n; ++row) give(row / 6, row);
+    for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
+    std::vector<int> order(at(d));
+    for (int c = 0; c < d; ++c) order[at(c)] = c;
+    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations share nothing
+
+    Held<double> held;
+    held.idle = idle;
+    held.first.push_back(0);
+    for (int k = 0; k < d; ++k) {
+        const int c = order[at(k)];
+        const auto& rows = of_leader[at(lead(c))];
+        held.with.push_back(k > 0 && lead(order[at(k - 1)]) == lead(c) ? held.with.back() : k);
+        held.row.insert(held.row.end(), rows.begin(), rows.end());
+        held.first.push_back(static_cast<int>(held.row.size()));
+        held.value.resize(held.row.size(), 0);
+        for (Column e(null_space, c); e; ++e) {
+            const auto place = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
+            if (place != rows.end() && *place == e.row())
+                held.value[at(held.begin(k) + (place - rows.begin()))] = e.value();
+        }
+    }
+    held.border.assign(held.row.size(), 0);
+    return held;
 }
 
 // Fixes the scaling from the matrix now in M, what to hold, `idle` modes first, then redundant combinations,
 // in the columns of `null_space` [(n+m) × d], and the order of elimination; `inner` is what of M can be other
-// than zero. A held mode moves the same bodies wherever the branch leads.
-template <class Real>
-void analyse(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_space, const Pattern& inner) {
-    const Eigen::Index N = system.n + system.m, d = null_space.cols();
-    system.scale = equilibration<Real>(system.M);
-    system.idle = idle;
-    system.held = null_space.cast<Real>();
-    system.moves.setZero(N, d);
-    for (Eigen::Index c = 0; c < d; ++c) {
-        if (c >= idle) {
-            system.moves.col(c).tail(system.m).setOnes();
-            continue;
-        }
-        const auto part = [&](Eigen::Index row) {  // of the body that the row belongs to
-            return system.held.col(c)
-                .segment(row - row % 6, 6)
-                .cwiseProduct(system.weight.segment(row - row % 6, 6));
-        };
-        const Real whole = system.held.col(c).head(system.n).norm();
-        for (Eigen::Index row = 0; row < system.n; ++row)
-            system.moves(row, c) = part(row).norm() > Real(1e-5) * whole ? 1 : 0;
-    }
+// than zero, `loop` the loop of joints of every row of Φ.
+inline void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
+                    const Pattern& inner, const std::vector<int>& loop) {
+    const int N = system.n + system.m;
+    system.scale = equilibration(system.M);
+    system.held = places(idle, null_space, system.weight, system.n, loop);
     orthonormalise(system);
 
-    const Pattern pattern = bordered(inner, system.moves.template cast<double>());
+    const Pattern pattern = bordered(inner, system.held);
+    const auto border = [&](int row, int direction) {
+        const auto& rows = system.held.row;
+        return -1 - static_cast<int>(std::lower_bound(rows.begin() + system.held.begin(direction),
+                                                      rows.begin() + system.held.end(direction), row) -
+                                     rows.begin());
+    };
     system.source.clear();
     system.scaling.clear();
     for (int j = 0; j < pattern.size; ++j)
@@ -148,17 +256,12 @@ void analyse(SaddlePoint<Real>& system, int idle, const Eigen::MatrixXd& null_sp
              e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
             const bool inside = i < N && j < N;
-            const auto flat = [&](int row, int column) { return static_cast<int>(column * N) + row; };
-            system.source.push_back(
-                inside ? flat(i, j)
-                       : -1 - (i < N ? flat(i, j - static_cast<int>(N)) : flat(j, i - static_cast<int>(N))));
-            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : Real(1));
+            system.source.push_back(inside ? system.M.at(i, j) : i < N ? border(i, j - N) : border(j, i - N));
+            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 1);
         }
     system.values.assign(pattern.entries(), 0);
-    system.border.setZero(N, d);
-    system.rhs.setZero(N + d);
-    system.solution.setZero(N + d);
-    system.lu.order.pattern = pattern;
+    system.rhs.setZero(N + system.borders());
+    system.solution.setZero(N + system.borders());
     scale_entries(system);
     analyse(system.lu, pattern, system.values.data());
 }
@@ -169,16 +272,13 @@ SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
     SaddlePoint<Real> system;
     system.n = from.n;
     system.m = from.m;
-    system.M = from.M.cast<Real>();
+    system.M = from.M.template cast<Real>();
     system.scale = from.scale.cast<Real>();
-    system.idle = from.idle;
-    system.held = from.held.cast<Real>();
+    system.held = from.held.template cast<Real>();
     system.weight = from.weight.cast<Real>();
-    system.moves = from.moves.cast<Real>();
     system.values.assign(from.values.begin(), from.values.end());
     system.scaling.assign(from.scaling.begin(), from.scaling.end());
     system.source = from.source;
-    system.border = from.border.cast<Real>();
     system.rhs = from.rhs.cast<Real>();
     system.solution = from.solution.cast<Real>();
     analyse(system.lu, from.lu.order);
@@ -206,17 +306,18 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
 // largest pivot of the scaled, bordered matrix; the caller judges it.
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
-    const int N = system.n + system.m, d = system.borders();
     scale_entries(system);
     const Real pivot_ratio = factorise(system.lu, system.values.data());
 
-    for (int c = 0; c < d; ++c) {
-        system.rhs.setZero();
-        system.rhs[N + c] = 1;
-        solve(system.lu, system.rhs.data(), system.solution.data());
-        system.held.col(c).array() = system.scale.array() * system.solution.head(N).array();
+    // An answer to e_c of the border, at the places of the direction alone.
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        const int from = held.begin(c), count = held.end(c) - from;
+        Real* const z = held.value.data() + from;
+        solve_unit(system.lu, system.n + system.m + c, held.row.data() + from, count, z);
+        for (int e = 0; e < count; ++e) z[e] *= system.scale[held.row[static_cast<std::size_t>(from + e)]];
     }
-    if (d > 0) orthonormalise(system);
+    orthonormalise(system);
     return pivot_ratio;
 }
 

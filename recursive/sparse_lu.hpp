@@ -5,203 +5,174 @@
 //   solve       right-hand side → solution
 //
 // Which entries of eq. (24) can be other than zero is decided by who is connected to whom (pattern.hpp), so
-// the order is chosen once, and afterwards only what can be other than zero is touched. Chosen is, step by
-// step, the pivot that fills in least (Markowitz: smallest (entries in its row - 1)(entries in its column -
-// 1)) among those no smaller than a tenth of their column. The choice stands while no multiplier of L exceeds
+// the order is chosen once (pivot_search.hpp), and afterwards only what can be other than zero is kept and touched:
+// row i of L and U in the order of the pivots follows from row i of A and the rows of U above it,
+//
+//   w ← A_i,     l_ik = w_k / u_kk,   w ← w - l_ik U_k   for every k < i where w can be other than zero,     U_i ← w
+//
+// in one row w of full length. The choice stands while no multiplier of L exceeds
 // a hundred (or what the caller bears); when one does, the order is chosen anew from the values of the moment.
 //
 // Values are those of the pattern's entries, in its order.
 #pragma once
 
-#include <algorithm>
-#include <limits>
-#include <vector>
-
-#include "recursive/state.hpp"
+#include "recursive/pivot_search.hpp"
 
 namespace elastocheck::recursive {
 
-// Which entries of a square matrix may be other than zero, column by column, rows rising.
-struct Pattern {
-    int size = 0;
-    std::vector<int> first;  // of every column, and where the last one ends [size + 1]
-    std::vector<int> row;    // of every entry
-
-    std::size_t entries() const { return row.size(); }
-};
-inline bool has_entry(const Pattern& pattern, int i, int j) {
-    const auto column = pattern.row.begin() + pattern.first[static_cast<std::size_t>(j)];
-    return std::binary_search(column, pattern.row.begin() + pattern.first[static_cast<std::size_t>(j) + 1],
-                              i);
-}
-
-// The order of elimination, and what it fills in. W is the matrix in the order of the pivots, row by row.
+// The order of elimination, and what it fills in, row by row of L and U.
 struct Elimination {
     Pattern pattern;
-    std::vector<int> row, col;  // the k-th pivot is A(row[k], col[k])
-    std::vector<int> to;        // where in W an entry goes
-    std::vector<int> fill;      // the places of W that elimination alone fills
-    // Entries of the k-th column of L and row of U beside the pivot, as numbers of rows and columns of W:
-    // below[first_below[k] ... first_below[k+1]), right[...] likewise.
-    std::vector<int> below, first_below, right, first_right;
+    std::vector<int> row, col;        // the k-th pivot is A(row[k], col[k])
+    std::vector<int> row_of, col_of;  // ... and the other way round
+    // Of row i, as numbers of columns: what A has there, with which entry of the pattern that is; what elimination
+    // alone fills; what L has, and U beside the pivot, both rising.
+    std::vector<int> to, entry, first_entry, fill, first_fill, left, first_left, right, first_right;
+    // Of column k of L: the rows, and where in L these entries are.
+    std::vector<int> below, place, first_below;
     int parity = 1;  // of the two permutations `row` and `col` together: +1 or -1
 };
 
 template <class Real>
 struct SparseLU {
     Elimination order;
-    std::vector<Real> W;                  // L (unit diagonal) and U
-    std::vector<Real> inverse;            // 1 / pivots
-    std::vector<Real> y;                  // the solution in the order of the pivots
-    std::vector<char> filled;             // while the order is chosen: pattern of L + U ...
-    std::vector<long> in_row, in_column;  // ... how many entries a row and a column still have
-    std::vector<Real> largest;            // ... and the largest of a column
-    int orders = 0;                       // how often the order was chosen here
-    int orientation = 0;                  // sign of the determinant of the last matrix factorised
+    std::vector<Real> L, U;             // without the diagonals, as `left` and `right`
+    std::vector<Real> inverse;          // 1 / pivots
+    std::vector<Real> w;                // a row while it is eliminated
+    std::vector<Real> y;                // the solution in the order of the pivots
+    std::vector<Real> known, unknown;   // the same where it is zero but for a few, zero in between ...
+    std::vector<int> waiting, reached;  // ... and which these are
+    std::vector<char> queued;
+    PivotSearch<Real> search;
+    int orders = 0;       // how often the order was chosen here
+    int orientation = 0;  // sign of the determinant of the last matrix factorised
 
-    static constexpr double least_pivot = 0.1;
     double largest_multiplier = 100;  // until the order is chosen anew
     std::size_t size() const { return static_cast<std::size_t>(order.pattern.size); }
 };
 
-// Room for everything, so that nothing is allocated when an order has to be chosen anew.
+// Room for what a solution and a row need.
 template <class Real>
 void reserve(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
-    lu.filled.assign(n * n, 0);
-    lu.W.assign(n * n, 0);
-    for (auto* list : {&lu.inverse, &lu.y, &lu.largest}) list->assign(n, 0);
-    for (auto* list : {&lu.in_row, &lu.in_column}) list->assign(n, 0);
-    for (auto* list : {&lu.order.row, &lu.order.col, &lu.order.first_below, &lu.order.first_right})
-        list->reserve(n + 1);
-    for (auto* list : {&lu.order.below, &lu.order.right, &lu.order.fill}) list->reserve(n * n);
-    lu.order.to.reserve(lu.order.pattern.entries());
+    for (auto* list : {&lu.inverse, &lu.w, &lu.y, &lu.known, &lu.unknown}) list->assign(n, 0);
+    lu.queued.assign(n, 0);
+    lu.waiting.reserve(n);
+    lu.reached.reserve(2 * n);
+}
+// ... and what the factors need.
+template <class Real>
+void reserve_factors(SparseLU<Real>& lu) {
+    lu.L.resize(lu.order.left.size());
+    lu.U.resize(lu.order.right.size());
 }
 
 // +1 or -1, as an even or an odd number of swaps makes the permutation.
-inline int parity(std::vector<int> permutation) {
+inline int parity(std::vector<int>& permutation, std::vector<char>& seen) {
     int sign = 1;
+    std::fill(seen.begin(), seen.end(), 0);
     for (std::size_t k = 0; k < permutation.size(); ++k)
-        while (permutation[k] != static_cast<int>(k)) {
-            std::swap(permutation[k], permutation[static_cast<std::size_t>(permutation[k])]);
+        for (auto at = static_cast<std::size_t>(permutation[k]); !seen[k] && at != k;
+             at = static_cast<std::size_t>(permutation[at])) {
+            seen[at] = 1;
             sign = -sign;
         }
     return sign;
 }
 
+// Sorts numbers of columns into rows (or the other way round) by counting: each(put) calls put(row, column, which) for
+// all of them, twice. Within a row they stay in the order in which they come.
+template <class Each>
+void sort_into_rows(std::size_t n, std::vector<int>& first, std::vector<int>& column, std::vector<int>* which,
+                    Each&& each) {
+    first.assign(n + 1, 0);
+    each([&](int row, int, int) { ++first[static_cast<std::size_t>(row) + 1]; });
+    for (std::size_t k = 0; k < n; ++k) first[k + 1] += first[k];
+    column.resize(static_cast<std::size_t>(first[n]));
+    if (which != nullptr) which->resize(column.size());
+    each([&](int row, int c, int number) {
+        const auto at = static_cast<std::size_t>(first[static_cast<std::size_t>(row)]++);
+        column[at] = c;
+        if (which != nullptr) (*which)[at] = number;
+    });
+    for (std::size_t k = n; k > 0; --k) first[k] = first[k - 1];
+    first[0] = 0;
+}
+
+// Lays the rows of L and U out along the pivots that `search` has found.
+template <class Real>
+void lay_out(SparseLU<Real>& lu) {
+    const std::size_t n = lu.size();
+    Elimination& order = lu.order;
+    const PivotSearch<Real>& found = lu.search;
+    order.row = found.row;
+    order.col = found.col;
+    order.row_of.resize(n);
+    order.col_of.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        order.row_of[static_cast<std::size_t>(order.row[k])] = static_cast<int>(k);
+        order.col_of[static_cast<std::size_t>(order.col[k])] = static_cast<int>(k);
+    }
+    const auto in = [](const std::vector<int>& first, std::size_t k, auto&& visit) {
+        for (int e = first[k]; e < first[k + 1]; ++e) visit(static_cast<std::size_t>(e));
+    };
+    // From below and right in numbers of A, twice turned round: the columns of each row rise.
+    const auto of_row = [&](std::size_t e) { return order.row_of[static_cast<std::size_t>(found.below[e])]; };
+    const auto of_col = [&](std::size_t e) { return order.col_of[static_cast<std::size_t>(found.right[e])]; };
+    sort_into_rows(n, order.first_left, order.left, nullptr, [&](auto&& put) {
+        for (std::size_t k = 0; k < n; ++k)
+            in(found.first_below, k, [&](std::size_t e) { put(of_row(e), static_cast<int>(k), 0); });
+    });
+    sort_into_rows(n, order.first_below, order.below, &order.place, [&](auto&& put) {
+        for (std::size_t i = 0; i < n; ++i)
+            in(order.first_left, i,
+               [&](std::size_t e) { put(order.left[e], static_cast<int>(i), static_cast<int>(e)); });
+    });
+    sort_into_rows(n, order.first_fill, order.fill, nullptr, [&](auto&& put) {  // columns of U, for a moment
+        for (std::size_t k = 0; k < n; ++k)
+            in(found.first_right, k, [&](std::size_t e) { put(of_col(e), static_cast<int>(k), 0); });
+    });
+    sort_into_rows(n, order.first_right, order.right, nullptr, [&](auto&& put) {
+        for (std::size_t j = 0; j < n; ++j)
+            in(order.first_fill, j, [&](std::size_t e) { put(order.fill[e], static_cast<int>(j), 0); });
+    });
+    const Pattern& pattern = order.pattern;
+    sort_into_rows(n, order.first_entry, order.to, &order.entry, [&](auto&& put) {
+        for (std::size_t j = 0; j < n; ++j)
+            in(pattern.first, j, [&](std::size_t e) {
+                put(order.row_of[static_cast<std::size_t>(pattern.row[e])], order.col_of[j],
+                    static_cast<int>(e));
+            });
+    });
+    order.fill.clear();
+    order.first_fill.assign(1, 0);
+    std::vector<char>& there = lu.queued;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto mark = [&](char value) {
+            in(order.first_entry, i,
+               [&](std::size_t e) { there[static_cast<std::size_t>(order.to[e])] = value; });
+        };
+        const auto fills = [&](int column) {
+            if (!there[static_cast<std::size_t>(column)]) order.fill.push_back(column);
+        };
+        mark(1);
+        in(order.first_left, i, [&](std::size_t e) { fills(order.left[e]); });
+        fills(static_cast<int>(i));
+        in(order.first_right, i, [&](std::size_t e) { fills(order.right[e]); });
+        mark(0);
+        order.first_fill.push_back(static_cast<int>(order.fill.size()));
+    }
+    order.parity = parity(order.row, there) * parity(order.col, there);
+    std::fill(there.begin(), there.end(), 0);
+    reserve_factors(lu);
+}
+
 // Chooses the order of elimination from `values`.
 template <class Real>
 void choose_order(SparseLU<Real>& lu, const Real* values) {
-    const std::size_t n = lu.size();
-    Elimination& order = lu.order;
-    const Pattern& pattern = order.pattern;
     ++lu.orders;
-    order.row.resize(n);
-    order.col.resize(n);
-    std::fill(lu.filled.begin(), lu.filled.end(), 0);
-    std::fill(lu.W.begin(), lu.W.end(), Real(0));
-    for (std::size_t j = 0; j < n; ++j) {
-        order.row[j] = order.col[j] = static_cast<int>(j);
-        for (int e = pattern.first[j]; e < pattern.first[j + 1]; ++e) {
-            const std::size_t at = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(e)]) * n + j;
-            lu.filled[at] = 1;
-            lu.W[at] = values[e];
-        }
-    }
-    // What is still to go is the block right and below of (k, k).
-    const auto measure_column = [&](std::size_t c, std::size_t k) {
-        lu.in_column[c] = 0;
-        lu.largest[c] = 0;
-        for (std::size_t r = k; r < n; ++r) {
-            if (!lu.filled[r * n + c]) continue;
-            ++lu.in_column[c];
-            lu.largest[c] = std::max(lu.largest[c], std::abs(lu.W[r * n + c]));
-        }
-    };
-    for (std::size_t k = 0; k < n; ++k) {
-        measure_column(k, 0);
-        lu.in_row[k] = std::count(&lu.filled[k * n], &lu.filled[k * n] + n, 1);
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-        std::size_t best_r = k, best_c = k;
-        long best_fill = std::numeric_limits<long>::max();
-        Real best_value = 0;
-        const long fewest = *std::min_element(&lu.in_column[k], &lu.in_column[k] + (n - k)) - 1;
-        for (std::size_t r = k; r < n; ++r) {
-            const long others = lu.in_row[r] - 1;
-            if (others * fewest > best_fill) continue;
-            const char* const filled = &lu.filled[r * n];
-            for (std::size_t c = k; c < n; ++c) {
-                if (!filled[c]) continue;
-                const long fill = others * (lu.in_column[c] - 1);
-                if (fill > best_fill) continue;
-                const Real value = std::abs(lu.W[r * n + c]);
-                if (!(value > 0 && value >= static_cast<Real>(lu.least_pivot) * lu.largest[c]) ||
-                    (fill == best_fill && !(value > best_value)))
-                    continue;
-                best_fill = fill;
-                best_value = value;
-                best_r = r;
-                best_c = c;
-            }
-        }
-        const auto swap_entries = [&](auto& entries) {
-            if (best_r != k) std::swap_ranges(&entries[k * n], &entries[k * n] + n, &entries[best_r * n]);
-            for (std::size_t r = 0; r < n; ++r) std::swap(entries[r * n + k], entries[r * n + best_c]);
-        };
-        swap_entries(lu.W);
-        swap_entries(lu.filled);
-        std::swap(order.row[k], order.row[best_r]);
-        std::swap(lu.in_row[k], lu.in_row[best_r]);
-        std::swap(order.col[k], order.col[best_c]);
-        std::swap(lu.in_column[k], lu.in_column[best_c]);
-        std::swap(lu.largest[k], lu.largest[best_c]);
-        // A singular matrix is told by its pivots; the next one of its pattern need not be, and fills in all
-        // the same.
-        lu.filled[k * n + k] = 1;
-        for (std::size_t r = k + 1; r < n; ++r) {
-            if (!lu.filled[r * n + k]) continue;
-            --lu.in_row[r];
-            const Real l = best_value > 0 ? lu.W[r * n + k] / lu.W[k * n + k] : Real(0);
-            for (std::size_t c = k + 1; c < n; ++c) {
-                if (!lu.filled[k * n + c]) continue;
-                if (!lu.filled[r * n + c]) {
-                    lu.filled[r * n + c] = 1;
-                    ++lu.in_row[r];
-                }
-                lu.W[r * n + c] -= l * lu.W[k * n + c];
-            }
-        }
-        for (std::size_t c = k + 1; c < n; ++c)
-            if (lu.filled[k * n + c]) measure_column(c, k + 1);
-    }
-    for (auto* list : {&order.below, &order.right, &order.first_below, &order.first_right}) list->clear();
-    std::vector<long>&row_of = lu.in_row, &column_of = lu.in_column;  // of W, by row and column of A
-    for (std::size_t k = 0; k < n; ++k) {
-        order.first_below.push_back(static_cast<int>(order.below.size()));
-        order.first_right.push_back(static_cast<int>(order.right.size()));
-        for (std::size_t o = k + 1; o < n; ++o) {
-            if (lu.filled[o * n + k]) order.below.push_back(static_cast<int>(o));
-            if (lu.filled[k * n + o]) order.right.push_back(static_cast<int>(o));
-        }
-        row_of[static_cast<std::size_t>(order.row[k])] = static_cast<long>(k);
-        column_of[static_cast<std::size_t>(order.col[k])] = static_cast<long>(k);
-    }
-    order.first_below.push_back(static_cast<int>(order.below.size()));
-    order.first_right.push_back(static_cast<int>(order.right.size()));
-    order.to.resize(pattern.entries());
-    for (std::size_t j = 0; j < n; ++j)
-        for (auto e = static_cast<std::size_t>(pattern.first[j]);
-             e < static_cast<std::size_t>(pattern.first[j + 1]); ++e) {
-            const auto at = static_cast<std::size_t>(row_of[static_cast<std::size_t>(pattern.row[e])]) * n +
-                            static_cast<std::size_t>(column_of[j]);
-            order.to[e] = static_cast<int>(at);
-            lu.filled[at] = 0;
-        }
-    order.fill.clear();
-    for (std::size_t at = 0; at < n * n; ++at)
-        if (lu.filled[at]) order.fill.push_back(static_cast<int>(at));
-    order.parity = parity(order.row) * parity(order.col);
+    search_pivots(lu.search, lu.order.pattern, values);
+    lay_out(lu);
 }
 
 // Makes everything ready for matrices of this pattern, in the order of elimination that suits `values`.
@@ -219,6 +190,7 @@ void analyse(SparseLU<Real>& lu, const Elimination& order) {
     lu.order = order;
     lu.orders = 0;
     reserve(lu);
+    reserve_factors(lu);
 }
 
 // Eliminates in the order chosen. Returns the smallest over the largest pivot, 0 where one is exactly zero,
@@ -226,37 +198,42 @@ void analyse(SparseLU<Real>& lu, const Elimination& order) {
 template <class Real>
 Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
     const std::size_t n = lu.size();
-    Real* const W = lu.W.data();
-    for (const int at : lu.order.fill) W[at] = 0;
-    Real sum = 0;
-    const int* const to = lu.order.to.data();
-    for (std::size_t e = 0; e < lu.order.to.size(); ++e) {
-        W[to[e]] = values[e];
-        sum += std::abs(values[e]);
-    }
-    if (!std::isfinite(sum)) return std::numeric_limits<Real>::quiet_NaN();
-    Real least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0;
+    const Elimination& order = lu.order;
+    Real *const w = lu.w.data(), *const L = lu.L.data(), *const U = lu.U.data(),
+                *const inverse = lu.inverse.data();
+    const int *const to = order.to.data(), *const entry = order.entry.data(), *const fill = order.fill.data(),
+                     *const left = order.left.data(), *const right = order.right.data(),
+                     *const first_right = order.first_right.data();
+    Real sum = 0, least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0;
+    int orientation = order.parity;
     largest = 0;
     lu.orientation = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const Real* const U = W + k * n;
-        const Real size = std::abs(U[k]);
-        if (!(size > 0)) return std::isnan(size) ? size : Real(0);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int e = order.first_fill[i]; e < order.first_fill[i + 1]; ++e) w[fill[e]] = 0;
+        for (int e = order.first_entry[i]; e < order.first_entry[i + 1]; ++e) {
+            const Real value = values[entry[e]];
+            w[to[e]] = value;
+            sum += std::abs(value);
+        }
+        for (int e = order.first_left[i]; e < order.first_left[i + 1]; ++e) {
+            const int k = left[e];
+            const Real l = L[e] = w[k] * inverse[k];
+            largest = std::max(largest, std::abs(l));
+            for (int r = first_right[k]; r < first_right[k + 1]; ++r) w[right[r]] -= l * U[r];
+        }
+        for (int r = first_right[i]; r < first_right[i + 1]; ++r) U[r] = w[right[r]];
+        const Real size = std::abs(w[i]);
+        if (!(size > 0)) {  // whether it is finite is not yet known of the rows to come
+            for (std::size_t e = 0; e < order.pattern.entries(); ++e) sum += std::abs(values[e]);
+            return std::isnan(size) || !std::isfinite(sum) ? std::numeric_limits<Real>::quiet_NaN() : Real(0);
+        }
         least_pivot = std::min(least_pivot, size);
         largest_pivot = std::max(largest_pivot, size);
-        lu.inverse[k] = 1 / U[k];
-        const int* const right = lu.order.right.data() + lu.order.first_right[k];
-        const int entries = lu.order.first_right[k + 1] - lu.order.first_right[k];
-        for (int b = lu.order.first_below[k]; b < lu.order.first_below[k + 1]; ++b) {
-            Real* const into = W + static_cast<std::size_t>(lu.order.below[static_cast<std::size_t>(b)]) * n;
-            const Real l = into[k] *= lu.inverse[k];
-            largest = std::max(largest, std::abs(l));
-            for (int e = 0; e < entries; ++e) into[right[e]] -= l * U[right[e]];
-        }
+        inverse[i] = 1 / w[i];
+        if (w[i] < 0) orientation = -orientation;
     }
-    lu.orientation = lu.order.parity;
-    for (std::size_t k = 0; k < n; ++k)
-        if (lu.inverse[k] < 0) lu.orientation = -lu.orientation;
+    if (!std::isfinite(sum)) return std::numeric_limits<Real>::quiet_NaN();
+    lu.orientation = orientation;
     return least_pivot / largest_pivot;
 }
 
@@ -285,25 +262,77 @@ void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
     const std::size_t n = lu.size();
     const Elimination& order = lu.order;
     Real* const y = lu.y.data();
-    const Real* const W = lu.W.data();
-    for (std::size_t k = 0; k < n; ++k) y[k] = b[order.row[k]];
-    for (std::size_t k = 0; k < n; ++k) {
-        const Real known = y[k];
-        if (known == Real(0)) continue;
-        for (int e = order.first_below[k]; e < order.first_below[k + 1]; ++e) {
-            const auto i = static_cast<std::size_t>(order.below[static_cast<std::size_t>(e)]);
-            y[i] -= W[i * n + k] * known;
-        }
+    const Real *const L = lu.L.data(), *const U = lu.U.data();
+    const int *const left = order.left.data(), *const right = order.right.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        Real sum = b[order.row[i]];
+        for (int e = order.first_left[i]; e < order.first_left[i + 1]; ++e) sum -= L[e] * y[left[e]];
+        y[i] = sum;
     }
     for (std::size_t k = n; k-- > 0;) {
-        Real left = y[k];
-        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e) {
-            const auto j = static_cast<std::size_t>(order.right[static_cast<std::size_t>(e)]);
-            left -= W[k * n + j] * y[j];
-        }
-        y[k] = left * lu.inverse[k];
+        Real sum = y[k];
+        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e) sum -= U[e] * y[right[e]];
+        x[order.col[k]] = y[k] = sum * lu.inverse[k];
     }
-    for (std::size_t k = 0; k < n; ++k) x[order.col[k]] = y[k];
+}
+
+// Of A x = e_j the unknowns `wanted` alone: from row j on only what is reached is touched, and of x only what the
+// wanted ones follow from. What falls below the rounding of the one that it begins with is reached no more: where x is
+// zero but for a few places (a motion of one body), so is the work.
+template <class Real>
+void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x) {
+    const Elimination& order = lu.order;
+    const auto at = [](int k) { return static_cast<std::size_t>(k); };
+    const Real rounding = 4 * std::numeric_limits<Real>::epsilon();
+    const auto push = [&](int k) {
+        if (lu.queued[at(k)]) return;
+        lu.queued[at(k)] = 1;
+        lu.waiting.push_back(k);
+        std::push_heap(lu.waiting.begin(), lu.waiting.end(), std::greater<>());
+    };
+    const auto pop = [&] {
+        std::pop_heap(lu.waiting.begin(), lu.waiting.end(), std::greater<>());
+        const int k = lu.waiting.back();
+        lu.waiting.pop_back();
+        lu.queued[at(k)] = 0;
+        lu.reached.push_back(k);
+        return k;
+    };
+    int last = -1;
+    lu.reached.clear();
+    lu.known[at(order.row_of[at(j)])] = 1;
+    push(order.row_of[at(j)]);
+    while (!lu.waiting.empty()) {
+        const int k = pop();
+        const Real y = lu.known[at(k)];
+        if (!(std::abs(y) > rounding) && !std::isnan(y)) {
+            lu.known[at(k)] = 0;
+            continue;
+        }
+        last = k;
+        for (int e = order.first_below[at(k)]; e < order.first_below[at(k) + 1]; ++e) {
+            const int i = order.below[at(e)];
+            lu.known[at(i)] -= lu.L[at(order.place[at(e)])] * y;
+            push(i);
+        }
+    }
+    const std::size_t forward = lu.reached.size();
+    for (int c = 0; c < count; ++c)
+        if (const int k = order.col_of[at(wanted[c])]; k <= last) push(k);
+    while (!lu.waiting.empty()) {
+        const int k = pop();
+        for (int e = order.first_right[at(k)]; e < order.first_right[at(k) + 1]; ++e)
+            if (order.right[at(e)] <= last) push(order.right[at(e)]);
+    }
+    for (std::size_t r = lu.reached.size(); r-- > forward;) {
+        const auto k = at(lu.reached[r]);
+        Real sum = lu.known[k];
+        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e)
+            sum -= lu.U[at(e)] * lu.unknown[at(order.right[at(e)])];
+        lu.unknown[k] = sum * lu.inverse[k];
+    }
+    for (int c = 0; c < count; ++c) x[c] = lu.unknown[at(order.col_of[at(wanted[c])])];
+    for (const int k : lu.reached) lu.known[at(k)] = lu.unknown[at(k)] = 0;
 }
 
 }  // namespace elastocheck::recursive

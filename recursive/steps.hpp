@@ -30,7 +30,8 @@ template <class Real>
 void store(March<Real>& s, const Follow& follow) {
     if (follow.lever && follow.axis) return;
     if (!follow.lever && !follow.axis) {
-        s.stored.noalias() = s.applied - s.system.M.topRightCorner(s.n(), s.m()) * s.lambda;
+        constraint_force(s.system.M, s.lambda, s.force);
+        s.stored = s.applied - s.force;
         return;
     }
     if (follow.lever) s.stored.setZero();

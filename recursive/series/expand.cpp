@@ -66,8 +66,7 @@ double reach(const March<double>& s, const Coefficients& c, double tolerance, do
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     // Where constraints alone say how everything moves, λ has a series of its own: a force counts as what it
     // moves of the stiffest there is.
-    const double stiffest = n > 0 ? s.system.M.topLeftCorner(n, n).diagonal().cwiseAbs().maxCoeff() : 0;
-    const double per_force = stiffest > 0 ? 1 / stiffest : 0;
+    const double most = stiffest(s.system.M), per_force = most > 0 ? 1 / most : 0;
     const auto size = [&](int k) {
         return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
                           per_force * c.x.col(k).tail(s.m()).norm(), k > 1 ? per_load * c.load[k] : 0.0);

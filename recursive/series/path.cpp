@@ -97,14 +97,14 @@ double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.low
 
 // Joints that say a thing twice may be driven to say two: the border takes up what they cannot both meet.
 bool contradicts(March<double>& s) {
-    if (s.system.borders() == s.system.idle) return false;
+    if (s.system.borders() == s.system.held.idle) return false;
     residual_at(s, s.q, s.lambda);
     return !(largest_violation(s) <= 1e-9 * std::max(1.0, s.length));
 }
 
 // Whether what acts at the present place pushes what is held.
 Outcome judge_push_here(Walk& w, double missed) {
-    if (w.s.system.idle == 0) return Outcome::converged;
+    if (w.s.system.held.idle == 0) return Outcome::converged;
     external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
     w.s.applied -= (1 - w.s.place.t) * w.s.R_d;
     return judge_push(w.s, w.s.q, missed);

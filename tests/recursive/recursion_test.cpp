@@ -7,7 +7,9 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "recursive/assembly.hpp"
+
 #include "recursive/diagnosis.hpp"
+#include "recursive/pattern.hpp"
 #include "recursive/solve.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
@@ -131,9 +133,10 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
     Vector<double> stored = elastic_force<double>(model, drawn, q), f(n);
     std::vector<State<double>> path{q};
     for (int k = 0; k < N; ++k) {
-        Matrix<double> M(n + m, n + m);
+        SaddleMatrix<double> kept = saddle_matrix(model);
         Vector<double> Phi(m);
-        assemble<double>(model, drawn, q, M, Phi);
+        assemble<double>(model, drawn, q, kept, Phi);
+        const Matrix<double> M = sparse(kept);
         external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q,
                                f);
         Vector<double> rhs = Vector<double>::Zero(n + m);

@@ -40,16 +40,17 @@ Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     const Inputs<double> inputs = inputs_at<double>(w.model, w.branch, a);
     State<double> q = state_of<double>(start);
     Vector<double> lambda = Vector<double>::Zero(m), f, f_ext, f_elast, Phi(m), step;
-    Matrix<double> M(n + m, n + m);
+    SaddleMatrix<double> kept = saddle_matrix(w.model);
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 60; ++k) {
-        assemble_consistent<double>(w.model, w.branch, inputs, q, lambda, M, Phi);
+        assemble_consistent<double>(w.model, w.branch, inputs, q, lambda, kept, Phi);
+        const Matrix<double> M = sparse(kept);
         external_force<double>(w.model, w.branch, inputs, q, f_ext);
         elastic_force<double>(w.model, inputs, q, f_elast);
         constraint_force<double>(w.model, inputs, q, lambda, f, Phi);
         Vector<double> right(n + m);
         right << f_ext - f_elast - f, -Phi;
-        const Vector<double> D = equilibration<double>(M);
+        const Vector<double> D = equilibration(kept);
         Eigen::CompleteOrthogonalDecomposition<Matrix<double>> factors;
         factors.setThreshold(1e-10);
         factors.compute(D.asDiagonal() * M * D.asDiagonal());
@@ -395,12 +396,12 @@ Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     for (auto& value : dq) value = random(-0.3, 0.3);
     for (auto& value : lambda) value = random(-1e3, 1e3);
     advance(q, dq);
-    Matrix<double> M(dq.size() + lambda.size(), dq.size() + lambda.size());
+    SaddleMatrix<double> M = saddle_matrix(model);
     const Branch& branch = model.branches[0];
     assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q, lambda, M,
                                 Phi);
     pattern = recursive::pattern(model);
-    return M;
+    return sparse(M);
 }
 
 struct Coverage {

@@ -68,19 +68,167 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
     EXPECT_LE(worst, 1e-14);
 }
 
-TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
-    Matrix<double> A(3, 3);
-    A << 4, 1, 1, 1, 4, 0, 1, 0, 4;  // an arrow, whose point fills in what is left when it goes first
-    const Pattern pattern = pattern_of(A);
+// A saddle-point matrix with the zeros of a large model: n coordinates, each tied to the next and to a few others, m
+// rows of constraints on three neighbours each.
+Matrix<double> sparse_saddle_point(std::mt19937& random, int n, int m) {
+    std::uniform_real_distribution<double> value(-1, 1);
+    Matrix<double> M = Matrix<double>::Zero(n + m, n + m);
+    const auto tie = [&](int i, int j, double k) {
+        M(i, i) += k, M(j, j) += k;
+        M(i, j) -= k, M(j, i) -= k;
+    };
+    for (int i = 0; i < n; ++i) M(i, i) = 1;
+    for (int i = 1; i < n; ++i) tie(i, i - 1, 1 + value(random));
+    for (int k = 0; k < n / 10; ++k) {
+        const int i = static_cast<int>(random() % static_cast<unsigned>(n)), j = (i + 2) % n;
+        tie(i, j, 1 + value(random));
+    }
+    for (int k = 0; k < m; ++k)
+        for (int c = 0; c < 3; ++c) {
+            const int j = (k * n / m + c) % n;
+            M(n + k, j) = M(j, n + k) = value(random) + (c == 0 ? 2 : 0);
+        }
+    return M;
+}
+
+std::size_t fill_in(const SparseLU<double>& lu) { return lu.order.fill.size(); }
+
+TEST(SparseLU, FillsInNothingWhereNothingNeedBeOfAnySize) {
+    for (const int n : {3, 10, 59, 60, 61, 200, 1000}) {
+        Matrix<double> chain = Matrix<double>::Zero(n, n), arrow = Matrix<double>::Zero(n, n);
+        for (int i = 0; i < n; ++i) {
+            chain(i, i) = arrow(i, i) = 4;
+            if (i > 0) chain(i, i - 1) = chain(i - 1, i) = arrow(0, i) = arrow(i, 0) = -1;
+        }
+        arrow(0, 0) = n;
+        for (const auto& A : {chain, arrow}) {
+            SparseLU<double> lu;
+            analyse(lu, A);
+            EXPECT_EQ(fill_in(lu), 0u) << n;
+            EXPECT_EQ(lu.L.size() + lu.U.size(), static_cast<std::size_t>(2 * (n - 1))) << n;
+            ASSERT_GT(factorise(lu, A), 0);
+            const Vector<double> x = Vector<double>::Random(n), b = A * x;
+            Vector<double> y(n);
+            solve(lu, b.data(), y.data());
+            EXPECT_LE((y - x).norm(), 1e-13 * x.norm()) << n;
+        }
+    }
+}
+
+TEST(SparseLU, OfALargeMatrixAFewColumnsFindNearlyTheOrderThatAllEntriesDo) {
+    std::mt19937 random(11);
+    for (const auto& [n, m] : {std::pair{40, 12}, {100, 30}, {200, 60}}) {
+        const Matrix<double> M = sparse_saddle_point(random, n, m);
+        const Pattern pattern = pattern_of(M);
+        const std::vector<double> values = values_of(pattern, M);
+        const auto entries = [&](auto search) {
+            PivotSearch<double> found;
+            search(found, pattern, values.data());
+            return static_cast<double>(found.below.size() + found.right.size());
+        };
+        const double all = entries(detail::search_all<double>), few = entries(detail::search_few<double>);
+        EXPECT_LE(few, 1.25 * all) << n;
+        EXPECT_GE(few, 0.8 * all) << n;
+    }
+}
+
+TEST(SparseLU, SolvesLargeSaddlePointsAsDenseFactorsDo) {
+    std::mt19937 random(12);
+    for (const auto& [n, m] : {std::pair{50, 20}, {200, 60}, {400, 150}}) {
+        Matrix<double> M = sparse_saddle_point(random, n, m);
+        SparseLU<double> lu;
+        analyse(lu, M);
+        EXPECT_LE(lu.L.size() + lu.U.size(), static_cast<std::size_t>(40 * (n + m)));
+        for (int again = 0; again < 3; ++again) {
+            M = (M.array() * (1 + 0.1 * Matrix<double>::Random(n + m, n + m).array())).matrix();
+            ASSERT_GT(factorise(lu, M), 0);
+            const Vector<double> b = Vector<double>::Random(n + m);
+            Vector<double> x(n + m);
+            solve(lu, b.data(), x.data());
+            EXPECT_LE((M * x - b).norm(), 1e-14 * M.norm() * x.norm());
+            const Vector<double> dense = M.partialPivLu().solve(b);
+            EXPECT_LE((x - dense).norm(), 1e-10 * dense.norm());
+            // ... and its determinant.
+            EXPECT_EQ(lu.orientation, M.partialPivLu().determinant() < 0 ? -1 : 1);
+        }
+    }
+}
+
+TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
+    std::mt19937 random(13);
+    for (const auto& [n, m] : {std::pair{8, 3}, {200, 60}}) {
+        const Matrix<double> M = sparse_saddle_point(random, n, m);
+        SparseLU<double> lu;
+        analyse(lu, M);
+        ASSERT_GT(factorise(lu, M), 0);
+        Vector<double> e(n + m), x(n + m);
+        for (int j = 0; j < n + m; j += 3) {
+            e.setZero();
+            e[j] = 1;
+            solve(lu, e.data(), x.data());
+            const std::vector<int> wanted{0, j, n / 2, n + m - 1};
+            double some[4];
+            solve_unit(lu, j, wanted.data(), 4, some);
+            for (std::size_t k = 0; k < 4; ++k)
+                EXPECT_NEAR(some[k], x[wanted[k]], 1e-12 * x.cwiseAbs().maxCoeff()) << n << " " << j;
+        }
+    }
+}
+
+TEST(SparseLU, WhatStaysInOnePlaceIsSoughtThereAlone) {
+    // A thousand couples that know nothing of each other but through a thread of zeros.
+    const int n = 2000;
+    Matrix<double> A = Matrix<double>::Zero(n, n);
+    for (int i = 0; i < n; ++i) A(i, i) = 2;
+    for (int i = 0; i + 1 < n; i += 2) A(i, i + 1) = A(i + 1, i) = 1;
+    for (int i = 1; i + 1 < n; i += 2) A(i, i + 1) = A(i + 1, i) = 1e-300;  // in the pattern
     SparseLU<double> lu;
-    recursive::analyse(lu, pattern, std::vector<double>(pattern.entries(), 0.0).data());
-    EXPECT_EQ(recursive::factorise(lu, std::vector<double>(pattern.entries(), 0.0).data()), 0);
-    for (int again = 0; again < 2; ++again) {
-        ASSERT_GT(factorise(lu, A), 0);
-        const Vector<double> b = Vector<double>::Ones(3);
-        Vector<double> x(3);
+    analyse(lu, A);
+    ASSERT_GT(factorise(lu, A), 0);
+    const int wanted[] = {1000, 1001};
+    double x[2];
+    solve_unit(lu, 1000, wanted, 2, x);
+    EXPECT_NEAR(x[0], 2.0 / 3, 1e-15);
+    EXPECT_NEAR(x[1], -1.0 / 3, 1e-15);
+    EXPECT_LE(lu.reached.size(), 10u);
+}
+
+TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
+    std::mt19937 random(14);
+    const int n = 300, m = 90;
+    const Matrix<double> M = sparse_saddle_point(random, n, m);
+    SparseLU<double> lu;
+    analyse(lu, M);
+    const Vector<double> b = Vector<double>::Random(n + m);
+    Vector<double> x(n + m);
+    for (int k = 0; k < n; k += 7) {
+        Matrix<double> other = M;
+        other(lu.order.row[static_cast<std::size_t>(k)], lu.order.col[static_cast<std::size_t>(k)]) *= 1e-14;
+        ASSERT_GT(factorise(lu, other), 0);
         solve(lu, b.data(), x.data());
-        EXPECT_LE((A * x - b).norm(), 1e-15);
+        EXPECT_LE((other * x - b).norm(), 1e-12 * other.norm() * x.norm()) << k;
+    }
+    EXPECT_GT(lu.orders, 10);
+}
+
+TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
+    for (const int n : {3, 100}) {
+        Matrix<double> A = 4 * Matrix<double>::Identity(
+                                   n, n);  // an arrow, whose point fills in what is left when it goes first
+        A.row(0).tail(n - 1).setOnes();
+        A.col(0).tail(n - 1).setOnes();
+        A(0, 0) = n + 1;
+        const Pattern pattern = pattern_of(A);
+        SparseLU<double> lu;
+        recursive::analyse(lu, pattern, std::vector<double>(pattern.entries(), 0.0).data());
+        EXPECT_EQ(recursive::factorise(lu, std::vector<double>(pattern.entries(), 0.0).data()), 0);
+        for (int again = 0; again < 2; ++again) {
+            ASSERT_GT(factorise(lu, A), 0);
+            const Vector<double> b = Vector<double>::Ones(n);
+            Vector<double> x(n);
+            solve(lu, b.data(), x.data());
+            EXPECT_LE((A * x - b).norm(), 1e-15 * n);
+        }
     }
 }
 
