@@ -4,12 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <numeric>
 
 #include "recursive/assembly.hpp"
-#include "recursive/pattern.hpp"
+#include "recursive/rank.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -18,7 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double rank_threshold = 1e-9;  // on rows of unit length
 // Eigenvalues of a 6×6 with a unit diagonal that are more than its rounding (some 1e-15).
 constexpr double stiffness_threshold = 1e-13;
 constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
@@ -45,26 +44,64 @@ double characteristic_length(const Model& model) {
     return count > 0 ? std::sqrt(sum / count) : 1.0;
 }
 
-// Rows to unit length, zero rows left alone.
-void normalise_rows(MatrixXd& rows) {
-    for (Eigen::Index k = 0; k < rows.rows(); ++k)
-        if (const double norm = rows.row(k).norm(); norm > 0) rows.row(k) /= norm;
+// Rows of the model, each on two bodies at most, as they are put together.
+struct Stack {
+    int count = 0;
+    std::vector<Eigen::Triplet<double>> entries;
+
+    void put(BodyId b, const Vector6<double>& block) {  // into the row that comes next
+        for (int k = 0; b != ground && k < 6; ++k)
+            if (block[k] != 0) entries.emplace_back(count, 6 * b + k, block[k]);
+    }
+    void next() { ++count; }
+    Rows rows(Eigen::Index columns) const {
+        Rows result(count, columns);
+        result.setFromTriplets(entries.begin(), entries.end());
+        return result;
+    }
+};
+
+// Rows to unit length, zero rows left alone. Returns what each was divided by.
+VectorXd normalise(Rows& rows) {
+    VectorXd length = VectorXd::Ones(rows.rows());
+    for (int k = 0; k < rows.outerSize(); ++k)
+        if (const double norm = rows.row(k).norm(); norm > 0) {
+            rows.row(k) /= norm;
+            length[k] = norm;
+        }
+    return length;
 }
 
-int rank_of(const MatrixXd& rows) {
-    if (rows.size() == 0) return 0;
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
-    qr.setThreshold(rank_threshold);
-    return static_cast<int>(qr.rank());
+// Rows one below the other.
+Rows stacked(const std::vector<Rows>& parts, Eigen::Index columns) {
+    Stack stack;
+    for (const Rows& part : parts) {
+        for (int k = 0; k < part.outerSize(); ++k)
+            for (Rows::InnerIterator e(part, k); e; ++e)
+                stack.entries.emplace_back(stack.count + k, e.col(), e.value());
+        stack.count += static_cast<int>(part.rows());
+    }
+    return stack.rows(columns);
+}
+Rows without(const Rows& rows, const std::vector<int>& left_out) {
+    Stack stack;
+    for (int k = 0; k < rows.outerSize(); ++k) {
+        if (std::ranges::binary_search(left_out, k)) continue;
+        for (Rows::InnerIterator e(rows, k); e; ++e)
+            stack.entries.emplace_back(stack.count, e.col(), e.value());
+        stack.next();
+    }
+    return stack.rows(rows.cols());
 }
 
-// Orthonormal null space of rows of unit length [columns × nullity].
-MatrixXd null_space_of(const MatrixXd& rows, Eigen::Index columns) {
-    if (rows.rows() == 0) return MatrixXd::Identity(columns, columns);
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
-    qr.setThreshold(rank_threshold);
-    const MatrixXd Q = qr.householderQ();
-    return Q.rightCols(columns - qr.rank());
+Rows constraint_rows_of(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
+    Stack stack;
+    for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
+        stack.put(row.i, row.on_i());
+        stack.put(row.j, row.on_j());
+        stack.next();
+    });
+    return stack.rows(coordinates(model));
 }
 
 // The rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment point,
@@ -100,50 +137,78 @@ std::vector<Vector6<double>> root_rows(const Bushing& e, const Rest<double>&, co
 }
 
 // √K_e B_e of every element, stacked [? × 6nb].
-MatrixXd elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
-    std::vector<VectorXd> rows;
+Rows elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
+    Stack stack;
     for (std::size_t at = 0; at < model.elastics.size(); ++at)
         std::visit(
             [&](const auto& e) {
                 const Vector3d s_i = q[e.i.body].lever(e.i.s_local), s_j = q[e.j.body].lever(e.j.s_local);
                 for (const Vector6<double>& g : root_rows(e, inputs.rest[at], q)) {
-                    VectorXd row = VectorXd::Zero(coordinates(model));
                     const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
-                        if (b == ground) return;
-                        row.segment<3>(6 * b) += sign * g.head<3>();
-                        row.segment<3>(6 * b + 3) += sign * (lever.cross(g.head<3>()) + g.tail<3>());
+                        Vector6<double> block;
+                        block << sign * g.head<3>(), sign * (lever.cross(g.head<3>()) + g.tail<3>());
+                        stack.put(b, block);
                     };
                     add(e.i.body, s_i, -1);
                     add(e.j.body, s_j, +1);
-                    rows.push_back(row);
+                    stack.next();
                 }
             },
             model.elastics[at].kind);
-    MatrixXd stacked(static_cast<Eigen::Index>(rows.size()), coordinates(model));
-    for (std::size_t k = 0; k < rows.size(); ++k) stacked.row(static_cast<Eigen::Index>(k)) = rows[k];
-    return stacked;
+    return stack.rows(coordinates(model));
 }
 
-// A basis of the idle modes in which each mode moves as few bodies as possible: modes of single bodies first.
-MatrixXd sparse_basis(const MatrixXd& rows, const MatrixXd& all, int bodies) {
-    MatrixXd basis(all.rows(), 0);
-    const auto append = [&](const VectorXd& candidate) {
-        VectorXd rest = candidate - basis * (basis.transpose() * candidate);
-        rest -= basis * (basis.transpose() * rest);
-        if (rest.norm() < 1e-6) return;
-        basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-        basis.col(basis.cols() - 1) = rest.normalized();
-    };
+// The modes of single bodies: what all rows leave of the six columns of one [6nb × ?], perpendicular to each other.
+Columns modes_of_single_bodies(const Rows& rows, int bodies) {
+    std::vector<std::vector<int>> on(static_cast<std::size_t>(bodies));
+    for (int k = 0; k < rows.outerSize(); ++k)
+        for (Rows::InnerIterator e(rows, k); e; ++e)
+            if (auto& list = on[static_cast<std::size_t>(e.col() / 6)]; list.empty() || list.back() != k)
+                list.push_back(k);
+    std::vector<Eigen::Triplet<double>> entries;
+    int modes = 0;
     for (int b = 0; b < bodies; ++b) {
-        const MatrixXd own = null_space_of(rows.middleCols(6 * b, 6), 6);
-        for (Eigen::Index c = 0; c < own.cols() && basis.cols() < all.cols(); ++c) {
-            VectorXd mode = VectorXd::Zero(all.rows());
-            mode.segment(6 * b, 6) = own.col(c);
-            append(mode);
+        const auto& its = on[static_cast<std::size_t>(b)];
+        MatrixXd own = MatrixXd::Zero(6, static_cast<Eigen::Index>(its.size()));
+        for (Eigen::Index c = 0; c < own.cols(); ++c)
+            for (Rows::InnerIterator e(rows, its[static_cast<std::size_t>(c)]); e; ++e)
+                if (e.col() / 6 == b) own(e.col() % 6, c) = e.value();
+        MatrixXd Q = MatrixXd::Identity(6, 6);
+        Eigen::Index rank = 0;
+        if (own.cols() > 0) {
+            Eigen::ColPivHouseholderQR<MatrixXd> qr(own);
+            qr.setThreshold(rank_threshold);
+            Q = qr.householderQ();
+            rank = qr.rank();
         }
+        for (Eigen::Index c = rank; c < 6; ++c, ++modes)
+            for (int k = 0; k < 6; ++k)
+                if (Q(k, c) != 0) entries.emplace_back(6 * b + k, modes, Q(k, c));
     }
-    for (Eigen::Index c = 0; c < all.cols() && basis.cols() < all.cols(); ++c) append(all.col(c));
-    return basis;
+    Columns result(rows.cols(), modes);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+}
+
+// What a body's constraints and elements are called and where on it they are attached.
+struct Attachment {
+    const std::string* name;
+    Vector3d s_local;
+};
+std::vector<std::vector<Attachment>> attachments(const Model& model) {
+    std::vector<std::vector<Attachment>> on(model.bodies.size());
+    const auto both = [&](const std::string& name, const auto& e) {
+        const auto take = [&](const auto& end) {
+            if (const Vector3d* s = lever(end); s && end.body != ground)
+                on[static_cast<std::size_t>(end.body)].push_back({&name, *s});
+        };
+        take(e.i), take(e.j);
+    };
+    for (const auto& c : model.constraints)
+        std::visit([&](const auto& e) { both(model.joints[static_cast<std::size_t>(c.joint)].name, e); },
+                   c.kind);
+    for (const auto& e : model.elastics) std::visit([&](const auto& kind) { both(e.name, kind); }, e.kind);
+    return on;
 }
 
 // Without the minus that rounding leaves before a zero.
@@ -152,33 +217,21 @@ Vector3d shown(const Vector3d& u) {
 }
 
 // "rotation about ..." or "translation along ..." of the twist (v, w) of a body at r.
-std::string describe(const Model& model, const State<double>& q, BodyId body, const Vector3d& v,
-                     const Vector3d& w, double length) {
-    const std::string& name = model.bodies[static_cast<std::size_t>(body)].name;
+std::string describe(const std::string& name, const BodyState<double>& at,
+                     const std::vector<Attachment>& attached, const Vector3d& v, const Vector3d& w,
+                     double length) {
     if (w.norm() * length < 1e-6 * v.norm()) {
         const Vector3d u = shown(v.normalized());
         return fmt::format("{}: translation along ({:.3f}, {:.3f}, {:.3f})", name, u.x(), u.y(), u.z());
     }
-    const Vector3d foot =
-        q[body].r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
+    const Vector3d foot = at.r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
     const Vector3d u = w.normalized();
     std::vector<std::string> on_axis;
-    const auto look = [&](const std::string& what, const auto& end) {
-        const Vector3d* s = lever(end);
-        if (!s || end.body != body) return;
-        const Vector3d p = q[body].r + q[body].lever(*s);
-        if ((p - foot).cross(u).norm() < 1e-6 * length && std::ranges::find(on_axis, what) == on_axis.end())
-            on_axis.push_back(what);
-    };
-    for (const auto& c : model.constraints)
-        std::visit(
-            [&](const auto& e) {
-                look(model.joints[static_cast<std::size_t>(c.joint)].name, e.i),
-                    look(model.joints[static_cast<std::size_t>(c.joint)].name, e.j);
-            },
-            c.kind);
-    for (const auto& e : model.elastics)
-        std::visit([&](const auto& kind) { look(e.name, kind.i), look(e.name, kind.j); }, e.kind);
+    for (const auto& [what, s_local] : attached) {
+        const Vector3d p = at.r + at.lever(s_local);
+        if ((p - foot).cross(u).norm() < 1e-6 * length && std::ranges::find(on_axis, *what) == on_axis.end())
+            on_axis.push_back(*what);
+    }
     const double pitch = v.dot(w) / w.squaredNorm();  // [m/rad]
     const char* motion = std::abs(pitch) < 1e-6 * length ? "rotation" : "screw motion";
     if (on_axis.size() >= 2)
@@ -188,42 +241,78 @@ std::string describe(const Model& model, const State<double>& q, BodyId body, co
                        name, motion, shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
 }
 
-// Which joints share a dependency yᵀ Φ_q = 0. The projector Y Yᵀ on all of them couples two rows only where a
-// dependency does, whichever basis Y [m × r] it is made from, so its blocks are the sets.
-void find_undetermined(const Model& model, const MatrixXd& Y, Diagnosis& result) {
-    const std::size_t joints = model.joints.size();
-    result.determined.assign(joints, true);
-    std::vector<int> joint_of_row;
-    for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
-    std::vector<int> set(joints);  // the smallest joint of the set that a joint is in
+// Which joints share a dependency yᵀ Φ_q = 0. Those of the rows that repeat, one each, are enough to tell: any other
+// is a combination of them, and two that have no row in common cannot be told together.
+void find_undetermined(const std::vector<int>& joint_of_row, const Columns& dependencies, Diagnosis& result) {
+    std::vector<int> set(
+        result.determined.size());  // towards the smallest joint of the set that a joint is in
     std::iota(set.begin(), set.end(), 0);
-    const MatrixXd P = Y * Y.transpose();
-    for (Eigen::Index k = 0; k < P.rows(); ++k)
-        for (Eigen::Index l = 0; l < P.cols(); ++l) {
-            if (!(std::abs(P(k, l)) > part_threshold)) continue;
-            const int one = joint_of_row[static_cast<std::size_t>(k)],
-                      other = joint_of_row[static_cast<std::size_t>(l)];
-            result.determined[static_cast<std::size_t>(one)] = false;
-            const auto [low, high] =
-                std::minmax(set[static_cast<std::size_t>(one)], set[static_cast<std::size_t>(other)]);
-            std::ranges::replace(set, int(high), int(low));
+    const auto smallest = [&](int joint) {
+        const auto to = [&](int j) -> int& { return set[static_cast<std::size_t>(j)]; };
+        while (to(joint) != joint) joint = to(joint) = to(to(joint));
+        return joint;
+    };
+    for (int c = 0; c < dependencies.outerSize(); ++c) {
+        int one = -1;
+        for (Columns::InnerIterator y(dependencies, c); y; ++y) {
+            if (!(std::abs(y.value()) > part_threshold)) continue;
+            const int joint = joint_of_row[static_cast<std::size_t>(y.row())];
+            result.determined[static_cast<std::size_t>(joint)] = false;
+            if (one < 0) one = joint;
+            const auto [low, high] = std::minmax({smallest(one), smallest(joint)});
+            set[static_cast<std::size_t>(high)] = low;
         }
-    for (int first = 0; first < static_cast<int>(joints); ++first) {
-        std::vector<int> members;
-        for (int joint = first; joint < static_cast<int>(joints); ++joint)
-            if (set[static_cast<std::size_t>(joint)] == first &&
-                !result.determined[static_cast<std::size_t>(joint)])
-                members.push_back(joint);
-        if (!members.empty()) result.redundant_sets.push_back(members);
+    }
+    std::vector<int> place(set.size(), -1);  // of a set in the list, known by its smallest joint
+    for (int joint = 0; joint < static_cast<int>(set.size()); ++joint) {
+        if (result.determined[static_cast<std::size_t>(joint)]) continue;
+        int& at = place[static_cast<std::size_t>(smallest(joint))];
+        if (at < 0) {
+            at = static_cast<int>(result.redundant_sets.size());
+            result.redundant_sets.emplace_back();
+        }
+        result.redundant_sets[static_cast<std::size_t>(at)].push_back(joint);
     }
 }
 
-// κ₂ without the `nullity` smallest singular values.
-double condition_number(const MatrixXd& M, Eigen::Index nullity) {
-    if (M.rows() <= nullity) return 1;
-    const Eigen::JacobiSVD<MatrixXd> svd(M);
-    const auto& s = svd.singularValues();
-    return s[0] / s[s.size() - 1 - nullity];
+// The rows that repeat, by the joints that they belong to.
+void find_redundant(const std::vector<int>& joint_of_row, const std::vector<int>& repeating,
+                    const VectorXd& Phi, Diagnosis& result) {
+    for (const int row : repeating) {
+        const int joint = joint_of_row[static_cast<std::size_t>(row)];
+        if (result.redundant.empty() || result.redundant.back().joint != joint)
+            result.redundant.push_back({joint, 0, false});
+        ++result.redundant.back().rows;
+    }
+    for (Redundancy& r : result.redundant) {
+        const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
+        const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
+        r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
+    }
+}
+
+// An idle mode from its column in (Δr, L Δπ). Its sign is free: the largest entry counts as positive.
+IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
+    double largest = 0;
+    Columns::InnerIterator z(modes, column);
+    for (; z; ++z)
+        if (std::abs(z.value()) > std::abs(largest)) largest = z.value();
+    IdleMode mode;
+    mode.dq.resize(modes.rows());
+    double most = 0;
+    for (z = Columns::InnerIterator(modes, column); z;) {
+        const auto body = static_cast<BodyId>(z.row() / 6);
+        double moved = 0;
+        for (; z && z.row() / 6 == body; ++z) {
+            moved += z.value() * z.value();
+            mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (physical[z.row()] * z.value());
+        }
+        if (moved > most) {
+            most = moved;
+            mode.body = body;
+        }
+    }
+    return mode;
 }
 
 }  // namespace
@@ -242,62 +331,52 @@ Diagnosis diagnose(const Model& model) {
 
     const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
-    MatrixXd Phi_q = constraint_jacobian<double>(model, inputs, q) * physical.asDiagonal();
-    VectorXd row_norm = Phi_q.rowwise().norm();
-    normalise_rows(Phi_q);
-    result.rank = rank_of(Phi_q);
+    Rows Phi_q = constraint_rows_of(model, inputs, q) * physical.asDiagonal();
+    const VectorXd row_length = normalise(Phi_q);
+    const Repeated repeating = repeated(Phi_q);
+    result.rank = m - static_cast<int>(repeating.rows.size());
+    std::vector<int> joint_of_row;  // rising
+    for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
+    find_redundant(joint_of_row, repeating.rows, Phi, result);
+    result.determined.assign(model.joints.size(), true);
+    find_undetermined(joint_of_row, repeating.dependencies, result);
 
-    // Rows that are all independent leave nothing to ask of the joints one by one.
-    int first = 0, rank_before = 0, k = 0;
-    for (int joint = 0; result.rank < m && joint < static_cast<int>(model.joints.size()); ++joint) {
-        first = k;
-        for (const auto& c : model.constraints)
-            if (c.joint == joint) k += rows(c.kind);
-        const int rank = rank_of(Phi_q.topRows(k));
-        const int repeated = (k - first) - (rank - rank_before);
-        const bool contradicts =
-            k > first && !(Phi.segment(first, k - first).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, L));
-        if (repeated > 0) result.redundant.push_back({joint, repeated, contradicts});
-        rank_before = rank;
+    // Modes of single bodies first; as rows of their own they leave the others perpendicular to them.
+    Rows elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
+    normalise(elastic);
+    Phi_q = without(Phi_q, repeating.rows);
+    const Rows noticed = stacked({Phi_q, elastic}, n);
+    const Columns single = modes_of_single_bodies(noticed, nb);
+    const Columns several = null_space(stacked({noticed, Rows(single.transpose())}, n));
+    const auto attached = attachments(model);
+    for (const Columns* modes : {&single, &several})
+        for (int c = 0; c < modes->outerSize(); ++c) {
+            IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, physical));
+            Vector6<double> twist;
+            for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
+            const auto at = static_cast<std::size_t>(mode.body);
+            mode.description = describe(model.bodies[at].name, q[mode.body], attached[at], twist.head<3>(),
+                                        twist.tail<3>(), L);
+        }
+
+    std::vector<Eigen::Triplet<double>> held;
+    int column = 0;
+    for (const IdleMode& mode : result.idle) {
+        for (Eigen::SparseVector<double>::InnerIterator z(mode.dq); z; ++z)
+            held.emplace_back(z.index(), column, z.value());
+        ++column;
     }
-
-    const MatrixXd redundant = result.rank < m ? null_space_of(Phi_q.transpose(), m) : MatrixXd(m, 0);
-    find_undetermined(model, redundant, result);
-
-    MatrixXd elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
-    normalise_rows(elastic);
-    MatrixXd noticed(m + elastic.rows(), n);
-    noticed << Phi_q, elastic;
-    const MatrixXd idle = sparse_basis(noticed, null_space_of(noticed, n), nb);
-    for (Eigen::Index c = 0; c < idle.cols(); ++c) {
-        IdleMode mode;
-        Eigen::Index largest = 0;  // the sign is free: the largest entry counts as positive
-        (void)idle.col(c).cwiseAbs().maxCoeff(&largest);
-        const VectorXd dq = (idle(largest, c) < 0 ? -1 : 1) * (physical.asDiagonal() * idle.col(c));
-        mode.dq = dq.sparseView();
-        (void)idle.col(c).reshaped(6, nb).colwise().norm().maxCoeff(&largest);
-        mode.body = static_cast<BodyId>(largest);
-        mode.description =
-            describe(model, q, mode.body, dq.segment<3>(6 * largest), dq.segment<3>(6 * largest + 3), L);
-        result.idle.push_back(mode);
-    }
-
-    MatrixXd null_space = MatrixXd::Zero(n + m, idle.cols() + redundant.cols());
-    null_space.topLeftCorner(n, idle.cols()) = physical.asDiagonal() * idle;
-    if (redundant.cols() > 0)  // λ of the unscaled rows
-        null_space.bottomRightCorner(m, redundant.cols()) = row_norm.cwiseInverse().asDiagonal() * redundant;
-    result.null_space = null_space.sparseView();
+    for (int c = 0; c < repeating.dependencies.outerSize(); ++c, ++column)
+        for (Columns::InnerIterator y(repeating.dependencies, c); y; ++y)  // λ of the unscaled rows
+            held.emplace_back(n + y.row(), column, y.value() / row_length[y.row()]);
+    result.null_space.resize(n + m, column);
+    result.null_space.setFromTriplets(held.begin(), held.end());
 
     // f_ext(0) - f_elast, projected on what the constraints leave free.
-    VectorXd f(n);
-    f.setZero();
+    VectorXd f = VectorXd::Zero(n);
     for (const auto& load : model.static_loads) add_load<double>(load.kind, 1.0, q, f);
     f -= elastic_force<double>(model, inputs, q);
-    if (!f.isZero(0)) {
-        const MatrixXd free = null_space_of(Phi_q, n);
-        const VectorXd left = free * (free.transpose() * (physical.asDiagonal() * f));
-        result.imbalance = left.cwiseAbs().maxCoeff();
-    }
+    if (!f.isZero(0)) result.imbalance = left_free(Phi_q, physical.asDiagonal() * f).cwiseAbs().maxCoeff();
     return result;
 }
 
@@ -305,18 +384,6 @@ std::string idle_modes(const Diagnosis& diagnosis) {
     std::string all;
     for (const auto& mode : diagnosis.idle) all += (all.empty() ? "" : "; ") + mode.description;
     return all;
-}
-
-Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
-    const State<double> q = design_state<double>(model);
-    MatrixXd M(diagnosis.coordinates + diagnosis.rows, diagnosis.coordinates + diagnosis.rows);
-    VectorXd unused(diagnosis.rows);
-    SaddleMatrix<double> kept = saddle_matrix(model);
-    assemble<double>(model, inputs_as_drawn<double>(model), q, kept, unused);
-    M = sparse(kept);
-    const VectorXd D = equilibration(kept);
-    const auto nullity = diagnosis.null_space.cols();
-    return {condition_number(M, nullity), condition_number(D.asDiagonal() * M * D.asDiagonal(), nullity)};
 }
 
 }  // namespace elastocheck::recursive

@@ -1,0 +1,219 @@
+#include "recursive/rank.hpp"
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/SparseCholesky>
+#include <SuiteSparseQR.hpp>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <stdexcept>
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double rounding = 1e-12;       // of a number of order one that would be zero if drawn exactly
+constexpr double pivot_threshold = 0.1;  // of the largest entry of a row: what is as good a pivot
+
+// A vector that is nearly all zeros: its values, and where they have been other than zero.
+struct Scattered {
+    VectorXd value;
+    std::vector<int> touched;
+    std::vector<char> is_touched;
+
+    explicit Scattered(Eigen::Index size)
+        : value(VectorXd::Zero(size)), is_touched(static_cast<std::size_t>(size), 0) {}
+    // Whether the place is new.
+    bool add(int at, double what) {
+        value[at] += what;
+        if (is_touched[static_cast<std::size_t>(at)]) return false;
+        is_touched[static_cast<std::size_t>(at)] = 1;
+        touched.push_back(at);
+        return true;
+    }
+    void clear() {
+        for (const int at : touched) value[at] = 0, is_touched[static_cast<std::size_t>(at)] = 0;
+        touched.clear();
+    }
+    double norm() const {
+        double sum = 0;
+        for (const int at : touched) sum += value[at] * value[at];
+        return std::sqrt(sum);
+    }
+    // As a column of unit length, without what is rounding.
+    void append_to(std::vector<Eigen::Triplet<double>>& entries, int column) const {
+        const double whole = norm();
+        for (const int at : touched)
+            if (std::abs(value[at]) > rounding * whole) entries.emplace_back(at, column, value[at] / whole);
+    }
+};
+
+struct Entry {
+    int at;
+    double value;
+};
+
+// What is left of a row when the rows before it are taken out: entries beside the pivot's column and those of the
+// pivots before; what was taken of which; its pivot.
+struct Reduced {
+    std::vector<Entry> entries, taken;
+    int pivot = -1;
+    double pivot_value = 0;
+};
+
+}  // namespace
+
+// Elimination in the order of the rows, the pivot of each row chosen among its columns: the largest would do, of
+// those nearly as large the one that the fewest rows touch keeps the rest sparse. Then what is left of row k is
+//
+//   u_k = row k - Σ_j l_kj u_j     over the j < k that do not repeat,
+//
+// and nothing is left of a row that repeats. No combination of rows is nearer to row k than its distance from them,
+// so what counts as repeated here is so by any measure. Backwards through the same l, from row k alone: its
+// dependency in the rows themselves.
+Repeated repeated(const Rows& rows) {
+    const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
+    std::vector<int> users(n, 0), pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
+    for (int k = 0; k < rows.outerSize(); ++k)
+        for (Rows::InnerIterator e(rows, k); e; ++e) ++users[static_cast<std::size_t>(e.col())];
+
+    Repeated result;
+    std::vector<Eigen::Triplet<double>> dependencies;
+    std::vector<Reduced> reduced(m);
+    Scattered x(rows.cols()), y(rows.rows());
+    for (int k = 0; k < static_cast<int>(m); ++k) {
+        std::priority_queue<int, std::vector<int>, std::greater<>>
+            earlier;  // rows to take out, first to last
+        const auto add = [&](int at, double value) {
+            if (x.add(at, value))
+                if (const int row = pivot_of[static_cast<std::size_t>(at)]; row >= 0) earlier.push(row);
+        };
+        for (Rows::InnerIterator e(rows, k); e; ++e) add(static_cast<int>(e.col()), e.value());
+        Reduced& u = reduced[static_cast<std::size_t>(k)];
+        while (!earlier.empty()) {
+            const int j = earlier.top();
+            earlier.pop();
+            const Reduced& other = reduced[static_cast<std::size_t>(j)];
+            const double l = x.value[other.pivot] / other.pivot_value;
+            x.value[other.pivot] = 0;
+            if (!(std::abs(l) > rounding)) continue;
+            u.taken.push_back({j, l});
+            for (const Entry& e : other.entries) add(e.at, -l * e.value);
+        }
+        double largest = 0;
+        for (const int at : x.touched) largest = std::max(largest, std::abs(x.value[at]));
+        if (largest > rank_threshold) {
+            for (const int at : x.touched) {
+                const double size = std::abs(x.value[at]);
+                if (!(size >= pivot_threshold * largest)) continue;
+                const auto column = static_cast<std::size_t>(at);
+                const int fewest = u.pivot < 0 ? 0 : users[static_cast<std::size_t>(u.pivot)];
+                if (u.pivot >= 0 &&
+                    (users[column] > fewest || (users[column] == fewest && size <= std::abs(u.pivot_value))))
+                    continue;
+                u.pivot = at;
+                u.pivot_value = x.value[at];
+            }
+            for (const int at : x.touched)
+                if (at != u.pivot && std::abs(x.value[at]) > rounding) u.entries.push_back({at, x.value[at]});
+            pivot_of[static_cast<std::size_t>(u.pivot)] = k;
+        } else {
+            std::priority_queue<int> later;  // rows to be expressed by those before them, last to first
+            const auto spread = [&](int row, double value) {
+                if (y.add(row, value)) later.push(row);
+            };
+            for (const Entry& e : u.taken) spread(e.at, -e.value);
+            while (!later.empty()) {
+                const int j = later.top();
+                later.pop();
+                for (const Entry& e : reduced[static_cast<std::size_t>(j)].taken)
+                    spread(e.at, -e.value * y.value[j]);
+            }
+            y.add(k, 1);
+            y.append_to(dependencies, static_cast<int>(result.rows.size()));
+            y.clear();
+            result.rows.push_back(k);
+        }
+        x.clear();
+    }
+    result.dependencies.resize(rows.rows(), static_cast<Eigen::Index>(result.rows.size()));
+    result.dependencies.setFromTriplets(dependencies.begin(), dependencies.end());
+    return result;
+}
+
+// SuiteSparseQR eliminates column by column in an order that fills in little, and sets aside each column that depends
+// on those before it (Heath's method): A E = Q ⎡R₁ R₂⎤. A column r of R₂ is R₁ c, so that Eᵀ x = (-c, 1) is a null
+// vector; where R is sparse so is c.
+Columns null_space(const Rows& rows) {
+    const int n = static_cast<int>(rows.cols());
+    using Long = SuiteSparse_long;
+    Eigen::SparseMatrix<double, Eigen::ColMajor, Long> A = rows;
+    cholmod_common common;
+    cholmod_l_start(&common);
+    common.print = 0;
+    cholmod_sparse view = Eigen::viewAsCholmod(A), *R = nullptr;
+    Long* E = nullptr;
+    const Long rank = SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, rank_threshold, 0, &view, &R, &E, &common);
+    std::vector<Eigen::Triplet<double>> entries;
+    if (rank >= 0) {
+        const auto* const first = static_cast<const Long*>(R->p);
+        const auto* const row = static_cast<const Long*>(R->i);
+        const auto* const value = static_cast<const double*>(R->x);
+        Scattered x(n);
+        for (int c = static_cast<int>(rank); c < n; ++c) {
+            std::priority_queue<int> later;
+            const auto add = [&](Long at, double what) {
+                if (x.add(static_cast<int>(at), what)) later.push(static_cast<int>(at));
+            };
+            for (Long e = first[c]; e < first[c + 1]; ++e) add(row[e], -value[e]);
+            while (!later.empty()) {
+                const int k = later.top();
+                later.pop();
+                const Long diagonal = first[k + 1] - 1;  // the last of a column of a triangle, as rows rise
+                x.value[k] /= value[diagonal];
+                for (Long e = first[k]; e < diagonal; ++e) add(row[e], -value[e] * x.value[k]);
+            }
+            x.add(c, 1);
+            const std::size_t begin = entries.size();
+            x.append_to(entries, c - static_cast<int>(rank));
+            for (std::size_t e = begin; E && e < entries.size(); ++e)
+                entries[e] = {static_cast<int>(E[entries[e].row()]), entries[e].col(), entries[e].value()};
+            x.clear();
+        }
+    }
+    cholmod_l_free_sparse(&R, &common);
+    cholmod_l_free(static_cast<std::size_t>(n), sizeof(Long), E, &common);
+    cholmod_l_finish(&common);
+    if (rank < 0) throw std::bad_alloc();
+    Columns basis(n, n - static_cast<Eigen::Index>(rank));
+    basis.setFromTriplets(entries.begin(), entries.end());
+    return basis;
+}
+
+// ⎡ I   Aᵀ ⎤ ⎧ left ⎫   ⎧ f ⎫
+// ⎣ A   0  ⎦ ⎩  μ   ⎭ = ⎩ 0 ⎭
+//
+// solved by improving on it with what is like it but has -ε² in place of 0: eliminating μ there leaves I + Aᵀ A / ε²,
+// which couples bodies that share a row and no others. Where A stretches a motion by σ, each round leaves the share
+// ε² / (ε² + σ²) of what was missing, and of its own rounding 1 / ε² times that of a number.
+VectorXd left_free(const Rows& rows, const VectorXd& f) {
+    constexpr double e2 = 1e-12, enough = 1e-14;
+    constexpr int most_rounds = 50;
+    const Columns A = rows, At = A.transpose();
+    Columns N = At * A / e2;
+    for (int k = 0; k < N.cols(); ++k) N.coeffRef(k, k) += 1;
+    const Eigen::SimplicialLDLT<Columns> factors(N);
+    VectorXd left = VectorXd::Zero(f.size()), mu = VectorXd::Zero(rows.rows());
+    for (int round = 0; round < most_rounds; ++round) {
+        const VectorXd force = f - left - At * mu, motion = -(A * left);
+        if (force.norm() + motion.norm() <= enough * f.norm()) break;
+        const VectorXd more = factors.solve(force + At * motion / e2);
+        left += more;
+        mu += (A * more - motion) / e2;
+    }
+    return left;
+}
+
+}  // namespace elastocheck::recursive
