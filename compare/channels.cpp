@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -232,11 +233,12 @@ std::vector<Channel> channels(const Model& model) {
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups) {
     std::vector<Channel> list;
     std::set<std::vector<int>> done;  // on the other body it is the same with the other sign
-    for (const auto& group : groups)
-        for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body) {
-            std::vector<int> on;
-            for (const int k : group)
-                if (joint_of(model, k).i == body || joint_of(model, k).j == body) on.push_back(k);
+    for (const auto& group : groups) {
+        std::map<BodyId, std::vector<int>> held;  // by the joints of the group
+        for (const int k : group)
+            for (const BodyId body : std::set{joint_of(model, k).i, joint_of(model, k).j})
+                if (body != ground) held[body].push_back(k);
+        for (const auto& [body, on] : held) {
             if (on.size() < 2 || !done.insert(on).second) continue;
             std::string stem, names;
             for (const int k : on) {
@@ -245,10 +247,11 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
             }
             add_wrench(list, stem, fmt::format("joints {} together on {}", names, body_name(model, body)),
                        fmt::format("the point of '{}'", joint_of(model, on.front()).name),
-                       [&](int component) {
+                       [&, body = body, on = on](int component) {
                            return Total{on, body, component};
                        });
         }
+    }
     return list;
 }
 

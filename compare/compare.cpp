@@ -61,11 +61,17 @@ int count(const Reading& reading, const std::vector<bool>& determined) {
     return sum;
 }
 
-// Whether a channel reads wrenches that are there and determined; a total is there to be.
-bool is_determined(const Channel& channel, const std::vector<bool>& determined, const Model& standing) {
+// Per joint, whether it holds anything on the branch.
+std::vector<bool> stand(const Model& standing) {
     std::vector<bool> stands(standing.joints.size(), false);
     for (const auto& constraint : standing.constraints)
         stands[static_cast<std::size_t>(constraint.joint)] = true;
+    return stands;
+}
+
+// Whether a channel reads wrenches that are there and determined; a total is there to be.
+bool is_determined(const Channel& channel, const std::vector<bool>& determined,
+                   const std::vector<bool>& stands) {
     const bool total = std::holds_alternative<Total>(channel.reads);
     return std::ranges::all_of(channel.joints(), [&](int k) {
         const auto j = static_cast<std::size_t>(k);
@@ -91,12 +97,16 @@ std::vector<std::string> Objections::texts() const {
     return list;
 }
 
+bool energy_bears_witness(const BranchComparison& branch) {
+    return branch.second != Leg::energy && run_of(branch, Leg::energy).path.outcome == Outcome::too_large;
+}
+
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
                          const BranchComparison& branch) {
     Objections objections;
     for (const auto& run : branch.runs) {
         if (run.leg == Leg::energy && branch.second != Leg::energy)
-            continue;  // cannot be asked, and need not
+            continue;  // is not asked, and need not be
         if (run.path.outcome != Outcome::converged)
             objections.add(fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.path.outcome),
                                        run.path.detail));
@@ -120,7 +130,9 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     }
     // Whoever can judge states without having made them: the series is of the recursive leg's equations.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
-    for (const auto& [run, other] : {std::pair{&equilibrium, judge}, {&second, Leg::equilibrium}}) {
+    std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge}, {&second, Leg::equilibrium}};
+    if (energy_bears_witness(branch)) judgements.emplace_back(&equilibrium, Leg::energy);
+    for (const auto& [run, other] : judgements) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
         const Bounds& b = branch.bounds;
         const double part = std::max({share(r.force, b.residual_force), share(r.moment, b.residual_moment),
@@ -171,15 +183,16 @@ Comparison compare(const Model& model, const Options& options) {
         BranchComparison b;
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
+        const auto stands = stand(ways[k].front().model);
         for (const auto& channel : result.channels)
-            b.determined.push_back(is_determined(channel, determined[k], ways[k].front().model));
+            b.determined.push_back(is_determined(channel, determined[k], stands));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));
         }
-        if (const auto& energy = run_of(b, Leg::energy).path; energy.outcome == Outcome::not_conservative) {
+        if (const auto& energy = run_of(b, Leg::energy).path; is_not_asked(energy.outcome)) {
             b.second = Leg::series;
-            b.no_energy = energy.detail;
+            b.not_asked = energy.detail;
             if (options.progress) options.progress(fmt::format("{}: series", branch.name));
             b.runs.push_back(run(model, result.channels, branch, ways[k], Leg::series, {}));
         }

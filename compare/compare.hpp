@@ -61,8 +61,10 @@ struct BranchComparison {
     Unit unit = Unit::newton;  // of its parameter
     int abscissa = -1;         // channel of the readings at equal abscissa; -1: none
     std::vector<LegRun> runs;  // in the order of `legs`, then the series where it is the second reference
-    Leg second = Leg::energy;  // the second reference: the energy leg, or the series where there is no energy
-    std::string no_energy;     // what has none then, in words
+    Leg second =
+        Leg::energy;  // the second reference: the energy leg, or the series where that one is not asked
+    std::string
+        not_asked;  // why the energy leg was not, in words: what has no energy, or how large the scene is
     std::vector<bool> determined;  // per channel; what is not is never compared: reactions that redundant
                                    // joints share as they like, joints that do not stand on this branch
     Pair deviation;                // the recursion against the equilibrium leg
@@ -71,6 +73,10 @@ struct BranchComparison {
     Bounds bounds;                 // within which the references have to agree
     Objections inconclusive;       // why this branch cannot be judged; empty when it can
 };
+
+// Whether the energy leg, not asked for states of its own because the scene is too large, judges those of the
+// equilibrium leg: it bears witness.
+bool energy_bears_witness(const BranchComparison& branch);
 
 // Why the references do not count as one truth on a branch whose runs and readings are there; `asked` is the
 // branch of the model.

@@ -91,6 +91,10 @@ EquilibriumPath rest(const Way& way, Leg leg) {
     return path;
 }
 
+bool is_not_asked(Outcome outcome) {
+    return outcome == Outcome::not_conservative || outcome == Outcome::too_large;
+}
+
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
     if (ways.empty()) return {Outcome::not_finite, "the branch leads nowhere", {}, {}};
     EquilibriumPath joined = walk(ways.front(), gait);
@@ -100,8 +104,8 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
     };
     if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
     EquilibriumPath second = walk(ways.back(), gait);
-    // What has no energy has none on either way.
-    if (joined.outcome == Outcome::not_conservative && second.outcome == joined.outcome) return second;
+    // What is not asked is asked on neither way.
+    if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
     if (second.outcome != Outcome::converged) {
         joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
         if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
@@ -157,9 +161,9 @@ References references(const Model& model, const std::vector<Channel>& channels, 
     References result;
     result.equilibrium = walk(ways, {.leg = Leg::equilibrium});
     result.second = walk(ways, {.leg = Leg::energy});
-    if (result.second.outcome == Outcome::not_conservative) {
+    if (is_not_asked(result.second.outcome)) {
         result.second_leg = Leg::series;
-        result.no_energy = result.second.detail;
+        result.not_asked = result.second.detail;
         result.second = walk(ways, {.leg = Leg::series});
     }
     result.truth = curve(model, channels, branch, result.equilibrium.points);

@@ -13,8 +13,8 @@
 
 namespace elastocheck::compare {
 
-// The three legs, and what stands in for the energy leg where a load or a formulation has no energy: the branch as a
-// power series, told the tightest tolerance.
+// The three legs, and what stands in for the energy leg where it is not asked, because a load or a formulation has no
+// energy or the scene is too large for it: the branch as a power series, told the tightest tolerance.
 enum class Leg { recursive, equilibrium, energy, series };
 inline constexpr std::array legs{Leg::recursive, Leg::equilibrium, Leg::energy};
 const char* name(Leg leg);
@@ -42,6 +42,9 @@ struct Gait {
 // nothing there: Outcome::outside_table.
 EquilibriumPath walk(const Way& way, const Gait& gait);
 
+// Whether the energy leg says that it is not to be asked here, not that it failed.
+bool is_not_asked(Outcome outcome);
+
 // Both ways in one path, a going from `from` to `to`; one way as it was walked. It ends with the outcome of
 // the first way that failed, and its points are those reached on either side of a = 0.
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait);
@@ -55,11 +58,11 @@ Residuals judge(Leg by, const Way& way, const Equilibrium& state);
 
 // ---- The references along a branch.
 
-// The equilibrium leg, and the energy leg; or series, where the energy leg says that there is no energy.
+// The equilibrium leg, and the energy leg; or series, where the energy leg is not asked.
 struct References {
     EquilibriumPath equilibrium, second;
     Leg second_leg = Leg::energy;
-    std::string no_energy;  // what has none, where second_leg is the series
+    std::string not_asked;  // why the energy leg was not, where second_leg is the series
     Curve truth, other;     // of the first and of the second, on the channels asked for
     Accuracy
         uncertainty;  // how far they are apart on the main channels, at least their rounding; NaN on failure

@@ -330,7 +330,7 @@ Trimmed trim(const Scene& scene) {
     }
 
     Answer second = settle(problem, p, Leg::energy);
-    if (second.outcome == Outcome::not_conservative) {
+    if (is_not_asked(second.outcome)) {
         record.confirmed_by = Leg::series;
         second = settle(problem, p, Leg::series);
     }

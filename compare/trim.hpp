@@ -41,7 +41,7 @@ struct TrimRecord {
     std::vector<Adjusted> adjusted;
     std::vector<Met> conditions;
     int iterations = 0;              // of Newton's method
-    Leg confirmed_by = Leg::energy;  // or the series, where there is no energy
+    Leg confirmed_by = Leg::energy;  // or the series, where that one is not asked
     Outcome outcome = Outcome::converged;
     std::string detail;  // why there is no trim: nothing was reached, or not confirmed; empty when there is
     bool reached() const { return outcome == Outcome::converged && detail.empty(); }

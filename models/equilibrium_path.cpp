@@ -14,6 +14,7 @@ const char* name(Outcome outcome) {
         case Outcome::limit_point: return "limit point";
         case Outcome::branch_lost: return "branch lost";
         case Outcome::not_conservative: return "not conservative";
+        case Outcome::too_large: return "too large";
         case Outcome::outside_table: return "outside its table";
     }
     return "unknown";

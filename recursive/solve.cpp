@@ -55,6 +55,7 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
         case Outcome::iteration_limit:
         case Outcome::branch_lost:
         case Outcome::not_conservative:      // of the energy
+        case Outcome::too_large:             // likewise
         case Outcome::outside_table: break;  // found in compare/
     }
     return detail;

@@ -84,7 +84,7 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     Balance at{.lambda = VectorXd::Zero(m),
                .left = g,
                .Phi = D.cwiseProduct(values.Phi),
-               .J_t = S.asDiagonal() * values.Phi_q.transpose() * D.asDiagonal(),
+               .J_t = transposed(scaled(values.Phi_q, D, S)),
                .across = MatrixXd(n, 0),
                .along = MatrixXd::Identity(n, n),
                .independent = {}};
@@ -123,7 +123,7 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
         for (const BodyId b : bodies) x[6 * b + axis] = S[6 * b + axis] * xi;
         move_to(chart, x);
         return gradient_at_centre_stress(model, prescribed, chart) +
-               constraints(model, prescribed, chart).Phi_q.transpose() * lambda_D;
+               transposed_times(constraints(model, prescribed, chart).Phi_q, lambda_D);
     };
     const auto neighbours_of = neighbours(model);
     MatrixXd geometric = MatrixXd::Zero(n, n);
@@ -158,9 +158,10 @@ MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, in
 Modes modes_of(const Balance& at, const MatrixXd& H) {
     Modes modes;
     if (at.along.cols() == 0) return {at.along, VectorXd(0), 0};
-    const MatrixXd reduced = at.along.transpose() * H * at.along;
+    const bool free = at.across.cols() == 0;  // `along` is then the unit matrix
+    const MatrixXd reduced = free ? H : MatrixXd(at.along.transpose() * H * at.along);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
-    modes.Z = at.along * eigen.eigenvectors();
+    modes.Z = free ? eigen.eigenvectors() : MatrixXd(at.along * eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
     const double roundoff = 50 * std::numeric_limits<double>::epsilon();
     modes.idle_limit = idle_stiffness + roundoff * modes.stiffness.cwiseAbs().maxCoeff();

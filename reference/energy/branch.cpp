@@ -68,18 +68,21 @@ VectorXd resisted_increment(const Path& path, const State& from, const State& to
     return xi - idle * (idle.transpose() * xi);
 }
 
-// H + A
-MatrixXd tangent_stiffness(const Path& path, const State& state) {
-    return state.H +
-           moment_stiffness(at(path.course, state.a), path.scales, static_cast<int>(state.H.rows()));
+// A of K = H + A; nothing where no moment acts.
+std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
+    if (path.course.start.moments.empty() && path.course.rate.moments.empty()) return {};
+    return moment_stiffness(at(path.course, state.a), path.scales, static_cast<int>(state.H.rows()));
 }
 
-// -Z (ZᵀKZ)⁻¹ Zᵀ b over the modes that resist: where the balance b goes to zero, to first order. In ξ.
-VectorXd newton_increment(const State& state, const MatrixXd& K, const VectorXd& b) {
+// -Z (ZᵀKZ)⁻¹ Zᵀ b over the modes that resist: where the balance b goes to zero, to first order. In ξ. The modes are
+// those of H, so without A there is nothing to factorise.
+VectorXd newton_increment(const State& state, const std::optional<MatrixXd>& A, const VectorXd& b) {
     const auto resisting = state.modes.resisting();
     if (resisting.empty()) return VectorXd::Zero(b.size());
     const MatrixXd Z = state.modes.Z(Eigen::all, resisting);
-    return -Z * (Z.transpose() * K * Z).partialPivLu().solve(Z.transpose() * b);
+    const VectorXd g = Z.transpose() * b;
+    if (!A) return -Z * g.cwiseQuotient(state.modes.stiffness(resisting));
+    return -Z * (Z.transpose() * (state.H + *A) * Z).partialPivLu().solve(g);
 }
 
 bool is_near(const VectorXd& actual, const VectorXd& expected) {
@@ -173,17 +176,19 @@ VectorXd tangent(const Path& path, const State& state) {
     const Chart chart = chart_about(state.poses);
     const VectorXd S = coordinate_scales(path), D = path.scales.rows(path.model);
     VectorXd b = S.cwiseProduct(gradient_rate(path.model, prescribed, rate, chart)) / path.scales.energy();
-    const MatrixXd K = tangent_stiffness(path, state);
-    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return newton_increment(state, K, b);
+    const auto A = unsymmetric_stiffness(path, state);
+    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return newton_increment(state, A, b);
 
     const ConstraintRates rates = constraint_rates(path.model, prescribed, rate, chart);
-    b += S.cwiseProduct(rates.Phi_qa.transpose() * D.cwiseProduct(state.at.lambda));
+    b += S.cwiseProduct(transposed_times(rates.Phi_qa, D.cwiseProduct(state.at.lambda)));
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
     J.setThreshold(rank_threshold);
     J.compute(state.at.J_t.transpose());
     path.counts.factorisations += 1;
     const VectorXd p = J.solve(-D.cwiseProduct(rates.Phi_a));
-    return p + newton_increment(state, K, b + K * p);
+    b += state.H * p;
+    if (A) b += *A * p;
+    return p + newton_increment(state, A, b);
 }
 
 bool is_stationary(const Path& path, const State& state) {
@@ -199,7 +204,7 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
     State state = state_at(path, a, start);
     for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
         const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at, state.H,
-                                        idle, options.tolerance, per_chart);
+                                        state.modes, idle, options.tolerance, per_chart);
         evaluations += m.evaluations;
         path.counts.iterations += 1;
         path.counts.evaluations += m.evaluations;
@@ -211,7 +216,7 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
         if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same again
         if (prescribed.moments.empty()) continue;
         // The new centre turns the moments against the bodies. Without this, charts converge only linearly.
-        const VectorXd ahead = newton_increment(state, tangent_stiffness(path, state), state.at.left);
+        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
         if (largest(ahead) <= largest_step) state = state_at(path, a, moved(path, state.poses, ahead));
     }
     return {state, Failure{Outcome::iteration_limit, "the minimisation did not reach its tolerance"}};

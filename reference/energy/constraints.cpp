@@ -10,9 +10,6 @@ namespace elastocheck::reference::energy {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Matrix3Xd;
-using Eigen::MatrixXd;
-using Eigen::RowVector3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -23,10 +20,16 @@ struct Rows {
     double moved;
 
     // ∂Φ/∂(δr, δπ) of one body; ground has no coordinates.
-    void add_row(BodyId body, const Vector3d& dr, const Vector3d& dpi) const {
-        if (body == ground) return;
-        out.Phi_q.block<1, 3>(row, 6 * body) += dr.transpose();
-        out.Phi_q.block<1, 3>(row, 6 * body + 3) += dpi.transpose();
+    void add_row(BodyId body, const Vector3d& dr, const Vector3d& dpi, int after = 0) const {
+        if (body != ground) out.Phi_q.slopes.push_back({row + after, body, dr, dpi});
+    }
+    // The one row that was added last.
+    void scale(double factor) const {
+        auto& slopes = out.Phi_q.slopes;
+        for (auto s = slopes.rbegin(); s != slopes.rend() && s->row == row; ++s) {
+            s->dr *= factor;
+            s->dpi *= factor;
+        }
     }
 };
 
@@ -36,13 +39,11 @@ void fill(const CoincidentPoints& c, const Chart& chart, const Rows& rows) {
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
     rows.out.Phi.segment<3>(rows.row) = i.p - j.p;
     rows.out.dPhi.segment<3>(rows.row) = i.dp - j.dp;
-    const auto add = [&](BodyId body, double sign, const Vector3d& lever) {
-        if (body == ground) return;
-        rows.out.Phi_q.block<3, 3>(rows.row, 6 * body) += sign * Matrix3d::Identity();
-        rows.out.Phi_q.block<3, 3>(rows.row, 6 * body + 3) -= sign * skew(lever);
-    };
-    add(c.i.body, 1, i.lever);
-    add(c.j.body, -1, j.lever);
+    for (int k = 0; k < 3; ++k) {  // e_k·δp = e_k·δr + (u × e_k)·δπ
+        const Vector3d e = Vector3d::Unit(k);
+        rows.add_row(c.i.body, e, i.lever.cross(e), k);
+        rows.add_row(c.j.body, -e, -j.lever.cross(e), k);
+    }
 }
 
 // Φ = n·D - h, D = p_i - p_j:  δΦ = n·(δp_i - δp_j) + δπ_j·(n × D),  n·δp = n·δr + (u × n)·δπ
@@ -109,27 +110,26 @@ void fill_rate(const DistanceBetween& c, const Chart& chart, const Rows& rows, d
     const double length = c.length + rows.moved;
     const Vector3d D = motion(chart[c.i.body], c.i.s_local).p - motion(chart[c.j.body], c.j.s_local).p;
     rows.out.Phi[rows.row] = -rate * (0.5 * D.squaredNorm() / (length * length) + 0.5);
-    rows.out.Phi_q.row(rows.row) *= -rate / length;
+    rows.scale(-rate / length);
 }
 
 // ∂Φ/∂α = u_i·v(α + π/2)
 void fill_rate(const DirectionAtAngle& c, const Chart& chart, const Rows& rows, double rate) {
     fill(PerpendicularDirections{c.i, across(c, c.angle + rows.moved + std::numbers::pi / 2)}, chart, rows);
     rows.out.Phi[rows.row] *= rate;
-    rows.out.Phi_q.row(rows.row) *= rate;
+    rows.scale(rate);
 }
 
 // From (δr, δπ) to (δr, δφ): δπ = J δφ.
-void to_chart(const Chart& chart, MatrixXd& Phi_q) {
-    for (std::size_t b = 0; b < chart.placements.size(); ++b) {
-        auto columns = Phi_q.middleCols<3>(6 * static_cast<int>(b) + 3);
-        columns = (columns * chart.placements[b].J).eval();
-    }
+void to_chart(const Chart& chart, Jacobian& Phi_q) {
+    for (auto& slope : Phi_q.slopes) slope.dpi = (chart[slope.body].J.transpose() * slope.dpi).eval();
 }
 
 ConstraintValues zero_values(const Model& model) {
     const int m = constraint_rows(model), n = coordinates(model);
-    return {VectorXd::Zero(m), VectorXd::Zero(m), MatrixXd::Zero(m, n)};
+    ConstraintValues values{VectorXd::Zero(m), VectorXd::Zero(m), {m, n, {}}};
+    values.Phi_q.slopes.reserve(3 * static_cast<std::size_t>(m));
+    return values;
 }
 
 // f(kind, position in Model::constraints, first row) for every constraint.

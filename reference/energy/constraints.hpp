@@ -5,21 +5,22 @@
 
 #include "models/model.hpp"
 #include "reference/energy/chart.hpp"
+#include "reference/energy/jacobian.hpp"
 #include "reference/energy/prescribed.hpp"
 
 namespace elastocheck::reference::energy {
 
 struct ConstraintValues {
-    Eigen::VectorXd Phi;    // less the prescribed gap [m]: lengths [m], cosines [-]
-    Eigen::VectorXd dPhi;   // Φ(x) - Φ(0), with its own relative accuracy [m]
-    Eigen::MatrixXd Phi_q;  // ∂Φ/∂x [m × 6nb]
+    Eigen::VectorXd Phi;   // less the prescribed gap [m]: lengths [m], cosines [-]
+    Eigen::VectorXd dPhi;  // Φ(x) - Φ(0), with its own relative accuracy [m]
+    Jacobian Phi_q;        // ∂Φ/∂x [m × 6nb]
 };
 ConstraintValues constraints(const Model& model, const Prescribed& prescribed, const Chart& chart);
 
 // ∂/∂a of both where `prescribed` moves with `rate`.
 struct ConstraintRates {
-    Eigen::VectorXd Phi_a;   // ∂Φ/∂a [m]
-    Eigen::MatrixXd Phi_qa;  // ∂²Φ/∂x∂a [m × 6nb]
+    Eigen::VectorXd Phi_a;  // ∂Φ/∂a [m]
+    Jacobian Phi_qa;        // ∂²Φ/∂x∂a [m × 6nb]
 };
 ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
                                  const Chart& chart);

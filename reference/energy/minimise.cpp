@@ -71,7 +71,7 @@ struct Problem {
     int evaluation_limit;
     const Modes& modes;
     const MatrixXd& idle;
-    MatrixXd ST;         // x = S T y
+    MatrixXd T_t;        // ξ = T y
     VectorXd lambda, D;  // multipliers of D Φ
     VectorXd row_scale;  // makes the rows of ∂c/∂y unit vectors at the centre
     Chart chart;
@@ -108,13 +108,16 @@ void evaluate(Problem& p, const VectorXd& y) {
     }
     p.y = y;
     p.repeats = 0;
-    move_to(p.chart, p.ST * y);
+    const VectorXd xi = p.T_t.transpose() * y;
+    const VectorXd S = p.scales.coordinates(static_cast<int>(xi.size()));
+    move_to(p.chart, S.cwiseProduct(xi));
     const Potential V = potential(p.model, p.prescribed, p.chart);
     const ConstraintValues Phi = constraints(p.model, p.prescribed, p.chart);
     const int n = coordinates(p.model), rank = static_cast<int>(p.at.independent.size());
     const double energy = p.scales.energy();
-    const VectorXd S = p.scales.coordinates(n), DPhi = p.D.cwiseProduct(Phi.Phi);
-    const MatrixXd J_t = S.asDiagonal() * Phi.Phi_q.transpose() * p.D.asDiagonal();  // (∂DΦ/∂ξ)ᵀ [6nb × m]
+    const VectorXd DPhi = p.D.cwiseProduct(Phi.Phi);
+    const Jacobian J = scaled(Phi.Phi_q, p.D, S);  // ∂DΦ/∂ξ [m × 6nb]
+    const MatrixXd J_t = transposed(J);
     const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
 
     MatrixXd selected(n, rank);
@@ -123,11 +126,10 @@ void evaluate(Problem& p, const VectorXd& y) {
         selected.col(i) = J_t.col(p.at.independent[static_cast<std::size_t>(i)]);
         p.c[i] = p.row_scale[i] * DPhi[p.at.independent[static_cast<std::size_t>(i)]];
     }
-    const VectorXd idle = p.idle.transpose() * (p.ST * y).cwiseQuotient(S);
+    const VectorXd idle = p.idle.transpose() * xi;
     p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) + 0.5 * holding * idle.squaredNorm();
-    const MatrixXd T_t = p.ST.transpose() * S.cwiseInverse().asDiagonal();
-    p.f_y = T_t * (g + holding * p.idle * idle);
-    p.c_y_t = T_t * selected * p.row_scale.asDiagonal();
+    p.f_y = p.T_t * (g + holding * p.idle * idle);
+    p.c_y_t = times_transposed(p.T_t, J)(Eigen::all, p.at.independent) * p.row_scale.asDiagonal();
 
     ++p.best.evaluations;
     const double e = measure(p, g, selected, DPhi);
@@ -168,12 +170,11 @@ void constraint_vector(unsigned m, double* result, unsigned n, const double* y, 
 
 Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
                       const std::vector<Pose>& centre, const Balance& at, const MatrixXd& H,
-                      const MatrixXd& idle, double tolerance, int evaluation_limit) {
+                      const Modes& free, const MatrixXd& idle, double tolerance, int evaluation_limit) {
     const int rank = static_cast<int>(at.independent.size());
     const MatrixXd H_held = H + holding * idle * idle.transpose();
-    const Modes modes = modes_of(at, H_held);
+    const Modes modes = idle.cols() > 0 ? modes_of(at, H_held) : free;
     const MatrixXd T = round_coordinates(at, H_held, modes);
-    const VectorXd S = scales.coordinates(coordinates(model));
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
               .prescribed = prescribed,
@@ -183,7 +184,7 @@ Minimisation minimise(const Model& model, const Prescribed& prescribed, const Sc
               .evaluation_limit = evaluation_limit,
               .modes = modes,
               .idle = idle,
-              .ST = S.asDiagonal() * T,
+              .T_t = T.transpose(),
               .lambda = at.lambda,
               .D = scales.rows(model),
               .row_scale = VectorXd::Ones(rank),

@@ -13,6 +13,7 @@ std::vector<Wrench> reactions(const Model& model, const Chart& centre, const Con
                               const VectorXd& lambda) {
     std::vector<Wrench> wrenches(model.joints.size());
     int row = 0;
+    auto slope = values.Phi_q.slopes.begin();
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         Wrench& wrench = wrenches[static_cast<std::size_t>(constraint.joint)];
@@ -20,11 +21,15 @@ std::vector<Wrench> reactions(const Model& model, const Chart& centre, const Con
         const BodyId body = joint.i != ground ? joint.i : joint.j;
         if (body != ground) {
             const double sign = joint.i != ground ? -1 : 1;
-            const Vector6 f =
-                sign * values.Phi_q.block(row, 6 * body, count, 6).transpose() * lambda.segment(row, count);
+            Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
+            for (; slope != values.Phi_q.slopes.end() && slope->row < row + count; ++slope)
+                if (slope->body == body) {
+                    force += sign * slope->dr * lambda[slope->row];
+                    moment += sign * slope->dpi * lambda[slope->row];
+                }
             const Vector3d p = motion(centre[joint.at.body], joint.at.s_local).p;
-            wrench.force += f.head<3>();
-            wrench.moment += f.tail<3>() - (p - centre[body].centre.r).cross(f.head<3>());
+            wrench.force += force;
+            wrench.moment += moment - (p - centre[body].centre.r).cross(force);
         }
         row += count;
     }

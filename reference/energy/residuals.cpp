@@ -28,10 +28,11 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     const Chart chart = chart_about(state.poses);
     const Course course = course_of(model, branch);
     const Prescribed prescribed = at(course, state.load);
-    const double ends[] = {branch.to, state.load};
-    const Scales scales = scales_of(model, course, ends);
+    const Scales scales = lengths_of(model, course);
     const ConstraintValues values = constraints(model, prescribed, chart);
-    const Balance at = balance(model, scales, potential(model, prescribed, chart).gradient, values);
+    const VectorXd S = scales.coordinates(coordinates(model));
+    const VectorXd left = left_over(scaled(values.Phi_q, scales.rows(model), S),
+                                    S.cwiseProduct(potential(model, prescribed, chart).gradient));
 
     Residuals worst;
     int row = 0;
@@ -49,9 +50,9 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     if (without_potential(model, branch) || !within_laws(model, turning_bushings(model, course), state.poses))
         worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {
-        const VectorXd left = at.left.segment<6>(6 * static_cast<int>(b));
-        worst.force = max_or_nan(worst.force, scales.force * largest(left.head<3>()));
-        worst.moment = max_or_nan(worst.moment, scales.energy() * largest(left.tail<3>()));
+        const int at = 6 * static_cast<int>(b);
+        worst.force = max_or_nan(worst.force, largest(left.segment<3>(at)) / scales.length);
+        worst.moment = max_or_nan(worst.moment, largest(left.segment<3>(at + 3)));
     }
     return worst;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "reference/energy/constraints.hpp"
@@ -17,6 +18,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double coincident = 1e-9;      // [m] points closer than this give no length
+constexpr double rounding = 1e-12;       // a distance is known to this, generously
 constexpr double linear_reach = 0.5;     // of L or 1 rad: how far stiffness at the design pose is believed
 constexpr double rank_threshold = 1e-9;  // of the pivots of scaled matrices
 
@@ -38,6 +40,23 @@ std::vector<Vector3d> attachment_points(const Model& model, const Course& course
     return points;
 }
 
+// The largest distance between any two of the points. Two points are no farther apart than their distances from any
+// third together: taken from the farthest inwards, few pairs are left to be looked at.
+double extent_of(const std::vector<Vector3d>& points) {
+    Eigen::AlignedBox3d box;
+    for (const auto& p : points) box.extend(p);
+    Vector3d centre = Vector3d::Zero();
+    if (!box.isEmpty()) centre = box.center();
+    std::vector<std::pair<double, Vector3d>> outermost;
+    for (const auto& p : points) outermost.emplace_back((p - centre).norm() * (1 + rounding), p);
+    std::ranges::sort(outermost, std::greater{}, [](const auto& one) { return one.first; });
+    double extent = 0;
+    for (std::size_t i = 0; i < outermost.size(); ++i)
+        for (std::size_t j = 0; j < i && outermost[i].first + outermost[j].first > extent; ++j)
+            extent = std::max(extent, (outermost[i].second - outermost[j].second).norm());
+    return extent;
+}
+
 double loads_size(const Prescribed& prescribed, double length) {
     double size = 0;
     for (const auto& force : prescribed.forces) size += force.f.norm();
@@ -53,13 +72,13 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
                   const Scales& scales) {
     const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
     const ConstraintValues values = constraints(model, prescribed, design);
-    const MatrixXd J = D.asDiagonal() * values.Phi_q * S.asDiagonal();
+    const MatrixXd J_t = transposed(scaled(values.Phi_q, D, S));
     const MatrixXd K = S.asDiagonal() * stiffness(model, prescribed, design) * S.asDiagonal();
-    if (J.rows() == 0 || K.rows() == 0 || !J.allFinite() || !K.allFinite() || !values.Phi.allFinite())
+    if (J_t.cols() == 0 || K.rows() == 0 || !J_t.allFinite() || !K.allFinite() || !values.Phi.allFinite())
         return 0;
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
     qr.setThreshold(rank_threshold);
-    qr.compute(J.transpose());
+    qr.compute(J_t);
     const VectorXd p = qr.pseudoInverse().transpose() * -D.cwiseProduct(values.Phi);
     const MatrixXd Q = qr.householderQ(), Z = Q.rightCols(Q.cols() - qr.rank());
     VectorXd dxi = p;
@@ -92,20 +111,22 @@ VectorXd Scales::rows(const Model& model) const {
     return D;
 }
 
-Scales scales_of(const Model& model, const Course& course, std::span<const double> values) {
-    const Chart design = chart_about(design_poses(model));
-    const auto points = attachment_points(model, course, design);
-    double extent = 0, distance = 0;
-    for (const auto& p : points) {
-        distance = std::max(distance, p.norm());
-        for (const auto& q : points) extent = std::max(extent, (p - q).norm());
-    }
+Scales lengths_of(const Model& model, const Course& course) {
+    const auto points = attachment_points(model, course, chart_about(design_poses(model)));
+    const double extent = extent_of(points);
+    double distance = 0;
+    for (const auto& p : points) distance = std::max(distance, p.norm());
     for (const auto& body : model.bodies) distance = std::max(distance, body.design.r.norm());
 
     Scales scales;
     if (extent > coincident) scales.length = extent;
     scales.roundoff = std::numeric_limits<double>::epsilon() * (1 + distance / scales.length);
+    return scales;
+}
 
+Scales scales_of(const Model& model, const Course& course, std::span<const double> values) {
+    Scales scales = lengths_of(model, course);
+    const Chart design = chart_about(design_poses(model));
     double a = 0;
     for (const double value : values)
         if (std::isfinite(value)) a = std::max(a, std::abs(value));

@@ -22,6 +22,9 @@ struct Scales {
     Eigen::VectorXd rows(const Model& model) const;  // D [m]: D Φ of order one
 };
 
+// Length and round-off alone, the force 1 N: enough where energies are not compared, at a cost in proportion to the model.
+Scales lengths_of(const Model& model, const Course& course);
+
 // `values` of the parameter: where the branch is asked for.
 Scales scales_of(const Model& model, const Course& course, std::span<const double> values);
 

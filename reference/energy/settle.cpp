@@ -67,7 +67,7 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
         if (!std::isfinite(error) || error <= path.options.tolerance) return {};
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
         J.setThreshold(rank_threshold);
-        J.compute(D.asDiagonal() * values.Phi_q * S.asDiagonal());
+        J.compute(transposed(scaled(values.Phi_q, D, S)).transpose());
         VectorXd x = S.cwiseProduct(J.solve(-Phi));
         double after = INFINITY;
         for (int halved = 0; halved <= closing_halvings && !(after <= at_rest * Phi.norm()); ++halved) {

@@ -8,6 +8,7 @@
 #include "models/branch.hpp"
 #include "reference/energy/branch.hpp"
 #include "reference/energy/conservative.hpp"
+#include "reference/energy/cost.hpp"
 #include "reference/energy/reactions.hpp"
 #include "reference/energy/settle.hpp"
 
@@ -72,6 +73,14 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     if (const auto what = without_potential(model, branch)) {
         result.outcome = Outcome::not_conservative;
         result.detail = fmt::format("branch '{}': {}", branch.name, *what);
+        return result;
+    }
+    if (const double operations = cost_of(model, values.size()).operations(); operations > most_operations) {
+        result.outcome = Outcome::too_large;
+        result.detail = fmt::format(
+            "branch '{}': the energy leg is not asked: some {:.1g} operations for {} coordinates, at most "
+            "{:.1g} are worth it",
+            branch.name, operations, coordinates(model), most_operations);
         return result;
     }
     const auto fail = [&](const Failure& failure, const std::string& where, const std::string& reached) {

@@ -2,6 +2,9 @@
 //
 //   V(q; a) → min   subject to   Φ(q; a) = 0
 //
+// The solver, SLSQP, is dense: its work grows with the cube of the scene and is foreseen before it begins. Judging
+// others' states is sparse, at any size.
+//
 // Units are SI, as everywhere: m, N, rad; the parameter a in Branch::unit. Nothing here is shared between
 // calls: any number of threads may solve and judge at once, on one model too.
 #pragma once
@@ -35,6 +38,8 @@ struct Options {
 //   not_finite                a NaN or infinity, in the model, the values or on the way
 //   iteration_limit           Options' limits were met first
 //   not_conservative          a follower load or a bushing's formulation has no potential: nothing was solved; it is named
+//   too_large                 more operations are foreseen than the leg is worth (cost.hpp says how they are counted, and
+//                             how many that is): nothing was solved
 //
 // Reactions of joints that repeat each other are not unique; these share the load with the smallest norm. The
 // reaction of a driven joint is what its drive exerts: the jack's force, the rack's, the steering moment.
@@ -50,6 +55,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
 // that orientations are unit quaternions, and a driven angle's is 2 where it lies the other way round. What
 // cannot be judged is NaN: states that are no numbers, forces once a bushing has turned to where its law ends, and
 // forces wherever `solve` would say not_conservative: constraints are judged there as everywhere.
+// Whatever the size of the model: sparse, and its cost in proportion to a chain's or a tree's bodies.
 // Pre: as for `solve`.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 

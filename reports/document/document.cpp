@@ -180,6 +180,21 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
     return list;
 }
 
+// What the equilibrium leg's states leave in the equations of the energy leg where that one is too large a question,
+// and how much may be left; null where it judges like any other leg.
+json witness_json(const compare::BranchComparison& branch) {
+    if (!energy_bears_witness(branch)) return nullptr;
+    const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
+    const auto three = [](double force, double moment, double length) {
+        return json{{"force_N", force}, {"moment_Nm", moment}, {"constraint_mm", length}};
+    };
+    const compare::Bounds& b = branch.bounds;
+    return {{"leg", name(compare::Leg::energy)},
+            {"states_of", name(compare::Leg::equilibrium)},
+            {"left", three(left.force, left.moment, 1e3 * left.length)},
+            {"at_most", three(b.residual_force, b.residual_moment, b.residual_length)}};
+}
+
 }  // namespace
 
 std::string driven_name(const Model& model, const Driven& what) {
@@ -247,7 +262,8 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"reference_uncertainty", pair(branch.uncertainty)},
              {"profiles", profiles_json(comparison, branch)},
              {"second_reference", name(branch.second)},
-             {"no_energy", branch.no_energy},
+             {"energy_not_asked", branch.not_asked},
+             {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()}});
     }

@@ -145,23 +145,44 @@ std::string recursion_of(const compare::Comparison& comparison) {
     return method.empty() || method == "published" ? "eq. (29)" : fmt::format("the method '{}'", method);
 }
 
+// What stands in for the energy leg, and where.
+std::string instead_of_energy(const compare::Comparison& comparison) {
+    bool none = false, large = false;
+    for (const auto& branch : comparison.branches)
+        if (!branch.not_asked.empty()) (energy_bears_witness(branch) ? large : none) = true;
+    if (!none && !large) return "";
+    return fmt::format(", or series where {}{}{},", none ? "no energy exists" : "",
+                       none && large ? " or " : "", large ? "the scene is too large for it" : "");
+}
+
+// Who judges where the energy leg is not asked for states of its own, and why it is not.
+std::string not_asked(const compare::BranchComparison& branch) {
+    const std::string who = fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
+    if (!energy_bears_witness(branch))
+        return fmt::format("{}; no energy exists: {}\n", who, branch.not_asked);
+    const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
+    const compare::Bounds& b = branch.bounds;
+    return fmt::format(
+        "{}; {}\n  the energy leg is a witness: the equilibrium leg's states leave {:.2g} N, "
+        "{:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} mm are allowed\n",
+        who, branch.not_asked, left.force, left.moment, 1e3 * left.length, b.residual_force,
+        b.residual_moment, b.residual_length);
+}
+
 }  // namespace
 
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;
     const auto out = std::back_inserter(text);
-    fmt::format_to(
-        out,
-        "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
-        "the equilibrium leg;\n"
-        "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
-        "equilibrium leg;\n"
-        "rates: of the reference, with the recursion's error.\n",
-        model.name, coordinates(model), constraint_rows(model), coordinates(model) + constraint_rows(model),
-        recursion_of(comparison),
-        std::ranges::all_of(comparison.branches, &std::string::empty, &compare::BranchComparison::no_energy)
-            ? ""
-            : ", or series where no energy exists,");
+    fmt::format_to(out,
+                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
+                   "the equilibrium leg;\n"
+                   "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
+                   "equilibrium leg;\n"
+                   "rates: of the reference, with the recursion's error.\n",
+                   model.name, coordinates(model), constraint_rows(model),
+                   coordinates(model) + constraint_rows(model), recursion_of(comparison),
+                   instead_of_energy(comparison));
     const auto errors = compare::rate_errors(model, comparison);
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
@@ -184,9 +205,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         rates(errors, branch, text);
         fmt::format_to(out, "\n");
         legs_table(branch, text);
-        if (!branch.no_energy.empty())
-            fmt::format_to(out, "  the equilibrium leg and {} judge each other; no energy exists: {}\n",
-                           name(branch.second), branch.no_energy);
+        if (!branch.not_asked.empty()) text += not_asked(branch);
         fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())
             fmt::format_to(out, "  inconclusive: {}\n", reason);

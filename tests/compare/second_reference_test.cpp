@@ -1,5 +1,8 @@
-// Where no energy exists the equilibrium leg and the series judge each other.
+// Where no energy exists, or the scene is too large for the energy leg, the equilibrium leg and the series judge each
+// other; in the latter case the energy leg's equations are a witness.
 #include <gtest/gtest.h>
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -29,7 +32,7 @@ TEST(SecondReference, IsTheSeriesWhereALoadTurnsWithItsBody) {
     EXPECT_TRUE(found.conclusive()) << (branch.inconclusive.empty() ? ""
                                                                     : branch.inconclusive.worst.front().what);
     EXPECT_EQ(branch.second, Leg::series);
-    EXPECT_NE(branch.no_energy.find("'kick'"), std::string::npos) << branch.no_energy;
+    EXPECT_NE(branch.not_asked.find("'kick'"), std::string::npos) << branch.not_asked;
     ASSERT_EQ(branch.runs.size(), 4u);
     EXPECT_EQ(branch.runs[2].path.outcome, Outcome::not_conservative);
     EXPECT_TRUE(branch.runs[2].path.points.empty());
@@ -61,7 +64,7 @@ TEST(SecondReference, StaysTheEnergyLegWhereEnergyExists) {
     scene.branches.resize(1);
     const Comparison found = compare(compile(scene));
     EXPECT_EQ(found.branches[0].second, Leg::energy);
-    EXPECT_TRUE(found.branches[0].no_energy.empty());
+    EXPECT_TRUE(found.branches[0].not_asked.empty());
     EXPECT_EQ(found.branches[0].runs.size(), 3u);
 }
 
@@ -83,8 +86,86 @@ TEST(SecondReference, StudiesTakeItToo) {
     const References known = references(model, all, model.branches[0], ways_of(model, model.branches[0], 10));
     EXPECT_TRUE(known.failures.empty()) << known.failures.front();
     EXPECT_EQ(known.second_leg, Leg::series);
-    EXPECT_NE(known.no_energy.find("'kick'"), std::string::npos);
+    EXPECT_NE(known.not_asked.find("'kick'"), std::string::npos);
     EXPECT_TRUE(known.uncertainty.mm <= 1e-6) << known.uncertainty.mm;
+}
+
+// A cantilever of bushings too long for the energy leg, which judges it all the same.
+const Model& chain() {
+    static const Model model = [] {
+        constexpr int n = 140;
+        constexpr double h = 1.0 / n;
+        using Eigen::Quaterniond, Eigen::Vector3d;
+        Scene scene;
+        scene.name = "chain";
+        for (int b = 0; b < n; ++b) {
+            scene.bodies.push_back({fmt::format("b{}", b), {Vector3d(b * h, 0, 0), Quaterniond::Identity()}});
+            Matrix6 K = Matrix6::Zero();
+            K.diagonal() << Vector3d::Constant(1e6 * n), Vector3d::Constant(100 / h);
+            const Marker i{b - 1, Vector3d(b == 0 ? 0 : h, 0, 0), Quaterniond::Identity()},
+                j{b, Vector3d::Zero(), Quaterniond::Identity()};
+            scene.elastics.push_back({fmt::format("k{}", b), Bushing{i, j, LinearStiffness{K}}});
+        }
+        const Point tip{n - 1, Vector3d(h, 0, 0)};
+        scene.probes.push_back({"tip", tip});
+        Branch up{.name = "up", .to = 50, .steps = 5, .drivers = {}};
+        up.drivers.push_back({Load{"force", DeadForce{tip, Vector3d::UnitZ()}}, 0, 1});
+        scene.branches.push_back(up);
+        return compile(scene);
+    }();
+    return model;
+}
+
+const Comparison& compared_chain() {
+    static const Comparison found = compare(chain());
+    return found;
+}
+
+Residuals& witness(BranchComparison& branch) {
+    return branch.runs[1].judged[static_cast<std::size_t>(Leg::energy)];
+}
+
+TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitness) {
+    BranchComparison branch = compared_chain().branches[0];
+    EXPECT_TRUE(compared_chain().conclusive())
+        << (branch.inconclusive.empty() ? "" : branch.inconclusive.worst.front().what);
+    EXPECT_EQ(branch.runs[2].path.outcome, Outcome::too_large);
+    EXPECT_NE(branch.not_asked.find("operations for 840 coordinates"), std::string::npos) << branch.not_asked;
+    EXPECT_EQ(branch.second, Leg::series);
+    EXPECT_TRUE(energy_bears_witness(branch));
+    const Residuals left = witness(branch);
+    EXPECT_TRUE(std::isfinite(left.force) && left.force <= branch.bounds.residual_force) << left.force;
+    EXPECT_TRUE(std::isfinite(left.moment) && left.moment <= branch.bounds.residual_moment) << left.moment;
+}
+
+TEST(SecondReference, TheWitnessSeesAMicrometre) {
+    BranchComparison branch = compared_chain().branches[0];
+    const Way way = ways_of(chain(), chain().branches[0]).front();
+    Equilibrium moved = branch.runs[1].path.points.back();
+    moved.poses[70].r.y() += 1e-6;
+    witness(branch) = judge(Leg::energy, way, moved);
+    const Objections objections =
+        disagreements(chain(), compared_chain().channels, chain().branches[0], branch);
+    ASSERT_EQ(objections.count, 1);
+    EXPECT_TRUE(objections.worst[0].what.starts_with("the equilibrium leg's states leave "))
+        << objections.worst[0].what;
+    EXPECT_NE(objections.worst[0].what.find("in the energy leg's equations"), std::string::npos)
+        << objections.worst[0].what;
+}
+
+TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
+    BranchComparison branch = compared_chain().branches[0];
+    witness(branch).moment = std::nan("");
+    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count, 1);
+    branch = compared_chain().branches[0];
+    witness(branch).length = 1e-6;
+    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count, 1);
+}
+
+// Where there is no energy there is nothing to bear witness of.
+TEST(SecondReference, WithoutEnergyThereIsNoWitness) {
+    const Comparison found = compare(compile(follower()));
+    EXPECT_FALSE(energy_bears_witness(found.branches[0]));
 }
 
 }  // namespace

@@ -244,6 +244,54 @@ TEST(NoEnergy, IsSaidAndTheSeriesJudges) {
     EXPECT_EQ(branch["legs"].size(), 4u);
 }
 
+// ---- too large for the energy leg
+
+// A cantilever of so many bushings.
+std::string chain(int n) {
+    std::string points, bodies, bushings;
+    for (int k = 0; k <= n; ++k) points += fmt::format("  p{}: [{:.6f}, 0.0, 0.0]\n", k, 1.0 * k / n);
+    for (int k = 0; k < n; ++k) {
+        bodies += fmt::format("  b{}: {{origin: p{}}}\n", k, k);
+        bushings += fmt::format(
+            "  k{}: {{bodies: [{}, b{}], at: p{}, rates: [1e8, 1e8, 1e8], rotational_rates: [1e4, 1e4, "
+            "1e4]}}\n",
+            k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
+    }
+    return fmt::format(
+        "elastocheck: 1\nname: chain\nunits: {{length: m, angle: rad, force: "
+        "N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
+        "loads: {{up: {{on: b{}, at: p{}, force: [0, 0, 1]}}}}\nbranches: {{up: {{load: up, to: 50, steps: "
+        "4}}}}\n"
+        "probes: {{tip: {{on: b{}, at: p{}}}}}\n",
+        points, bodies, bushings, n - 1, n, n - 1, n);
+}
+
+TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
+    const Folder folder;
+    const std::string scene = folder.write("chain.yaml", chain(150)), out = (folder.path / "out").string();
+    const Said solved = elastocheck_says("solve " + scene + " --method energy");
+    EXPECT_EQ(solved.code, 3) << solved.out;
+    EXPECT_TRUE(contains(
+        solved.err,
+        "too large: branch 'up': the energy leg is not asked: some 3e+11 operations for 900 coordinates"))
+        << solved.err;
+    const Said said = elastocheck_says("compare " + scene + " -o " + out);
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    for (const char* part :
+         {"energy       too large", "series       converged", "or series where the scene is too large for it",
+          "the equilibrium leg and series judge each other; branch 'up': the energy leg is not asked: some",
+          "the energy leg is a witness: the equilibrium leg's states leave ", "conclusive: "})
+        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
+    const auto& branch = result["scenes"][0]["branches"][0];
+    EXPECT_EQ(branch["witness"]["leg"], "energy");
+    for (const char* unit : {"force_N", "moment_Nm", "constraint_mm"})
+        EXPECT_LE(branch["witness"]["left"][unit].get<double>(),
+                  branch["witness"]["at_most"][unit].get<double>())
+            << unit;
+    EXPECT_TRUE(contains(branch["energy_not_asked"].get<std::string>(), "900 coordinates"));
+}
+
 // ---- --keep-all
 
 TEST(KeepAll, SolvesTheWholeSceneToTheSameNumbers) {

@@ -75,13 +75,25 @@ std::optional<Section> references_section(const Field& scene) {
             if (times) cells.push_back(number(1e3 * leg["seconds"].number()));
             work.rows.push_back(cells);
         }
-        if (const auto why = branch.find("no_energy"); why && !why->text().empty())
-            section.words["no_energy"].push_back(
-                {{"branch", name}, {"second", branch["second_reference"].text()}, {"why", why->text()}});
+        if (const auto why = branch.find("energy_not_asked"); why && !why->text().empty()) {
+            nlohmann::ordered_json words{
+                {"branch", name}, {"second", branch["second_reference"].text()}, {"why", why->text()}};
+            const auto witness = branch.find("witness");
+            if (!witness) {
+                section.words["no_energy"].push_back(words);
+            } else {
+                for (const char* of : {"left", "at_most"})
+                    words[of] =
+                        fmt::format("{} N, {} N·m and {} mm", number((*witness)[of]["force_N"].number(), 2),
+                                    number((*witness)[of]["moment_Nm"].number(), 2),
+                                    number((*witness)[of]["constraint_mm"].number(), 2));
+                section.words["witness"].push_back(words);
+            }
+        }
         for (const auto& reason : branch["inconclusive"].texts())
             section.words["reasons"].push_back(fmt::format("{}: {}", name, reason));
     }
-    if (section.words.contains("no_energy"))
+    if (section.words.contains("no_energy") || section.words.contains("witness"))
         agreement.caption = "How far the second reference is from the equilibrium leg, worst over the branch";
     judged.folded = true;
     section.tables = {agreement, judged, work};

@@ -13,6 +13,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+MatrixXd matrix(const Jacobian& Phi_q) { return transposed(Phi_q).transpose(); }
+
 struct Case {
     std::string name;
     Model model;
@@ -143,7 +145,7 @@ TEST(Derivatives, JacobianOfEveryConstraintIsFirstOrderExact) {
             const auto values = [&](const VectorXd& x) -> Values {
                 move_to(chart, x);
                 const ConstraintValues c = constraints(one.model, one.prescribed, chart);
-                return {c.Phi, c.Phi_q};
+                return {c.Phi, matrix(c.Phi_q)};
             };
             EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1) << one.name;
         }
@@ -194,12 +196,13 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
             const auto values = [&](const VectorXd& a) -> Values {
                 const Prescribed now = sum(sum(one.prescribed, a[0], rates[0]), a[1], rates[1]);
                 const ConstraintValues c = constraints(one.model, now, chart);
-                VectorXd f(c.Phi.size() + c.Phi_q.size());
+                const MatrixXd Phi_q = matrix(c.Phi_q);
+                VectorXd f(c.Phi.size() + Phi_q.size());
                 MatrixXd f_a(f.size(), 2);
-                f << c.Phi, c.Phi_q.reshaped();
+                f << c.Phi, Phi_q.reshaped();
                 for (const int k : {0, 1}) {
                     const ConstraintRates c_a = constraint_rates(one.model, now, rates[k], chart);
-                    f_a.col(k) << c_a.Phi_a, c_a.Phi_qa.reshaped();
+                    f_a.col(k) << c_a.Phi_a, matrix(c_a.Phi_qa).reshaped();
                 }
                 return {f, f_a};
             };
@@ -271,7 +274,7 @@ TEST(Derivatives, HessianAgreesWithDifferencesOfTheGradient) {
             for (const int side : {0, 1}) {
                 move_to(chart, S.cwiseProduct((side ? 1e-5 : -1e-5) * VectorXd::Unit(12, i)));
                 g[side] = potential(model, prescribed, chart).gradient / scales.energy() +
-                          constraints(model, prescribed, chart).Phi_q.transpose() *
+                          matrix(constraints(model, prescribed, chart).Phi_q).transpose() *
                               scales.rows(model).cwiseProduct(lambda);
             }
             D.col(i) = S.cwiseProduct(g[1] - g[0]) / 2e-5;
@@ -391,8 +394,9 @@ TEST(Constraints, ChangesAgreeWithValuesAndKeepTheirRelativeAccuracy) {
             const VectorXd x = random.many(12, 1e-10);
             move_to(chart, x);
             const ConstraintValues near = constraints(one.model, one.prescribed, chart);
-            const VectorXd expected = 0.5 * (c.Phi_q + near.Phi_q) * x;
-            worst_small = std::max(worst_small, (near.dPhi - expected).norm() / (c.Phi_q.norm() * x.norm()));
+            const VectorXd expected = 0.5 * (matrix(c.Phi_q) + matrix(near.Phi_q)) * x;
+            worst_small =
+                std::max(worst_small, (near.dPhi - expected).norm() / (matrix(c.Phi_q).norm() * x.norm()));
         }
     }
     EXPECT_LE(worst, 2e-14);

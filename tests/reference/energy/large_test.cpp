@@ -1,0 +1,171 @@
+// Large scenes: what this leg is asked, what it foresees, and that it judges them whatever their size.
+#include <Eigen/QR>
+
+#include "reference/energy/balance.hpp"
+#include "reference/energy/cost.hpp"
+#include "support.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+// A cantilever of one metre in n links along x, one to the next by a bushing or by a hinge about y with a torsion spring;
+// a force up at its tip. Straight as drawn.
+Scene chain(int n, bool hinged) {
+    const double h = 1.0 / n, k = 100 / h;
+    Scene scene;
+    scene.name = "chain";
+    for (int b = 0; b < n; ++b) {
+        scene.bodies.push_back(
+            {fmt::format("b{}", b), {Vector3d(b * h, 0, 0), Eigen::Quaterniond::Identity()}});
+        const BodyId i = b == 0 ? ground : b - 1;
+        const Vector3d at(b == 0 ? 0 : h, 0, 0);
+        Matrix6 K = Matrix6::Zero();
+        K.diagonal() << Vector3d::Constant(hinged ? 0 : 1e6 * n),
+            hinged ? Vector3d(0, k, 0) : Vector3d(k, k, k);
+        const Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
+        scene.elastics.push_back(
+            {fmt::format("k{}", b), Bushing{{i, at, axes}, {b, Vector3d::Zero(), axes}, LinearStiffness{K}}});
+        if (hinged)
+            scene.joints.push_back(
+                {fmt::format("j{}", b),
+                 Revolute{{i, at}, {b, Vector3d::Zero()}, {i, Vector3d::UnitY()}, {b, Vector3d::UnitY()}}});
+    }
+    const Point tip{n - 1, Vector3d(h, 0, 0)};
+    scene.probes.push_back({"tip", tip});
+    scene.branches.push_back(load_branch("up", {{"force", DeadForce{tip, Vector3d::UnitZ()}}}, 50, 5));
+    return scene;
+}
+
+// Straight, turned by `angle` from link to link: no equilibrium, but every joint is closed.
+Equilibrium bent(const Model& model, double angle) {
+    const double h = 1.0 / static_cast<double>(model.bodies.size());
+    Equilibrium state{.load = 50, .poses = {}, .reactions = {}};
+    Vector3d r = Vector3d::Zero();
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const Eigen::Quaterniond p(Eigen::AngleAxisd(-angle * static_cast<double>(b + 1), Vector3d::UnitY()));
+        state.poses.push_back({r, p});
+        r += p * Vector3d(h, 0, 0);
+    }
+    return state;
+}
+
+TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
+    const auto is_near = [](double foreseen, double counted) {
+        return std::isfinite(foreseen) && foreseen <= 4 * counted && counted <= 4 * foreseen;
+    };
+    std::vector<Model> models;
+    for (const char* name : {"chrono_mcpherson", "pinned_bar", "four_bar", "bushing_pair"})
+        models.push_back(compile(scene_named(name)));
+    for (const int n : {2, 5, 12, 20})
+        for (const bool hinged : {false, true}) models.push_back(compile(chain(n, hinged)));
+    for (const auto& all : models) {
+        const Branch branch = ways(all.branches[0]).front();
+        const Model model = on_branch(all, branch);
+        const auto values = sweep(branch);
+        const Cost cost = cost_of(model, values.size());
+        const Counts counts = solve(model, branch, values).counts;
+        // Beside evaluations in charts, a state takes one and those of its Hessian, and so one of each is a state's.
+        const double states =
+            static_cast<double>(counts.evaluations - counts.factorisations) / hessian_evaluations(model);
+        const double evaluations = static_cast<double>(counts.factorisations) - states;
+        EXPECT_TRUE(is_near(cost.states, states)) << model.name << " " << cost.states << " " << states;
+        EXPECT_TRUE(is_near(cost.evaluations, evaluations))
+            << model.name << " " << cost.evaluations << " " << evaluations;
+    }
+}
+
+TEST(LargeScenes, WorkGrowsWithTheCubeAndJointsCostMoreThanBushings) {
+    const auto operations = [](int n, bool hinged) {
+        return cost_of(compile(chain(n, hinged)), 6).operations();
+    };
+    for (const bool hinged : {false, true})
+        EXPECT_NEAR(operations(80, hinged) / operations(40, hinged), 8, 1e-9);
+    const Cost joints = cost_of(compile(chain(40, true)), 6),
+               bushings = cost_of(compile(chain(40, false)), 6);
+    EXPECT_GE(joints.per_evaluation, 2 * bushings.per_evaluation);  // 5 rows for 6 coordinates
+}
+
+TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
+    for (const bool hinged : {false, true}) {
+        const auto path = solve(chain(1000, hinged), 0, sweep(chain(1000, hinged).branches[0]));
+        EXPECT_EQ(path.outcome, Outcome::too_large);
+        EXPECT_TRUE(path.points.empty());
+        EXPECT_EQ(path.counts.evaluations, 0);
+        for (const char* part : {"branch 'up': the energy leg is not asked: some ", "e+1",
+                                 "operations for 6000 coordinates, at most 2e+11"})
+            EXPECT_NE(path.detail.find(part), std::string::npos) << path.detail;
+        EXPECT_STREQ(name(path.outcome), "too large");
+    }
+}
+
+// The built-in scenes are asked, with all the values their branches have.
+TEST(LargeScenes, NoSuspensionIsOne) {
+    for (const char* name : {"mcpherson", "solid_axle_leaf", "front_axle", "twist_beam"}) {
+        const Model all = compile(scene_named(name));
+        for (const auto& branch : all.branches)
+            EXPECT_LE(
+                cost_of(on_branch(all, branch), static_cast<std::size_t>(branch.steps) + 1).operations(),
+                most_operations)
+                << name << " " << branch.name;
+    }
+}
+
+// Sparse QR leaves of a gradient what dense QR does, with rows that repeat each other as well.
+TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
+    Random random;
+    for (const bool doubled : {false, true}) {
+        Scene scene = chain(12, true);
+        if (doubled) {
+            for (int k : {3, 4, 9}) scene.joints.push_back(scene.joints[static_cast<std::size_t>(k)]);
+            for (std::size_t k = 12; k < scene.joints.size(); ++k) scene.joints[k].name += "again";
+        }
+        const Model model = compile(scene, Detail::all);
+        const Scales scales = lengths_of(model, course_of(model, model.branches[0]));
+        const Chart chart = chart_about(bent(model, 0.05).poses);
+        const auto values = constraints(model, nothing_prescribed(model), chart);
+        EXPECT_EQ(values.Phi.size(), doubled ? 75 : 60);
+        const VectorXd gradient = random.many(coordinates(model)), S = scales.coordinates(coordinates(model));
+        const Balance dense = balance(model, scales, gradient, values);
+        EXPECT_EQ(dense.independent.size(), 60u);
+        const VectorXd left = left_over(scaled(values.Phi_q, scales.rows(model), S),
+                                        S.cwiseProduct(gradient) / scales.energy());
+        EXPECT_LE((left - dense.left).norm(), 1e-13 * gradient.norm());
+        EXPECT_GE(left.norm(), 0.01 * gradient.norm());
+    }
+}
+
+// What the equilibrium's own poses leave is nothing; moved by a micrometre, bushings of a thousand links pull, and hinges
+// are open.
+TEST(LargeScenes, AMicrometreIsSeenInAThousandLinks) {
+    for (const bool hinged : {false, true}) {
+        const Model model = compile(chain(1000, hinged));
+        Equilibrium state = bent(model, 0);
+        state.load = 0;  // straight as drawn
+        const Residuals before = residuals(model, model.branches[0], state);
+        EXPECT_LE(largest(before), 1e-6);  // 1e9 N/m times the round-off of a metre
+        state.poses[500].r.z() += 1e-6;
+        const Residuals after = residuals(model, model.branches[0], state);
+        if (hinged)
+            EXPECT_NEAR(after.length, 1e-6, 1e-12);
+        else
+            EXPECT_NEAR(after.force, 2 * 1e9 * 1e-6, 1);
+    }
+}
+
+// With every hinge closed the moments are all that is left: those of the springs' share that the force does not balance.
+TEST(LargeScenes, AnUnbalancedChainOfHingesIsSeen) {
+    const Model model = compile(chain(300, true));
+    const Residuals left = residuals(model, model.branches[0], bent(model, 1e-3));
+    EXPECT_LE(left.length, 1e-14);
+    EXPECT_TRUE(std::isfinite(left.moment));
+    EXPECT_GE(left.moment, 1e-3);
+    Equilibrium lost = bent(model, 1e-3);
+    lost.poses[200].r.x() = NAN;
+    EXPECT_TRUE(std::isnan(residuals(model, model.branches[0], lost).force));
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::energy
