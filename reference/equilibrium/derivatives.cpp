@@ -48,8 +48,7 @@ void for_each_entry(const System& system, const Part& part, int row, bool balanc
     if (part.j != ground)
         for (int k = first; k < 6; ++k) entry(row, 6 * part.j + k, 6 + k);
     if (balance)
-        for (int k = 0; k < part.rows; ++k)
-            entry(row, 6 * system.bodies + part.row + k, first_reaction + k);
+        for (int k = 0; k < part.rows; ++k) entry(row, 6 * system.bodies + part.row + k, first_reaction + k);
 }
 
 // The terms of the system as they come: the rows of a body's balance, of a force none where a direction is held, and the
@@ -121,8 +120,7 @@ Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd
 Derivatives derivatives(const System& system, const Loading& loading, const VectorXd& x, Counts& counts) {
     ++counts.evaluations;
     if (!system.pattern) system.pattern = std::make_shared<const Pattern>(pattern_of(system, loading, x));
-    Derivatives by{system.pattern->J, VectorXd::Zero(system.equations()),
-                   VectorXd::Zero(system.equations())};
+    Derivatives by{system.pattern->J, VectorXd::Zero(system.equations()), VectorXd::Zero(system.equations())};
     double* values = by.J.valuePtr();
     const int* place = system.pattern->places.data();
     for_each_row(system, loading, x, [&](const Part& part, int row, bool balance, const Jet& term) {

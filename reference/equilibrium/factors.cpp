@@ -82,9 +82,7 @@ struct Pivots {
     }
 };
 
-bool is_finite(const Sparse& A) {
-    return Eigen::Map<const VectorXd>(A.valuePtr(), A.nonZeros()).allFinite();
-}
+bool is_finite(const Sparse& A) { return Eigen::Map<const VectorXd>(A.valuePtr(), A.nonZeros()).allFinite(); }
 
 double largest_entry(const Sparse& A) {
     return A.nonZeros() == 0 ? 0

@@ -141,7 +141,8 @@ Rate answer(const Factors& bordered, const VectorXd& E_rate) {
     const Index n = E_rate.size(), k = bordered.size() - n;
     if (n == 0) return {};
     if (bordered.sign() == 0)
-        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()), VectorXd::Zero(std::max<Index>(k, 0))};
+        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()),
+                VectorXd::Zero(std::max<Index>(k, 0))};
     VectorXd right = VectorXd::Zero(n + k);
     right.head(n) = -E_rate;
     const VectorXd solution = bordered.solve(right);

@@ -58,7 +58,8 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
         Index largest = -1;
         double size = 0;
         for (Sparse::InnerIterator at(modes, k); at; ++at)
-            if (at.row() < n && std::abs(at.value()) > size && std::ranges::find(held, at.row()) == held.end())
+            if (at.row() < n && std::abs(at.value()) > size &&
+                std::ranges::find(held, at.row()) == held.end())
                 largest = at.row(), size = std::abs(at.value());
         if (largest >= 0) held.push_back(largest);
     }
@@ -67,7 +68,8 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
 
 // Whether no eigenvalue of the symmetric part of M is below -round_off; `false` may also be for too weak a ρ, beside
 // what is negative in K, or for too strong a one, beside round-off.
-bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size, double round_off) {
+bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size,
+                   double round_off) {
     constexpr double strengths[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
     const Index n = K.rows();
     Sparse held(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
@@ -134,13 +136,16 @@ std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
 // The eigenvalues of M next to zero, by Arnoldi's method on M⁻¹, of which they are the largest: the first ones, to a part
 // in 1e8, as soon as the very first is found, or `all`, which are all that are not equal where no more are free than
 // `most`.
-std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative, bool all) {
+std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative,
+                                     bool all) {
     constexpr Index most = 200, between_looks = 4;
     constexpr double found = 1e-8, round_off = 1e-14;
     const Index size = std::min(most, free);
     MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
-    VectorXd next(n);  // anything that is no eigenvector of anything: fractions of multiples of the golden ratio
-    for (Index k = 0; k < n; ++k) next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
+    VectorXd next(
+        n);  // anything that is no eigenvector of anything: fractions of multiples of the golden ratio
+    for (Index k = 0; k < n; ++k)
+        next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
     next = inverse(next);
     double left = next.norm();
     if (!(std::isfinite(left) && left > 0)) return std::nullopt;
@@ -200,9 +205,8 @@ Stiffness stiffness(const System& system, const Linearisation& at) {
     if (free == 0) return {};
     const Sparse K = -balance_rows(system, at.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
-    const bool surely =
-        system.conservative &&
-        surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
+    const bool surely = system.conservative && surely_stable(K, constraint_rows(system, at.J), at.modes,
+                                                             std::max(size, 1.0), round_off);
     const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
     return spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
 }
@@ -212,7 +216,8 @@ bool constraints_keep_their_side(const System& system, const Linearisation& from
     const Index m = system.constraint_rows;
     const Sparse begin = constraint_rows(system, from.J), end = constraint_rows(system, to.J);
     Sparse S = end * Sparse(begin.transpose());
-    if (const MatrixXd U = from.modes.count() == 0 ? MatrixXd(m, 0) : self_stresses(system, from.modes); U.cols() > 0) {
+    if (const MatrixXd U = from.modes.count() == 0 ? MatrixXd(m, 0) : self_stresses(system, from.modes);
+        U.cols() > 0) {
         // ⎡ S   U ⎤
         // ⎣ -Uᵀ 1 ⎦ has the determinant of S + U Uᵀ
         std::vector<Eigen::Triplet<double>> entries;

@@ -64,7 +64,7 @@ struct System {
     bool conservative = true;                          // no follower, no formulation without energy
     Eigen::VectorXd carried;                           // what the joints carry at the design pose [m]
     Eigen::VectorXd at_design;                         // E there, at a = 0 [n]
-    mutable std::shared_ptr<const Pattern> pattern;    // found when J is first asked for; a system has one user
+    mutable std::shared_ptr<const Pattern> pattern;  // found when J is first asked for; a system has one user
 
     int unknowns() const { return 7 * bodies + constraint_rows; }
     int equations() const { return 6 * bodies + constraint_rows; }
