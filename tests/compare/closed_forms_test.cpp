@@ -11,11 +11,13 @@
 #include "recursive/series/path.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
+#include "tests/support/cantilever.hpp"
 #include "tests/support/quadrature.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
+using namespace support;  // the leaf: E, G, L, width, thick, EI
 using std::numbers::pi;
 
 constexpr double no_curve =
@@ -68,22 +70,7 @@ class Solved {
     Comparison all;
 };
 
-// log₂ of how much smaller an error is with twice as many segments.
-double order(double coarse, double fine) { return std::log2(coarse / fine); }
-
 // ---- Beams.
-
-// A leaf of spring steel, 1 m long, 60 mm wide, 12 mm thick, clamped at the root; it bends in the plane xy.
-constexpr double E = 206e9, G = 79e9, L = 1, width = 0.060, thick = 0.012;
-constexpr double EI = E * width * thick * thick * thick / 12;  // 1780 N·m²
-std::string leaf(int segments) {
-    return fmt::format(
-        "points: {{root: [0, 0, 0], tip: [{}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
-        "beams: {{leaf: {{bodies: [ground, tip], through: [root, tip], segments: {}, E: {}, G: {}, up: z,\n"
-        "  A: {}, I_y: {}, I_z: {}, J: {}}}}}\nprobes: {{tip: {{on: tip, at: tip}}}}\n",
-        L, segments, E, G, width * thick, width * width * width * thick / 12,
-        width * thick * thick * thick / 12, width * thick * thick * thick / 3);
-}
 
 // Under a moment M at its tip the leaf has the curvature M/EI throughout. A chain of n turns at every segment by
 // θ = M L/(n EI) and stands on a circle as well, smaller by (θ/2)/tan(θ/2) = 1 - θ²/12 - ...: order 2 in n. Whether the
@@ -157,26 +144,6 @@ TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
     }
 }
 
-// The elastica EI φ'' = -P cos φ under a dead force P across its root, in Legendre's integrals: with φ_L the slope of
-// the tip, k² = (1 + sin φ_L)/2 and sin ψ = 1/(k√2)
-//
-//   √(P/EI) L = F(k, π/2) - F(k, ψ)     x = √(EI/P) 2 k cos ψ     y = L - 2 √(EI/P) (E(k, π/2) - E(k, ψ))
-struct Tip {
-    double x, y;  // of L
-};
-Tip elastica(double alpha) {  // P L²/EI
-    const double root = std::sqrt(alpha), quarter = pi / 2;
-    const auto psi = [](double k) { return std::asin(std::min(1.0, 1 / (k * std::numbers::sqrt2))); };
-    double low = 1 / std::numbers::sqrt2, high = 1 - 1e-12;
-    for (int i = 0; i < 100; ++i) {
-        const double k = (low + high) / 2;
-        (std::ellint_1(k, quarter) - std::ellint_1(k, psi(k)) < root ? low : high) = k;
-    }
-    const double k = low;
-    return {2 * k * std::cos(psi(k)) / root,
-            1 - 2 / root * (std::ellint_2(k, quarter) - std::ellint_2(k, psi(k)))};
-}
-
 TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
     EXPECT_NEAR(elastica(4).y, 0.66996, 1e-5);  // Mattiasson (1981)
     EXPECT_NEAR(1 - elastica(4).x, 0.32894, 1e-5);
@@ -202,20 +169,6 @@ TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
 }
 
 // ---- Euler's column: the leaf, pressed along its axis.
-//
-// With φ_k and u_k = w_n - w_k of the nodes, a segment of length h bends under the moment of P about its middle, its
-// shear gives way to what of P is across it, β = P h²/(12EI), and it is shorter by ε = P/EA = β ρ, ρ = 12EI/(EA h²):
-//
-//   w_k+1 - w_k = h (1 + β - ε) ½ (φ_k + φ_k+1)   EI/h (φ_k+1 - φ_k) = P (½ (u_k + u_k+1) + ¼ h (φ_k+1 - φ_k))
-//
-// With φ_k ~ sin kμ, u_k ~ cos kμ both hold where T = tan²(μ/2) = 3β(1 + β - ε)/(1 - 3β), and the free tip asks for
-// μ n = π/2:  3(1 - ρ)β² + 3(1 + T)β = T. P/P_E is then 1 + O(μ²), P_E = π² EI/(4 L²).
-double critical_load(int n) {
-    const double T = std::pow(std::tan(pi / (4 * n)), 2), h = L / n, EA = E * width * thick;
-    const double rho = 12 * EI / (EA * h * h), b = 3 * (1 + T);
-    const double beta = (std::sqrt(b * b + 12 * T * (1 - rho)) - b) / (6 * (1 - rho));
-    return 12 * EI * beta / (h * h);
-}
 
 // Up to there the straight column is an equilibrium that everybody follows, past it nobody does: the tangent's
 // determinant has changed its sign (series, adaptive), the stiffness has lost its sign (equilibrium leg), the potential

@@ -42,10 +42,10 @@ struct PlanarChain {
     static PlanarChain links(int n, Real length, Real k_R, Real compliance) {
         return {n, 0, length, length, 0, k_R, compliance, compliance};
     }
-    // A beam cut into n segments, which bend in their middles (models/reader/beams.hpp); bodies at the nodes.
-    static PlanarChain beam(int n, Real length, Real EI, Real EA) {
+    // A beam of EI and EA cut into n segments, which bend in their middles (models/reader/beams.hpp); bodies at the nodes.
+    static PlanarChain beam(int n, Real length, Real bending, Real stretching) {
         const Real h = length / n;
-        return {n, h / 2, h, h / 2, h / 2, EI / h, h / EA, h * h * h / (12 * EI)};
+        return {n, h / 2, h, h / 2, h / 2, bending / h, h / stretching, h * h * h / (12 * bending)};
     }
 
     // Under a force that bends it to the side of φ > 0 and no further than its own direction: φ_0 rises with φ_n there.
