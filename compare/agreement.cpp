@@ -131,6 +131,10 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
     return scale;
 }
 
+Scale larger(const Scale& a, const Scale& b) {
+    return {larger(a.force, b.force), larger(a.length, b.length), larger(a.round_off, b.round_off)};
+}
+
 Bounds bounds_of(const Agreement& agreement, const Scale& scale) {
     const double F = std::max(scale.force, no_force), rounding = digits * scale.round_off;
     const double lengths = 1e3 * std::max(scale.length, metre);  // [mm]

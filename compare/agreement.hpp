@@ -36,6 +36,9 @@ struct Scale {
 // Of a branch: model and states as a leg has them there.
 Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilibrium> states);
 
+// Of all states, from that of some and that of the others of one model.
+Scale larger(const Scale& a, const Scale& b);
+
 struct Bounds {
     double length = 0;                               // [mm]
     double angle = 0;                                // [deg]

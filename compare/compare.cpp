@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -18,18 +17,33 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 }
 
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
-           const std::vector<Way>& ways, Leg leg, const recursive::Options& recursion) {
-    LegRun run{leg, {}, {}, {}, 0, {}};
-    if (leg == Leg::recursive) run.method = recursion.method.name;
-    const auto start = std::chrono::steady_clock::now();
-    run.path = walk(ways, {.leg = leg, .recursion = recursion});
-    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.curve = curve(model, channels, branch, run.path.points);
-    for (const auto& point : run.path.points)
+           const std::vector<Way>& ways, const Gait& gait) {
+    LegRun run;
+    run.leg = gait.leg;
+    if (gait.leg == Leg::recursive) run.method = gait.recursion.method.name;
+    const Way& way = ways.front();
+    run.scale = scale_of(way.model, branch, {});
+    const auto asked = asked_for(ways, gait.every);
+    const double middle = asked[asked.size() / 2];
+    const bool both_ways = ways.size() > 1;
+    auto& [front, start, in_the_middle, back] = run.landmarks;
+    static_cast<Walked&>(run) = walk(model, channels, branch, ways, gait, [&](const Equilibrium& state) {
         for (const Leg by : legs) {
             auto& worst = run.judged[static_cast<std::size_t>(by)];
-            worst = worse(worst, judge(by, ways.front(), point));
+            worst = worse(worst, judge(by, way, state));
         }
+        run.scale = larger(run.scale, scale_of(way.model, branch, {&state, 1}));
+        // The farthest on either side comes last.
+        if (state.load == 0)
+            start = state;
+        else if (both_ways && state.load * way.branch.to > 0)
+            front = state;
+        else
+            back = state;
+        if (state.load == middle) in_the_middle = state;
+    });
+    if (!front) front = start;
+    if (!back) back = start;
     return run;
 }
 
@@ -107,9 +121,9 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     for (const auto& run : branch.runs) {
         if (run.leg == Leg::energy && branch.second != Leg::energy)
             continue;  // is not asked, and need not be
-        if (run.path.outcome != Outcome::converged)
-            objections.add(fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.path.outcome),
-                                       run.path.detail));
+        if (run.outcome != Outcome::converged)
+            objections.add(
+                fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.outcome), run.detail));
     }
     if (!objections.empty()) return objections;
     const LegRun &equilibrium = run_of(branch, Leg::equilibrium), &second = run_of(branch, branch.second);
@@ -156,7 +170,8 @@ bool Comparison::conclusive() const {
 }
 
 LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {
-    return run(model, channels(model), branch, ways_of(model, branch, recursion.steps), leg, recursion);
+    return run(model, channels(model), branch, ways_of(model, branch, recursion.steps),
+               {.leg = leg, .recursion = recursion});
 }
 
 Comparison compare(const Model& model, const Options& options) {
@@ -184,17 +199,21 @@ Comparison compare(const Model& model, const Options& options) {
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
         const auto stands = stand(ways[k].front().model);
+        for (const auto& way : ways[k]) b.steps += way.branch.steps;
+        b.every = options.every;
         for (const auto& channel : result.channels)
             b.determined.push_back(is_determined(channel, determined[k], stands));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
-            b.runs.push_back(run(model, result.channels, branch, ways[k], leg, options.recursion));
+            b.runs.push_back(run(model, result.channels, branch, ways[k],
+                                 {.leg = leg, .recursion = options.recursion, .every = options.every}));
         }
-        if (const auto& energy = run_of(b, Leg::energy).path; is_not_asked(energy.outcome)) {
+        if (const LegRun& energy = run_of(b, Leg::energy); is_not_asked(energy.outcome)) {
             b.second = Leg::series;
             b.not_asked = energy.detail;
             if (options.progress) options.progress(fmt::format("{}: series", branch.name));
-            b.runs.push_back(run(model, result.channels, branch, ways[k], Leg::series, {}));
+            b.runs.push_back(
+                run(model, result.channels, branch, ways[k], {.leg = Leg::series, .every = options.every}));
         }
         const LegRun& truth = run_of(b, Leg::equilibrium);
         b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
@@ -207,7 +226,7 @@ Comparison compare(const Model& model, const Options& options) {
         b.deviation = pair(Leg::equilibrium, Leg::recursive);
         b.cross_check = pair(b.second, Leg::recursive);
         b.uncertainty = pair(Leg::equilibrium, b.second);
-        b.bounds = bounds_of(options.agreement, scale_of(ways[k].front().model, branch, truth.path.points));
+        b.bounds = bounds_of(options.agreement, truth.scale);
         b.inconclusive = disagreements(model, result.channels, branch, b);
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
             result.compared +=

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,15 +20,20 @@
 
 namespace elastocheck::compare {
 
-// One leg along one branch.
-struct LegRun {
+// The states that outlive the walk: where it begins, at a = 0, in the middle of what was asked for, and where it ends;
+// as far as it came.
+struct Landmarks {
+    std::optional<Equilibrium> front, start, middle, back;
+};
+
+// One leg along one branch. Of its points the outputs are kept, not the states.
+struct LegRun : Walked {
     Leg leg = Leg::recursive;
-    std::string method = {};  // of the recursion, else empty
-    EquilibriumPath path;
-    Curve curve;
-    double seconds = 0;
-    std::array<Residuals, legs.size()> judged;  // worst over the points, by the equations of each leg;
-                                                // forces are NaN by the energy leg's where there is no energy
+    std::string method = {};                         // of the recursion, else empty
+    std::array<Residuals, legs.size()> judged = {};  // worst over the points, by the equations of each leg;
+        // forces are NaN by the energy leg's where there is no energy
+    Scale scale = {};  // of what acts over the points
+    Landmarks landmarks = {};
 };
 
 // The recursion goes as `recursion` says, the published one unless it says otherwise, and every one of its
@@ -59,6 +65,7 @@ struct Objections {
 struct BranchComparison {
     std::string branch;
     Unit unit = Unit::newton;  // of its parameter
+    int steps = 0, every = 1;  // of the recursion, and which of them are compared (Gait)
     int abscissa = -1;         // channel of the readings at equal abscissa; -1: none
     std::vector<LegRun> runs;  // in the order of `legs`, then the series where it is the second reference
     Leg second =
@@ -94,6 +101,7 @@ struct Comparison {
 
 struct Options {
     recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
+    int every = 1;                      // of its steps, each of which is compared (Gait)
     Agreement agreement;
     std::string abscissa = {};                            // name of a channel; empty: default_abscissa
     std::function<void(std::string_view)> progress = {};  // told what is being solved

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace elastocheck::compare {
 namespace {
@@ -25,15 +26,18 @@ std::vector<double> Curve::channel(std::size_t c) const {
     return y;
 }
 
+void append(Curve& curve, double load, std::vector<double> values) {
+    const double a = in_unit(curve.unit) * load;
+    if (!curve.a.empty() && std::abs(a) < std::abs(curve.a[curve.start])) curve.start = curve.a.size();
+    curve.a.push_back(a);
+    curve.values.push_back(std::move(values));
+}
+
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
             const std::vector<Equilibrium>& points) {
     Curve result;
     result.unit = unit_of(branch.unit);
-    for (const auto& point : points) {
-        if (std::abs(point.load) < std::abs(points[result.start].load)) result.start = result.a.size();
-        result.a.push_back(in_unit(result.unit) * point.load);
-        result.values.push_back(evaluate(model, channels, point));
-    }
+    for (const auto& point : points) append(result, point.load, evaluate(model, channels, point));
     return result;
 }
 

@@ -18,6 +18,9 @@ struct Curve {
     std::vector<double> channel(std::size_t c) const;
 };
 
+// One point more, its parameter in SI.
+void append(Curve& curve, double load, std::vector<double> values);
+
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
             const std::vector<Equilibrium>& points);
 

@@ -148,17 +148,12 @@ std::string outside_table(const Model& model, const Branch& branch, const Equili
     return {};
 }
 
-void end_at_table(const Model& model, const Branch& branch, EquilibriumPath& path) {
-    for (std::size_t k = 0; k < path.points.size(); ++k) {
-        const std::string where = outside_table(model, branch, path.points[k]);
-        if (where.empty()) continue;
-        const Unit unit = unit_of(branch.unit);
-        path.outcome = Outcome::outside_table;
-        path.detail = fmt::format("branch '{}' at {:.6g} {}: {}", branch.name,
-                                  in_unit(unit) * path.points[k].load, symbol(unit), where);
-        path.points.resize(k);
-        return;
-    }
+std::string ends_at_table(const Model& model, const Branch& branch, const Equilibrium& state) {
+    const std::string where = outside_table(model, branch, state);
+    if (where.empty()) return {};
+    const Unit unit = unit_of(branch.unit);
+    return fmt::format("branch '{}' at {:.6g} {}: {}", branch.name, in_unit(unit) * state.load, symbol(unit),
+                       where);
 }
 
 }  // namespace elastocheck::compare

@@ -27,7 +27,7 @@ double steepest(const ScalarLaw& law);
 // its axis and value: "spring 'coil' is deformed by 61.2 mm, and its curve ends at 60 mm". Empty where none is.
 std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state);
 
-// Ends the path before the first point that is outside a table: Outcome::outside_table, with where in its detail.
-void end_at_table(const Model& model, const Branch& branch, EquilibriumPath& path);
+// The same with where on the branch that is: what a path says that ends before this state.
+std::string ends_at_table(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::compare

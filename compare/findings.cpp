@@ -148,10 +148,11 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 const auto lifting = [&](const LegRun& run) {
                     if (by.by == Lift::load) return by.force * change;
                     if (by.by == Lift::jack) return gained(run.curve, force, end);
-                    const auto z = [&](std::size_t k) {
-                        return position(run.path.points[k].poses, wheel.body, wheel.contact_local).z();
+                    const auto z = [&](const std::optional<Equilibrium>& at) {
+                        return at ? position(at->poses, wheel.body, wheel.contact_local).z() : NAN;
                     };
-                    return wheel.tyre_rate * (by.height * change - (z(end) - z(run.curve.start)));
+                    const auto& [front, start, middle, back] = run.landmarks;
+                    return wheel.tyre_rate * (by.height * change - (z(end == 0 ? front : back) - z(start)));
                 };
                 // [N/mm]: under a load the same force over travels that differ, on a jack forces that differ
                 const auto rate = [&](const LegRun& run) {

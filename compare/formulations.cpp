@@ -76,7 +76,7 @@ Scene reformulated(const Scene& scene, const Formulation& formulation) {
     return result;
 }
 
-FormulationStudy formulation_study(const Scene& scene, int steps,
+FormulationStudy formulation_study(const Scene& scene, int steps, int every,
                                    const std::function<void(std::string_view)>& progress) {
     FormulationStudy study;
     for (const auto& elastic : scene.elastics)
@@ -102,14 +102,15 @@ FormulationStudy formulation_study(const Scene& scene, int steps,
         for (const auto& [name, model] : models) {
             if (progress) progress(fmt::format("{}: {}", branches[b].name, name));
             const Branch& branch = model.branches[b];
-            const auto path = walk(ways_of(model, branch, steps), {.leg = Leg::equilibrium});
-            if (path.outcome != Outcome::converged) {
+            Walked walked = walk(model, study.channels, branch, ways_of(model, branch, steps),
+                                 {.leg = Leg::equilibrium, .every = every});
+            if (walked.outcome != Outcome::converged) {
                 spread.not_solved.push_back(
-                    fmt::format("{}: {}: {}", name, elastocheck::name(path.outcome), path.detail));
+                    fmt::format("{}: {}: {}", name, elastocheck::name(walked.outcome), walked.detail));
                 continue;
             }
             spread.solved.push_back(name);
-            solved.push_back({name, curve(model, study.channels, branch, path.points)});
+            solved.push_back({name, std::move(walked.curve)});
         }
         if (solved.size() < 2)
             study.inconclusive.push_back(fmt::format("{}: fewer than two formulations were solved{}{}",

@@ -68,8 +68,8 @@ struct FormulationStudy {
 };
 
 // `scene` as it is solved: trimmed already. Curves are read at `steps` equal increments of a branch (0: as many as it
-// says), of all formulations up to the first value that one of them does not reach.
-FormulationStudy formulation_study(const Scene& scene, int steps = 0,
+// says), or at every so-many-th of them, of all formulations up to the first value that one of them does not reach.
+FormulationStudy formulation_study(const Scene& scene, int steps = 0, int every = 1,
                                    const std::function<void(std::string_view)>& progress = {});
 
 }  // namespace elastocheck::compare

@@ -169,10 +169,10 @@ void add_counters(const std::string& branch, Quantity quantity, const LegRun& ru
     const auto add = [&](const char* counter, double value) {
         series.push_back({branch, quantity, counter, "count", {value}});
     };
-    add("steps", static_cast<double>(run.path.points.size()) - 1);
-    add("factorisations", static_cast<double>(run.path.counts.factorisations));
-    add("iterations", static_cast<double>(run.path.counts.iterations));
-    add("evaluations", static_cast<double>(run.path.counts.evaluations));
+    add("steps", static_cast<double>(run.curve.a.size()) - 1);
+    add("factorisations", static_cast<double>(run.counts.factorisations));
+    add("iterations", static_cast<double>(run.counts.iterations));
+    add("evaluations", static_cast<double>(run.counts.evaluations));
 }
 
 }  // namespace

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "compare/deformation.hpp"
 #include "models/branch.hpp"
@@ -17,28 +21,76 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// The parameters that are recorded on a way.
-std::vector<double> grid(const Branch& way) {
+// Whether the k-th recorded point of a way is asked for.
+bool is_asked_for(const Branch& way, int k, int every) { return k % every == 0 || k == way.steps; }
+
+// The parameters that are asked for on a way.
+std::vector<double> grid(const Branch& way, int every) {
     std::vector<double> a;
-    for (int k = 0; k <= way.steps; ++k) a.push_back(way.to * k / way.steps);
+    for (int k = 0; k <= way.steps; ++k)
+        if (is_asked_for(way, k, every)) a.push_back(way.to * k / way.steps);
     return a;
 }
 
-EquilibriumPath recursion(const Way& way, recursive::Options options, int refine) {
+EquilibriumPath recursion(const Way& way, recursive::Options options, int refine, int every,
+                          const Visit& visit) {
     options.record = way.branch.steps;
     options.steps = way.branch.steps * refine;
-    return recursive::solve(way.model, way.branch, options);
+    return recursive::solve(way.model, way.branch, options, [&, k = 0](const Equilibrium& state) mutable {
+        if (is_asked_for(way.branch, k++, every)) visit(state);
+    });
 }
 
 // Where curves go on for ever.
-EquilibriumPath walk_anywhere(const Way& way, const Gait& gait) {
+EquilibriumPath walk_anywhere(const Way& way, const Gait& gait, const Visit& visit) {
+    const auto& [model, branch] = std::tie(way.model, way.branch);
     switch (gait.leg) {
-        case Leg::recursive: return recursion(way, gait.recursion, gait.refine);
-        case Leg::equilibrium: return reference::equilibrium::solve(way.model, way.branch, grid(way.branch));
-        case Leg::energy: return reference::energy::solve(way.model, way.branch, grid(way.branch));
-        case Leg::series: return recursion(way, {.method = recursive::find_method("series").value()}, 1);
+        case Leg::recursive: return recursion(way, gait.recursion, gait.refine, gait.every, visit);
+        case Leg::equilibrium:
+            return reference::equilibrium::solve(model, branch, grid(branch, gait.every), {}, visit);
+        case Leg::energy: return reference::energy::solve(model, branch, grid(branch, gait.every), {}, visit);
+        case Leg::series:
+            return recursion(way, {.method = recursive::find_method("series").value()}, 1, gait.every, visit);
     }
     return {};
+}
+
+// Both ways joined. Of what comes reversed a `Row` is kept until it may be handed over.
+template <class Row, class Read, class HandOver>
+EquilibriumPath join(const std::vector<Way>& ways, const Gait& gait, const Read& read,
+                     const HandOver& hand_over) {
+    if (ways.empty()) return {Outcome::not_finite, "the branch leads nowhere", {}, {}};
+    if (ways.size() == 1)
+        return walk(ways.front(), gait, [&](const Equilibrium& state) { hand_over(read(state)); });
+    const auto tell = [](const Way& way, const std::string& detail) {
+        return fmt::format("{}: {}", way.name, detail);
+    };
+    // Both begin at a = 0, where the same state settles: the second way's stands for both, if it has any.
+    std::optional<Equilibrium> start;
+    std::vector<Row> reversed;
+    EquilibriumPath joined = walk(ways.front(), gait, [&](const Equilibrium& state) {
+        if (!start)
+            start = state;
+        else
+            reversed.push_back(read(state));
+    });
+    for (; !reversed.empty(); reversed.pop_back()) hand_over(std::move(reversed.back()));
+    EquilibriumPath second = walk(ways.back(), gait, [&](const Equilibrium& state) {
+        start.reset();
+        hand_over(read(state));
+    });
+    if (start) hand_over(read(*start));
+    // What is not asked is asked on neither way.
+    if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
+    if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
+    if (second.outcome != Outcome::converged) {
+        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
+        if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
+    }
+    joined.counts.factorisations += second.counts.factorisations;
+    joined.counts.iterations += second.counts.iterations;
+    joined.counts.evaluations += second.counts.evaluations;
+    return joined;
 }
 
 std::string label(const Branch& way) {
@@ -67,27 +119,31 @@ std::vector<Way> ways_of(const Model& model, Branch branch, int points) {
     return result;
 }
 
-EquilibriumPath walk(const Way& way, const Gait& gait) {
-    EquilibriumPath path = walk_anywhere(way, gait);
-    end_at_table(way.model, way.branch, path);
-    return path;
+std::vector<double> asked_for(const std::vector<Way>& ways, int every) {
+    std::vector<double> a;
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        auto way = grid(ways[w].branch, every);
+        const bool comes_reversed = w + 1 < ways.size();
+        if (comes_reversed) std::ranges::reverse(way), way.pop_back();
+        std::ranges::copy(way, std::back_inserter(a));
+    }
+    return a;
 }
 
-EquilibriumPath rest(const Way& way, Leg leg) {
-    constexpr std::array start{0.0};
-    EquilibriumPath path;
-    switch (leg) {
-        case Leg::equilibrium: path = reference::equilibrium::solve(way.model, way.branch, start); break;
-        case Leg::energy: path = reference::energy::solve(way.model, way.branch, start); break;
-        case Leg::recursive:
-        case Leg::series: path = walk_anywhere(way, {.leg = leg}); break;
-    }
-    if (!path.points.empty()) {  // how the rest of the way ends does not matter
-        path.outcome = Outcome::converged;
-        path.detail.clear();
-        path.points.resize(1);
-    }
-    end_at_table(way.model, way.branch, path);
+EquilibriumPath walk(const Way& way, const Gait& gait, const Visit& visit) {
+    std::vector<Equilibrium> kept;
+    std::string ended;
+    EquilibriumPath path = walk_anywhere(way, gait, [&](const Equilibrium& state) {
+        if (!ended.empty()) return;
+        ended = ends_at_table(way.model, way.branch, state);
+        if (!ended.empty()) return;
+        if (visit)
+            visit(state);
+        else
+            kept.push_back(state);
+    });
+    if (!ended.empty()) path.outcome = Outcome::outside_table, path.detail = ended;
+    path.points = std::move(kept);
     return path;
 }
 
@@ -96,28 +152,72 @@ bool is_not_asked(Outcome outcome) {
 }
 
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
-    if (ways.empty()) return {Outcome::not_finite, "the branch leads nowhere", {}, {}};
-    EquilibriumPath joined = walk(ways.front(), gait);
-    if (ways.size() == 1) return joined;
-    const auto tell = [](const Way& way, const std::string& detail) {
-        return fmt::format("{}: {}", way.name, detail);
+    std::vector<Equilibrium> points;
+    EquilibriumPath path = join<Equilibrium>(
+        ways, gait, [](const Equilibrium& state) { return state; },
+        [&](Equilibrium state) { points.push_back(std::move(state)); });
+    path.points = std::move(points);
+    return path;
+}
+
+Row row_of(const Model& model, std::span<const Channel> channels, const Equilibrium& state) {
+    return {state.load, state.constraint_error, evaluate(model, channels, state)};
+}
+
+EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait,
+                     const std::function<Row(const Equilibrium&)>& read,
+                     const std::function<void(Row)>& hand_over) {
+    return join<Row>(ways, gait, read, hand_over);
+}
+
+Walked walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
+            const std::vector<Way>& ways, const Gait& gait, const Visit& also) {
+    using clock = std::chrono::steady_clock;
+    Walked walked;
+    walked.curve.unit = unit_of(branch.unit);
+    clock::duration reading{};
+    const auto start = clock::now();
+    const EquilibriumPath path = walk(
+        ways, gait,
+        [&](const Equilibrium& state) {
+            const auto found = clock::now();
+            if (also) also(state);
+            Row row = row_of(model, channels, state);
+            reading += clock::now() - found;
+            return row;
+        },
+        [&](Row row) {
+            append(walked.curve, row.load, std::move(row.values));
+            walked.constraint_error.push_back(row.constraint_error);
+        });
+    walked.seconds = std::chrono::duration<double>(clock::now() - start - reading).count();
+    walked.outcome = path.outcome;
+    walked.detail = path.detail;
+    walked.counts = path.counts;
+    return walked;
+}
+
+EquilibriumPath rest(const Way& way, Leg leg) {
+    constexpr std::array at_start{0.0};
+    std::optional<Equilibrium> start;
+    const Visit first = [&](const Equilibrium& state) {
+        if (!start) start = state;
     };
-    if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
-    EquilibriumPath second = walk(ways.back(), gait);
-    // What is not asked is asked on neither way.
-    if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
-    if (second.outcome != Outcome::converged) {
-        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
-        if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
+    EquilibriumPath path;
+    switch (leg) {
+        case Leg::equilibrium:
+            path = reference::equilibrium::solve(way.model, way.branch, at_start, {}, first);
+            break;
+        case Leg::energy: path = reference::energy::solve(way.model, way.branch, at_start, {}, first); break;
+        case Leg::recursive:
+        case Leg::series: path = walk_anywhere(way, {.leg = leg}, first); break;
     }
-    // Both begin at a = 0, where the same state settles.
-    if (!second.points.empty() && !joined.points.empty()) joined.points.erase(joined.points.begin());
-    std::ranges::reverse(joined.points);
-    std::ranges::move(second.points, std::back_inserter(joined.points));
-    joined.counts.factorisations += second.counts.factorisations;
-    joined.counts.iterations += second.counts.iterations;
-    joined.counts.evaluations += second.counts.evaluations;
-    return joined;
+    if (!start) return path;
+    path.detail = ends_at_table(way.model, way.branch, *start);
+    path.outcome = path.detail.empty() ? Outcome::converged  // how the rest of the way ends does not matter
+                                       : Outcome::outside_table;
+    if (path.outcome == Outcome::converged) path.points.push_back(std::move(*start));
+    return path;
 }
 
 Residuals judge(Leg by, const Way& way, const Equilibrium& state) {
@@ -159,20 +259,27 @@ std::string nothing_moves(const Model& model, const std::vector<Channel>& channe
 References references(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
                       const std::vector<Way>& ways) {
     References result;
-    result.equilibrium = walk(ways, {.leg = Leg::equilibrium});
-    result.second = walk(ways, {.leg = Leg::energy});
-    if (is_not_asked(result.second.outcome)) {
+    const Model& standing = ways.front().model;
+    result.scale = scale_of(standing, branch, {});
+    Walked equilibrium =
+               walk(model, channels, branch, ways, {.leg = Leg::equilibrium},
+                    [&](const Equilibrium& state) {
+                        result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
+                    }),
+           second = walk(model, channels, branch, ways, {.leg = Leg::energy});
+    if (is_not_asked(second.outcome)) {
         result.second_leg = Leg::series;
-        result.not_asked = result.second.detail;
-        result.second = walk(ways, {.leg = Leg::series});
+        result.not_asked = second.detail;
+        second = walk(model, channels, branch, ways, {.leg = Leg::series});
     }
-    result.truth = curve(model, channels, branch, result.equilibrium.points);
-    result.other = curve(model, channels, branch, result.second.points);
-    for (const auto& [leg, path] :
-         {std::pair{Leg::equilibrium, &result.equilibrium}, {result.second_leg, &result.second}})
-        if (path->outcome != Outcome::converged)
+    for (const auto& [leg, walked] :
+         {std::pair{Leg::equilibrium, &equilibrium}, {result.second_leg, &second}})
+        if (walked->outcome != Outcome::converged)
             result.failures.push_back(
-                fmt::format("{} leg: {}: {}", name(leg), elastocheck::name(path->outcome), path->detail));
+                fmt::format("{} leg: {}: {}", name(leg), elastocheck::name(walked->outcome), walked->detail));
+    result.truth_ended = equilibrium.outcome;
+    result.truth = std::move(equilibrium.curve);
+    result.other = std::move(second.curve);
     result.uncertainty = {nan, nan};
     if (!result.failures.empty()) return result;
     result.uncertainty =

@@ -142,9 +142,17 @@ std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
     return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
 }
 
-Way with_steps(Way way, int steps) {
+// What is studied: positions and angles, no reaction.
+std::vector<Channel> motion(const Model& model) {
+    auto list = channels(model);
+    std::erase_if(list, [](const Channel& channel) { return !channel.kinematic(); });
+    return list;
+}
+
+Walked walk_with_steps(const Model& model, const std::vector<Channel>& channels, Way way, int steps,
+                       const recursive::Method& method) {
     way.branch.steps = steps;
-    return way;
+    return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
 }
 
 // The ways of a branch as the references walk them, each with its share of every number of steps.
@@ -173,17 +181,17 @@ MethodStudy study_method(const Model& model, const std::vector<Channel>& channel
     std::vector<Level> Phi;
     for (const int N : steps) {
         if (progress) progress(fmt::format("{}: {} with {} steps", way.name, method.name, N));
-        const auto path = walk(with_steps(way, N), {.recursion = {.method = method}});
-        m.outcomes.push_back(path.outcome);
-        if (path.outcome != Outcome::converged) {
+        Walked walked = walk_with_steps(model, channels, way, N, method);
+        m.outcomes.push_back(walked.outcome);
+        if (walked.outcome != Outcome::converged) {
             m.not_studied =
-                fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome), path.detail);
+                fmt::format("with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);
             m.constraint_error.push_back(nan);
             continue;
         }
-        m.constraint_error.push_back(path.points.back().constraint_error);
+        m.constraint_error.push_back(walked.constraint_error.back());
         Phi.push_back({static_cast<double>(N), m.constraint_error.back()});
-        levels.push_back(curve(model, channels, way.branch, path.points));
+        levels.push_back(std::move(walked.curve));
     }
     m.constraint_order = order_of(Phi, 1e-12);
     if (!m.not_studied.empty()) return m;
@@ -219,7 +227,7 @@ Study study(const Model& model, const StudyOptions& options) {
         throw std::invalid_argument("step counts: at least five are needed, positive and increasing");
     Study result;
     result.steps = options.steps;
-    const auto all = channels(model);
+    const auto all = motion(model);
     for (const std::size_t c : main_channels(all)) result.channels.push_back(all[c]);
 
     for (const auto& branch : model.branches)
@@ -229,7 +237,7 @@ Study study(const Model& model, const StudyOptions& options) {
             for (const auto& why : known.failures)
                 result.inconclusive.push_back(fmt::format("{}: {}", way.name, why));
             if (!known.failures.empty()) continue;
-            const Bounds bounds = bounds_of({}, scale_of(way.model, way.branch, known.equilibrium.points));
+            const Bounds bounds = bounds_of({}, known.scale);
             if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
                 result.inconclusive.push_back(fmt::format(
                     "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} deg "
@@ -275,13 +283,13 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
         const recursive::Method method{
             .kind = recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
         for (const int N : steps) {
-            const auto path = walk(with_steps(way, N), {.recursion = {.method = method}});
-            if (path.outcome != Outcome::converged) {
+            Walked walked = walk_with_steps(model, channels, way, N, method);
+            if (walked.outcome != Outcome::converged) {
                 attribution.not_attributed =
-                    fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome), path.detail);
+                    fmt::format("with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);
                 return attribution;
             }
-            levels[bits].push_back(curve(model, channels, way.branch, path.points));
+            levels[bits].push_back(std::move(walked.curve));
         }
     }
     for (const auto& combination : levels)
@@ -326,7 +334,7 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
 std::vector<BranchAttribution> attribute_gap(const Model& model,
                                              const std::function<void(std::string_view)>& progress) {
     const std::vector<int> steps{300, 600, 1200, 2400};
-    const auto all = channels(model);
+    const auto all = motion(model);
     std::vector<BranchAttribution> result;
     for (const auto& branch : model.branches)
         for (const auto& [way, shares] : ways_with_steps(model, branch, steps)) {

@@ -345,7 +345,7 @@ Trade trade(const Model& model, const TradeOptions& options) {
         for (const auto& why : known.failures)
             result.inconclusive.push_back(fmt::format("{}: {}", branch.name, why));
         result.uncertainty = worse(result.uncertainty, known.uncertainty);
-        truth.push_back(known.equilibrium.outcome == Outcome::converged ? std::move(known.truth) : Curve{});
+        truth.push_back(known.truth_ended == Outcome::converged ? std::move(known.truth) : Curve{});
     }
 
     result.points = configurations(model, options);

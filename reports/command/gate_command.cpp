@@ -87,7 +87,7 @@ std::vector<Task> tasks(const GateOptions& options) {
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
     const Model model = load_scene(task.scene, options.settings).model;
-    check_memory(model, 0, static_cast<int>(compare::legs.size()), false);
+    check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
     compare::Options how;
     if (options.progress)
         how.progress = [&](std::string_view what) {

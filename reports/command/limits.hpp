@@ -5,17 +5,28 @@
 
 namespace elastocheck::reports {
 
-// Of a branch, as in a scene. A million points of the paper's McPherson strut are 1.7 GB a leg and branch.
+// Of a branch, as in a scene.
 inline constexpr int most_steps = 1'000'000;
-// What the points of a run may take together [bytes]: what an ordinary desk or CI machine has to spare.
+// What is kept of the points of a run may take together [bytes]: what an ordinary desk or CI machine has to spare.
 inline constexpr double most_memory = 4e9;
 
-// Bytes that one point of one leg takes: load, pose of every body, wrench of every joint, value of every
-// channel; `written`: also as numbers and text of a result document.
-double bytes_per_point(const Model& model, bool written);
+// Which points are asked for, and what is kept of them. States are never kept, outputs are: by whoever compares legs those
+// of all points of all branches.
+struct Asked {
+    int steps = 0;  // of each branch; 0: as it says
+    int every = 1;
+    int legs = 1;
+    bool written = false;  // also as numbers and text of a result document
+};
 
-// Throws std::invalid_argument when the points of `legs` legs over all branches take more than `most_memory`,
-// and says how many steps would not. `steps` 0: as the branches say.
-void check_memory(const Model& model, int steps, int legs, bool written);
+// Throws std::invalid_argument when that takes more than `most_memory`, and says how many steps would not.
+void check_memory(const Model& model, const Asked& asked);
+
+// The same for who writes a row of `channels` outputs as each point is found: kept is what comes reversed, the first of
+// the two ways of a branch, until it is written.
+void check_memory_of_rows(const Model& model, const Asked& asked, std::size_t channels);
+
+// Throws std::invalid_argument for an --every that is more than a branch has steps.
+void check_every(const Model& model, int steps, int every);
 
 }  // namespace elastocheck::reports

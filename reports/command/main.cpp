@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -19,6 +20,7 @@
 #include "reports/command/new_command.hpp"
 #include "reports/command/recursion_options.hpp"
 #include "reports/command/report_command.hpp"
+#include "reports/command/solve_command.hpp"
 #include "reports/command/study_commands.hpp"
 #include "reports/document/field.hpp"
 #include "reports/document/measurement.hpp"
@@ -82,7 +84,8 @@ int run(int argc, char** argv) {
         rungs_of_recursion.emplace_back(rung.name);
     }
     RecursionRequest recursion_request;
-    std::string method = "published", rates;
+    std::string method = "published";
+    SolveRequest solve_request;
 
     auto* inspect_command = app.add_subcommand(
         "inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes");
@@ -104,6 +107,7 @@ int run(int argc, char** argv) {
         add_settings(*command, settings);
     }
     bool keep_all = false, formulations = false;
+    int every = 1;
     for (auto* command : {inspect_command, solve_command, compare_command})
         command->add_flag("--keep-all", keep_all, "solve the whole scene, also what no output depends on");
     compare_command->add_flag(
@@ -125,8 +129,18 @@ int run(int argc, char** argv) {
     solve_command->add_flag("--arc-length", recursion_request.arc_length,
                             "series: follow the path by arc length, through limit points");
     solve_command
-        ->add_option("--rates", rates, "series: write the derivatives of travel and outputs to this CSV file")
+        ->add_option("--rates", solve_request.rates,
+                     "series: write the derivatives of travel and outputs to this CSV file")
         ->check(a_name());
+    solve_command
+        ->add_option("--channels", solve_request.channels,
+                     "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters")
+        ->delimiter(',');
+    for (auto* command : {solve_command, compare_command})
+        command
+            ->add_option("--every", every,
+                         "only every N-th step's point of each way from the start, and the last")
+            ->check(CLI::Range(1, most_steps));
     solve_command->add_option("-o,--output", output, "write the CSV to this file instead")->check(a_name());
     compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv")
         ->check(a_name());
@@ -172,12 +186,15 @@ int run(int argc, char** argv) {
             const bool reference = leg != compare::legs.end() && *leg != compare::Leg::recursive;
             if (leg == compare::legs.end()) recursion_request.method = method;
             const recursive::Options how = recursion(recursion_request);
-            if (!rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
+            if (!solve_request.rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
-                return compare_legs(scene, settings, {how, detail, formulations}, output, command);
-            return solve(scene, settings, detail, reference ? *leg : compare::Leg::recursive, how, rates,
-                         output);
+                return compare_legs(scene, settings, {how, every, detail, formulations}, output, command);
+            solve_request.gait = {
+                .leg = reference ? *leg : compare::Leg::recursive, .recursion = how, .every = every};
+            solve_request.detail = detail;
+            solve_request.output = output;
+            return solve(scene, settings, solve_request);
         }
         if (*gate_command.parsed) return gate_command.run();
         if (*converge_command) return converge(scene, settings, rungs, levels, output, command);
@@ -200,6 +217,11 @@ int main(int argc, char** argv) {
         const int code = run(argc, argv);
         finish_printing();
         return code;
+    } catch (const NobodyReads&) {
+        // Where the signal that ends filters is ignored: as if it were not.
+        std::signal(SIGPIPE, SIG_DFL);
+        std::raise(SIGPIPE);
+        return fine;
     } catch (const SceneError& error) {
         return fail(bad_input, error.what());
     } catch (const NotTrimmed& error) {

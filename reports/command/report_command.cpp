@@ -72,7 +72,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-        add_formulations(document, compare::formulation_study(scene, 0, tell), comparison);
+        add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
     if (!request.measured.empty()) {
         add_measurement(document, read_whole(request.measured), request.measured, model, comparison);
         if (compared_with_measurement(document) == 0)
@@ -171,8 +171,8 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance);
     for (const auto& scene : request.scenes)
-        check_memory(compile(read_scene(scene, request.settings)), 0, static_cast<int>(compare::legs.size()),
-                     true);
+        check_memory(compile(read_scene(scene, request.settings)),
+                     {.legs = static_cast<int>(compare::legs.size()), .written = true});
     if (!request.measured.empty()) (void)read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");

@@ -9,7 +9,6 @@
 #include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
-#include "compare/rates.hpp"
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "recursive/diagnosis.hpp"
@@ -20,14 +19,12 @@
 #include "reports/document/document.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/tables/comparison_tables.hpp"
-#include "reports/tables/csv.hpp"
 #include "reports/tables/formulation_tables.hpp"
 #include "reports/tables/inspection.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
-#include "reports/text/escape.hpp"
 #include "reports/text/terminal.hpp"
 
 namespace elastocheck::reports {
@@ -57,34 +54,6 @@ json document_of(const LoadedScene& loaded, const std::string& file) {
     return part;
 }
 
-// The rates of a polynomial branch beside its curve: positions and angles per unit of the parameter.
-std::string rates_csv(const Model& model, const recursive::Options& how) {
-    auto channels = compare::channels(model);
-    std::erase_if(channels, [](const auto& channel) { return !channel.kinematic(); });
-    std::string csv = "branch,parameter,parameter unit";
-    for (const auto& channel : channels)
-        csv += fmt::format(
-            ",{}", for_csv(fmt::format("{} [{} per parameter unit]", channel.name, symbol(channel.unit))));
-    csv += "\n";
-    for (const auto& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, how.steps)) {
-            const auto path = recursive::series::follow(way.model, way.branch,
-                                                        std::get<recursive::Series>(how.method.kind));
-            const compare::Unit unit = compare::unit_of(branch.unit);
-            for (int k = 0; k <= way.branch.steps; ++k) {
-                const double a = way.branch.to * k / way.branch.steps;
-                const auto place = recursive::series::find(path, a);
-                if (!place) break;
-                csv += fmt::format("{},{:.17g},{}", for_csv(way.name), in_unit(unit) * a, symbol(unit));
-                for (const double slope :
-                     compare::channel_rates(way.model, channels, way.branch, path, *place))
-                    csv += fmt::format(",{:.17g}", slope);
-                csv += "\n";
-            }
-        }
-    return csv;
-}
-
 std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
     std::vector<recursive::Method> methods;
     for (const auto& method : recursive::methods)
@@ -105,46 +74,24 @@ int inspect(const std::string& file, const Settings& settings, Detail detail) {
     return fine;
 }
 
-int solve(const std::string& file, const Settings& settings, Detail detail, compare::Leg leg,
-          const recursive::Options& how, const std::string& rates, const std::string& output) {
-    if (!output.empty()) check_may_write(output, curves_file);
-    if (!rates.empty()) check_may_write(rates, rates_file);
-    const Model model = load_scene(file, settings, detail).model;
-    check_memory(model, how.steps, 1, false);
-    std::string csv = curves_header(compare::channels(model));
-    int code = fine;
-    for (const auto& branch : model.branches) {
-        progress(branch.name);
-        const compare::LegRun run = compare::run(model, branch, leg, how);
-        csv += curves_rows(branch.name, run);
-        if (run.path.outcome == Outcome::converged) continue;
-        progress("");
-        complain("{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
-                 name(run.path.outcome), run.path.detail);
-        code = could_not_judge;
-    }
-    progress("");
-    if (!rates.empty()) write_whole(rates, rates_csv(model, how), rates_file);
-    if (output.empty())
-        print(csv);
-    else
-        write_whole(output, csv, curves_file);
-    return code;
-}
-
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const std::string& folder, const std::string& command) {
     if (!folder.empty()) Staging::check(folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
-    check_memory(model, request.recursion.steps, static_cast<int>(compare::legs.size()), !folder.empty());
+    check_every(model, request.recursion.steps, request.every);
+    check_memory(model, {.steps = request.recursion.steps,
+                         .every = request.every,
+                         .legs = static_cast<int>(compare::legs.size()),
+                         .written = !folder.empty()});
     compare::Options options;
     options.recursion = request.recursion;
+    options.every = request.every;
     options.progress = progress;
     const compare::Comparison comparison = compare::compare(model, options);
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
-        study = compare::formulation_study(loaded.scene, request.recursion.steps, progress);
+        study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every, progress);
     progress("");
     print(tables(model, comparison));
     if (study) print(formulation_text(*study, comparison));
@@ -169,7 +116,7 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     if (!folder.empty()) Staging::check(folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
-    if (!steps.empty()) check_memory(model, *std::ranges::max_element(steps), 1, false);
+    if (!steps.empty()) check_memory(model, {.steps = *std::ranges::max_element(steps)});
     compare::StudyOptions options;
     options.methods = methods_named(names);
     if (!steps.empty()) options.steps = steps;

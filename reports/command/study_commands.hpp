@@ -1,4 +1,4 @@
-// The commands that look at one scene: inspect, solve, compare, converge, trade. Each returns the exit code;
+// The commands that look at one scene: inspect, compare, converge, trade; `solve` is beside. Each returns the exit code;
 // what can be wrong with where it writes is said before the work.
 #pragma once
 
@@ -14,12 +14,9 @@ namespace elastocheck::reports {
 
 int inspect(const std::string& scene, const Settings& settings, Detail detail);
 
-// CSV of the curves to `output`, or to standard output where that is empty; of their derivatives to `rates`.
-int solve(const std::string& scene, const Settings& settings, Detail detail, compare::Leg leg,
-          const recursive::Options& how, const std::string& rates, const std::string& output);
-
 struct CompareRequest {
     recursive::Options recursion;
+    int every = 1;  // of its steps, each of which is compared
     Detail detail = Detail::required;
     bool formulations = false;  // how much the outputs depend on what a bushing is taken to measure, as well
 };

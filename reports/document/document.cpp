@@ -50,8 +50,6 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
     json judged = json::object();
     for (const Leg by : compare::legs)
         judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
-    json constraint_error = json::array();
-    for (const auto& point : run.path.points) constraint_error.push_back(point.constraint_error);
     json values = json::object();
     for (std::size_t c = 0; c < channels.size(); ++c) {
         json column = json::array();
@@ -60,15 +58,15 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
     }
     return {{"leg", name(run.leg)},
             {"method", run.method},
-            {"outcome", elastocheck::name(run.path.outcome)},
-            {"detail", run.path.detail},
+            {"outcome", elastocheck::name(run.outcome)},
+            {"detail", run.detail},
             {"counts",
-             {{"factorisations", run.path.counts.factorisations},
-              {"iterations", run.path.counts.iterations},
-              {"evaluations", run.path.counts.evaluations}}},
+             {{"factorisations", run.counts.factorisations},
+              {"iterations", run.counts.iterations},
+              {"evaluations", run.counts.evaluations}}},
             {"seconds", run.seconds},
             {"residuals_by", judged},
-            {"curve", {{"a", run.curve.a}, {"constraint_error", constraint_error}, {"values", values}}}};
+            {"curve", {{"a", run.curve.a}, {"constraint_error", run.constraint_error}, {"values", values}}}};
 }
 
 json reading_json(const compare::Reading& reading, const compare::Comparison& all,
@@ -266,6 +264,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()}});
+        if (branch.every > 1) branches.back()["steps"] = branch.steps;
     }
     scene_document["channels"] = channels;
     scene_document["branches"] = branches;

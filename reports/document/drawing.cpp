@@ -150,20 +150,21 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
              {"design_mm", millimetres(sketch.at(sketch.points[k], design))}});
     }
     for (const auto& branch : comparison.branches) {
-        const auto& path = branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].path.points;
-        if (path.empty()) continue;
-        const auto& a = branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].curve.a;
-        const auto put = [&](const std::string& name, const char* where, std::size_t k) {
-            json entry = positions(sketch, path[k].poses);
+        const auto& [front, start, middle, back] =
+            branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].landmarks;
+        const auto put = [&](const std::string& name, const char* where, const Equilibrium& state) {
+            json entry = positions(sketch, state.poses);
             entry["branch"] = name;
             entry["where"] = where;
-            entry["a"] = a[k];
+            entry["a"] = in_unit(branch.unit) * state.load;
             along.push_back(entry);
         };
-        put(branch.branch, "middle", path.size() / 2);
-        if (a.front() * a.back() < 0)  // walked both ways
-            put(fmt::format("{} to {:.4g} {}", branch.branch, a.front(), symbol(branch.unit)), "end", 0);
-        put(branch.branch, "end", path.size() - 1);
+        if (middle) put(branch.branch, "middle", *middle);
+        if (front && back && front->load * back->load < 0)  // walked both ways
+            put(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
+                            symbol(branch.unit)),
+                "end", *front);
+        if (back) put(branch.branch, "end", *back);
     }
     json result = {{"points", points}, {"links", sketch.links}, {"bushings", bushings}};
     result["design"] = positions(sketch, design);

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace elastocheck::reports {
 namespace {
@@ -45,20 +46,28 @@ const char* sort_of(const struct stat& entry) {
                                      : "something";
 }
 
-// Writes all, flushes, closes; false with errno set where that fails.
-bool write_and_close(int out, std::string_view content) {
-    bool good = true;
-    while (good && !content.empty()) {
+// False with errno set where not all of it could be written.
+bool write_all(int out, std::string_view content) {
+    while (!content.empty()) {
         const ssize_t written = ::write(out, content.data(), content.size());
         if (written < 0 && errno == EINTR) continue;
-        good = written > 0;
-        if (good) content.remove_prefix(static_cast<std::size_t>(written));
+        if (written <= 0) return false;
+        content.remove_prefix(static_cast<std::size_t>(written));
     }
+    return true;
+}
+
+// Flushes where `good`, and closes in any case; false with errno set where not all was.
+bool flush_and_close(int out, bool good) {
     good = good && (::fsync(out) == 0 || errno == EINVAL);
     const int error = errno;
     const bool closed = ::close(out) == 0;
     if (!good) errno = error;
     return good && closed;
+}
+
+bool write_and_close(int out, std::string_view content) {
+    return flush_and_close(out, write_all(out, content));
 }
 
 }  // namespace
@@ -80,32 +89,62 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
                         file.string(), kind.name));
 }
 
-void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
+FileToBe::FileToBe(fs::path file, const FileKind& kind) : file_(std::move(file)) {
     std::error_code failed;
-    if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
+    if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
-        throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
-    check_may_write(file, kind);
-    fs::path temporary = file;
-    int out = -1;
-    for (int k = 0; out < 0; ++k) {
-        temporary.replace_filename(fmt::format(".{}.{}-{}.tmp", file.filename().string(), ::getpid(), k));
-        out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (out < 0 && errno != EEXIST) cannot(file, "written");
+        throw FileError(fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
+    check_may_write(file_, kind);
+    temporary_ = file_;
+    for (int k = 0; out_ < 0; ++k) {
+        temporary_.replace_filename(fmt::format(".{}.{}-{}.tmp", file_.filename().string(), ::getpid(), k));
+        out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
     }
-    bool good = write_and_close(out, content);
+}
+
+FileToBe::~FileToBe() {
+    if (out_ < 0) return;
+    ::close(out_);
+    ::unlink(temporary_.c_str());
+}
+
+void FileToBe::give_up(int error) {
+    if (out_ >= 0) ::close(std::exchange(out_, -1));
+    ::unlink(temporary_.c_str());
+    cannot(file_, "written", error);
+}
+
+void FileToBe::write_waiting() {
+    if (!write_all(out_, waiting_)) give_up(errno);
+    waiting_.clear();
+}
+
+void FileToBe::add(std::string_view content) {
+    constexpr std::size_t together = 1 << 16;
+    waiting_ += content;
+    if (waiting_.size() >= together) write_waiting();
+}
+
+void FileToBe::finish() {
+    write_waiting();
+    bool good = flush_and_close(std::exchange(out_, -1), true);
     if (good) {
         // Where nothing was, nothing may have come meanwhile; where there was one of ours, it is replaced.
-        const bool is_new = !fs::exists(fs::symlink_status(file, failed));
-        good = ::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, file.c_str(),
+        std::error_code failed;
+        const bool is_new = !fs::exists(fs::symlink_status(file_, failed));
+        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(),
                            is_new ? RENAME_NOREPLACE : 0) == 0;
         if (!good && errno == EINVAL)  // a file system without it
-            good = ::rename(temporary.c_str(), file.c_str()) == 0;
+            good = ::rename(temporary_.c_str(), file_.c_str()) == 0;
     }
-    if (good) return;
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    cannot(file, "written", error);
+    if (!good) give_up(errno);
+}
+
+void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
+    FileToBe whole(file, kind);
+    whole.add(content);
+    whole.finish();
 }
 
 void append(const fs::path& file, std::string_view content) {

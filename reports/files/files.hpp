@@ -29,9 +29,29 @@ inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 // device, no link, no folder, nothing that somebody else wrote.
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
-// check_may_write, then writes `content` to a temporary name beside `file`, flushes it to the disk and
-// renames it; creates the folder when it is missing. Throws FileError; an older file of that name is then
-// untouched.
+// A file that is written piece by piece, and is there once it is whole: until then it has a temporary name beside its
+// own, and what is not finished is removed. Throws FileError; an older file of that name is then untouched.
+class FileToBe {
+  public:
+    // check_may_write; creates the folder when it is missing.
+    FileToBe(std::filesystem::path file, const FileKind& kind);
+    FileToBe(const FileToBe&) = delete;
+    FileToBe& operator=(const FileToBe&) = delete;
+    ~FileToBe();
+
+    void add(std::string_view content);
+    void finish();  // flushes it to the disk and renames it
+
+  private:
+    [[noreturn]] void give_up(int error);
+    void write_waiting();
+
+    std::filesystem::path file_, temporary_;
+    std::string waiting_;  // to be written together
+    int out_ = -1;
+};
+
+// The whole of it at once.
 void write_whole(const std::filesystem::path& file, std::string_view content, const FileKind& kind);
 
 // Adds to a regular file that is there already. Throws FileError.

@@ -108,13 +108,12 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     for (const auto& run : branch.runs) {
         fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ",
                        run.method.empty() || run.method == "published" ? name(run.leg) : run.method,
-                       elastocheck::name(run.path.outcome), run.path.points.size(),
-                       run.path.counts.factorisations, run.path.counts.iterations,
-                       run.path.counts.evaluations, 1e3 * run.seconds);
+                       elastocheck::name(run.outcome), run.curve.a.size(), run.counts.factorisations,
+                       run.counts.iterations, run.counts.evaluations, 1e3 * run.seconds);
         for (const Leg by : compare::legs) {
             if (by == run.leg) continue;
             const auto& r = run.judged[static_cast<std::size_t>(by)];
-            if (run.path.points.empty()) continue;  // nothing to judge
+            if (run.curve.a.empty()) continue;  // nothing to judge
             if (by == Leg::energy && branch.second != Leg::energy) continue;
             fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment, 1e3 * r.length);
         }
@@ -191,7 +190,10 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         const auto& steps = branch.runs.front().curve.a;
         fmt::format_to(out, "\nbranch '{}': {:g} to {:g} {}", branch.branch, unit * definition.from,
                        unit * definition.to, symbol(branch.unit));
-        if (!steps.empty()) fmt::format_to(out, " in {} steps", steps.size() - 1);
+        if (branch.every > 1)
+            fmt::format_to(out, " in {} steps, compared after each {} of a way", branch.steps, branch.every);
+        else if (!steps.empty())
+            fmt::format_to(out, " in {} steps", steps.size() - 1);
         const auto& reference = branch.runs[1].curve;
         if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
             const auto c = static_cast<std::size_t>(branch.abscissa);

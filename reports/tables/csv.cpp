@@ -2,10 +2,19 @@
 
 #include <fmt/format.h>
 
-#include "reports/document/document.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
+namespace {
+
+std::string numbers(const std::vector<double>& values) {
+    std::string cells;
+    for (const double value : values) cells += fmt::format(",{:.17g}", value);
+    return cells;
+}
+
+}  // namespace
+
 std::string curves_header(const std::vector<compare::Channel>& channels) {
     std::string line = "branch,leg,parameter,unit";
     for (const auto& channel : channels)
@@ -13,15 +22,23 @@ std::string curves_header(const std::vector<compare::Channel>& channels) {
     return line + "\n";
 }
 
-std::string curves_rows(const std::string& branch, const compare::LegRun& run) {
-    std::string rows;
-    for (std::size_t k = 0; k < run.curve.a.size(); ++k) {
-        rows += fmt::format("{},{},{:.17g},{}", for_csv(branch), name(run.leg), run.curve.a[k],
-                            symbol(run.curve.unit));
-        for (const double value : run.curve.values[k]) rows += fmt::format(",{:.17g}", value);
-        rows += "\n";
-    }
-    return rows;
+std::string curves_row(const std::string& branch, compare::Leg leg, compare::Unit unit,
+                       const compare::Row& row) {
+    return fmt::format("{},{},{:.17g},{}{}\n", for_csv(branch), name(leg), in_unit(unit) * row.load,
+                       symbol(unit), numbers(row.values));
+}
+
+std::string rates_header(const std::vector<compare::Channel>& channels) {
+    std::string line = "branch,parameter,parameter unit";
+    for (const auto& channel : channels)
+        line += fmt::format(
+            ",{}", for_csv(fmt::format("{} [{} per parameter unit]", channel.name, symbol(channel.unit))));
+    return line + "\n";
+}
+
+std::string rates_row(const std::string& way, compare::Unit unit, double a,
+                      const std::vector<double>& slopes) {
+    return fmt::format("{},{:.17g},{}{}\n", for_csv(way), in_unit(unit) * a, symbol(unit), numbers(slopes));
 }
 
 }  // namespace elastocheck::reports

@@ -1,16 +1,21 @@
-// The curves of one leg as CSV, a column a channel: what `elastocheck solve` prints.
+// The curves of one leg as CSV, a column a channel: what `elastocheck solve` writes, row by row; 17 significant digits.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "compare/compare.hpp"
+#include "compare/legs.hpp"
 
 namespace elastocheck::reports {
 
-// Header and rows: branch, leg, parameter and its unit,
-// then every channel with its unit; 17 significant digits.
+// Branch, leg, parameter and its unit, then every channel with its unit.
 std::string curves_header(const std::vector<compare::Channel>& channels);
-std::string curves_rows(const std::string& branch, const compare::LegRun& run);
+std::string curves_row(const std::string& branch, compare::Leg leg, compare::Unit unit,
+                       const compare::Row& row);
+
+// The derivatives beside them: of the series, way by way; `a` in SI.
+std::string rates_header(const std::vector<compare::Channel>& channels);
+std::string rates_row(const std::string& way, compare::Unit unit, double a,
+                      const std::vector<double>& slopes);
 
 }  // namespace elastocheck::reports

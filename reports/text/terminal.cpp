@@ -26,6 +26,7 @@ bool write(std::FILE* stream, std::string_view lines) {
 }
 
 [[noreturn]] void fail() {
+    if (errno == EPIPE) throw NobodyReads();
     throw FileError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }
 

@@ -7,7 +7,10 @@
 
 namespace elastocheck::reports {
 
-// Writes lines of text, each for_terminal(). Throws FileError where they cannot be written.
+// Whoever read standard output has read enough and closed it (`| head`): nothing is wrong, and nothing more to be done.
+struct NobodyReads {};
+
+// Writes lines of text, each for_terminal(). Throws FileError where they cannot be written, NobodyReads.
 void print(std::string_view lines);
 void complain(std::string_view lines);  // to standard error; where that is closed there is nobody to tell
 
@@ -23,7 +26,7 @@ void complain(fmt::format_string<First, Rest...> format, First&& first, Rest&&..
 // One line that is written over, where standard error is a terminal.
 void progress(std::string_view what);
 
-// Everything printed is out, or FileError: a full disk shows only here.
+// Everything printed is out, or one of these is thrown: a full disk shows only here.
 void finish_printing();
 
 }  // namespace elastocheck::reports

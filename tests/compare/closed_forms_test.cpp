@@ -377,7 +377,7 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
         for (const int steps : {20, 40, 80, 160}) {
             const LegRun done =
                 run(model, model.branches[0], Leg::recursive, {.method = method, .steps = steps});
-            ASSERT_EQ(done.path.outcome, Outcome::converged) << method.name << ": " << done.path.detail;
+            ASSERT_EQ(done.outcome, Outcome::converged) << method.name << ": " << done.detail;
             const double step = 2 * to / steps;
             const auto kept = [&](double contact, double stop) {  // the load at contact, the stop's rate
                 const double behind = std::ceil(contact / step) * step - contact;
@@ -388,9 +388,9 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
             const auto error = [&](const Equilibrium& point) {
                 return 0.4 - point.poses[0].r.z() - block.down(point.load);
             };
-            EXPECT_NEAR(error(done.path.points.back()), sums ? kept(block.k * block.c, block.s) : 0, 1e-12)
+            EXPECT_NEAR(error(*done.landmarks.back), sums ? kept(block.k * block.c, block.s) : 0, 1e-12)
                 << method.name << " " << steps;
-            EXPECT_NEAR(error(done.path.points.front()), sums ? -kept(block.k * block.d, block.r) : 0, 1e-12)
+            EXPECT_NEAR(error(*done.landmarks.front), sums ? -kept(block.k * block.d, block.r) : 0, 1e-12)
                 << method.name << " " << steps;
         }
 }
@@ -496,7 +496,7 @@ TEST(Curve, NeedsTheMomentOfTheHandCalculationAtEveryAngle) {
         double size = 0;
         for (const double alpha : {-0.24, 0.24}) size = std::max(size, std::abs(arm.moment(alpha)));
         for (std::size_t k = 0; k < M.size(); ++k)
-            EXPECT_NEAR(M[k], arm.moment(run.path.points[k].load), 1e-8 * size)
+            EXPECT_NEAR(M[k], arm.moment(run.curve.a[k] / in_unit(run.curve.unit)), 1e-8 * size)
                 << name(leg) << " " << run.curve.a[k];
     }
 }

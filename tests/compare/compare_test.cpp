@@ -71,8 +71,8 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
         for (const auto& branch : model.branches) {
             const LegRun fast = run(model, branch, Leg::recursive),
                          truth = run(model, branch, Leg::equilibrium);
-            ASSERT_EQ(fast.path.outcome, Outcome::converged) << name << " " << fast.path.detail;
-            ASSERT_EQ(truth.path.outcome, Outcome::converged) << name << " " << truth.path.detail;
+            ASSERT_EQ(fast.outcome, Outcome::converged) << name << " " << fast.detail;
+            ASSERT_EQ(truth.outcome, Outcome::converged) << name << " " << truth.detail;
             double moved = 0, apart = 0;
             for (std::size_t c = 0; c < 3; ++c) {  // wheel centre or first probe
                 moved += std::pow(truth.curve.values[1][c] - truth.curve.values[0][c], 2);
@@ -424,7 +424,7 @@ TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
     for (const Leg leg : legs) {
         const auto one = run(whole, whole.branches[0], leg);
         const auto up = run(apart, apart.branches[0], leg), down = run(apart, apart.branches[1], leg);
-        ASSERT_EQ(one.path.outcome, Outcome::converged) << one.path.detail;
+        ASSERT_EQ(one.outcome, Outcome::converged) << one.detail;
         ASSERT_EQ(one.curve.a.size(), 61u);
         EXPECT_EQ(one.curve.start, 30u);
         EXPECT_EQ(one.curve.a.front(), halves.branches[1].to);
@@ -433,8 +433,7 @@ TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
             EXPECT_EQ(one.curve.values[30 + k], up.curve.values[k]) << name(leg);
             EXPECT_EQ(one.curve.values[30 - k], down.curve.values[k]) << name(leg);
         }
-        EXPECT_EQ(one.path.counts.factorisations,
-                  up.path.counts.factorisations + down.path.counts.factorisations);
+        EXPECT_EQ(one.counts.factorisations, up.counts.factorisations + down.counts.factorisations);
     }
     const auto comparison = compare(whole);
     EXPECT_TRUE(comparison.conclusive());
@@ -449,8 +448,8 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     scene.branches[0].to = 300;
     scene.branches[0].steps = 60;
     const auto found = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(found.path.outcome, Outcome::branch_lost);
-    EXPECT_TRUE(found.path.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << found.path.detail;
+    EXPECT_EQ(found.outcome, Outcome::branch_lost);
+    EXPECT_TRUE(found.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << found.detail;
     EXPECT_EQ(found.curve.a.back(), 300);
     EXPECT_LT(found.curve.a.front(), -150);
     EXPECT_GT(found.curve.a.front(), -212);
@@ -458,9 +457,8 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     // Nor is it lost behind a way that succeeds.
     std::swap(scene.branches[0].from, scene.branches[0].to);
     const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(second.path.outcome, Outcome::branch_lost);
-    EXPECT_TRUE(second.path.detail.starts_with(scene.branches[0].name + " to -300 N: "))
-        << second.path.detail;
+    EXPECT_EQ(second.outcome, Outcome::branch_lost);
+    EXPECT_TRUE(second.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << second.detail;
 }
 
 TEST(Ways, AnyChannelCanBeTheAbscissa) {

@@ -127,20 +127,22 @@ TEST(OutsideTable, EveryLegEndsThereAndBothReferencesAgreeOnWhere) {
     EXPECT_FALSE(found.conclusive());
     for (const auto& branch : found.branches) {
         for (const auto& run : branch.runs) {
-            EXPECT_EQ(run.path.outcome, Outcome::outside_table) << branch.branch << " " << name(run.leg);
-            EXPECT_NE(run.path.detail.find("is deformed by"), run.path.detail.npos) << run.path.detail;
-            EXPECT_NE(run.path.detail.find("60 mm"), run.path.detail.npos) << run.path.detail;
+            EXPECT_EQ(run.outcome, Outcome::outside_table) << branch.branch << " " << name(run.leg);
+            EXPECT_NE(run.detail.find("is deformed by"), run.detail.npos) << run.detail;
+            EXPECT_NE(run.detail.find("60 mm"), run.detail.npos) << run.detail;
         }
         const auto &equilibrium = branch.runs[1], &energy = branch.runs[2];
-        EXPECT_EQ(equilibrium.path.points.size(), energy.path.points.size());
-        EXPECT_GT(equilibrium.path.points.size(), 10u);
-        EXPECT_LT(equilibrium.path.points.size(), 31u);
+        EXPECT_EQ(equilibrium.curve.a.size(), energy.curve.a.size());
+        EXPECT_GT(equilibrium.curve.a.size(), 10u);
+        EXPECT_LT(equilibrium.curve.a.size(), 31u);
         ASSERT_FALSE(branch.inconclusive.empty());
         EXPECT_NE(branch.inconclusive.worst.front().what.find("outside its table"), std::string::npos)
             << branch.inconclusive.worst.front().what;
-        for (const auto& point : equilibrium.path.points)
-            EXPECT_EQ(
-                outside_table(ways_of(model, model.branches[0]).front().model, model.branches[0], point), "");
+        const auto ways = ways_of(model, model.branches[0]);
+        const auto points = walk(ways, {.leg = Leg::equilibrium}).points;
+        EXPECT_EQ(points.size(), equilibrium.curve.a.size());
+        for (const auto& point : points)
+            EXPECT_EQ(outside_table(ways.front().model, model.branches[0], point), "");
     }
 }
 

@@ -50,8 +50,8 @@ class EveryLeg : public testing::TestWithParam<Stride> {
         const auto names_a = channels(a), names_b = channels(b);
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
             const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
-            ASSERT_EQ(run_a.path.outcome, Outcome::converged) << run_a.path.detail;
-            ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
+            ASSERT_EQ(run_a.outcome, Outcome::converged) << run_a.detail;
+            ASSERT_EQ(run_b.outcome, Outcome::converged) << run_b.detail;
             double largest[4] = {};  // of each unit: displacements, angles, forces, moments
             for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                 for (std::size_t c = 0; c < names_a.size(); ++c) {
@@ -109,7 +109,7 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
                     b = compile(support::moved(support::scene(name), R, t));
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
             const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
-            ASSERT_EQ(run_b.path.outcome, Outcome::converged) << run_b.path.detail;
+            ASSERT_EQ(run_b.outcome, Outcome::converged) << run_b.detail;
             const auto list = channels(a);
             for (std::size_t c = 0; c + 2 < list.size(); ++c) {
                 if (!list[c].name.ends_with("_x")) continue;

@@ -70,8 +70,8 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
     const Branch &less_branch = required.branches[branch], &more_branch = whole.branches[branch];
     const LegRun less = run(required, less_branch, Leg::equilibrium),
                  more = run(whole, more_branch, Leg::equilibrium);
-    ASSERT_EQ(less.path.outcome, more.path.outcome)
-        << name << " " << less_branch.name << ": " << less.path.detail << more.path.detail;
+    ASSERT_EQ(less.outcome, more.outcome)
+        << name << " " << less_branch.name << ": " << less.detail << more.detail;
     ASSERT_EQ(less.curve.a.size(), more.curve.a.size());
     const auto known_less = determined(required, some, less_branch),
                known_more = determined(whole, all, more_branch);

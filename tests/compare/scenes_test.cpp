@@ -40,7 +40,7 @@ Walk walk(const Model& model, const std::string& branch, Leg leg = Leg::equilibr
     recursive::Options how{.steps = steps};
     how.method = recursive::find_method("series").value();
     LegRun done = run(model, *found, leg, how);
-    EXPECT_EQ(done.path.outcome, Outcome::converged) << branch << ": " << done.path.detail;
+    EXPECT_EQ(done.outcome, Outcome::converged) << branch << ": " << done.detail;
     return {channels(model), std::move(done.curve)};
 }
 
@@ -132,8 +132,7 @@ class Told {
         list_ = channels(model_);
         for (const auto& branch : model_.branches) {
             runs_.push_back(run(model_, branch, leg));
-            EXPECT_EQ(runs_.back().path.outcome, Outcome::converged)
-                << branch.name << ": " << runs_.back().path.detail;
+            EXPECT_EQ(runs_.back().outcome, Outcome::converged) << branch.name << ": " << runs_.back().detail;
         }
     }
     const std::vector<Channel>& list() const { return list_; }

@@ -34,8 +34,8 @@ TEST(SecondReference, IsTheSeriesWhereALoadTurnsWithItsBody) {
     EXPECT_EQ(branch.second, Leg::series);
     EXPECT_NE(branch.not_asked.find("'kick'"), std::string::npos) << branch.not_asked;
     ASSERT_EQ(branch.runs.size(), 4u);
-    EXPECT_EQ(branch.runs[2].path.outcome, Outcome::not_conservative);
-    EXPECT_TRUE(branch.runs[2].path.points.empty());
+    EXPECT_EQ(branch.runs[2].outcome, Outcome::not_conservative);
+    EXPECT_TRUE(branch.runs[2].curve.a.empty());
     EXPECT_EQ(branch.runs[3].leg, Leg::series);
     EXPECT_EQ(branch.uncertainty.b, Leg::series);
     for (std::size_t c = 0; c < found.channels.size(); ++c)

@@ -83,6 +83,26 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
     }
 }
 
+TEST(Allocation, NoPointThatSomebodyVisitsAllocates) {
+    const Model model = compile(support::scene("chrono_mcpherson"));
+    for (const auto& method : methods) {
+        if (!has_steps(method)) continue;
+        int visited = 0;
+        const auto count = [&](int steps) {
+            visited = 0;
+            const long before = allocations;
+            const auto path = solve(model, model.branches[1], {.method = method, .steps = steps},
+                                    [&](const Equilibrium&) { ++visited; });
+            EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+            return allocations - before;
+        };
+        (void)count(50);
+        const long few = count(50), many = count(1000);
+        EXPECT_EQ(visited, 1001);
+        EXPECT_EQ(few, many) << method.name;
+    }
+}
+
 TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();

@@ -108,7 +108,9 @@ TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const Made made;
     std::string csv = curves_header(made.comparison.channels);
     for (const auto& branch : made.comparison.branches)
-        for (const auto& run : branch.runs) csv += curves_rows(branch.branch, run);
+        for (const auto& run : branch.runs)
+            for (std::size_t k = 0; k < run.curve.a.size(); ++k)
+                csv += curves_row(branch.branch, run.leg, branch.unit, {0, 0, run.curve.values[k]});
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
     const std::string header = csv.substr(0, csv.find('\n'));
     EXPECT_TRUE(header.starts_with("branch,leg,parameter,unit,wheel_centre_x [mm],")) << header;

@@ -7,21 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/command.hpp"
+#include "tests/reports/command.hpp"
 
 namespace {
 
 namespace support = elastocheck::support;
+using elastocheck::elastocheck_says;
+using elastocheck::scenes;
 using support::contains;
 using support::Folder;
 using support::Said;
 using support::text_of;
-
-const std::string scenes = ELASTOCHECK_SCENES;
-
-Said elastocheck_says(const std::string& arguments) {
-    return support::says(std::string(ELASTOCHECK_COMMAND) + " " + arguments);
-}
 
 std::vector<std::string> shipped() {
     std::vector<std::string> names;

@@ -180,7 +180,8 @@ std::optional<Section> verdict_section(const Field& scene) {
         std::vector<int> steps;
         for (const auto& branch : scene["branches"].items()) {
             const auto points = curve_of(branch, "recursive").a.size();
-            const int count = points > 0 ? static_cast<int>(points) - 1 : 0;
+            const auto taken = branch.find("steps");
+            const int count = taken ? taken->whole() : points > 0 ? static_cast<int>(points) - 1 : 0;
             if (std::ranges::find(steps, count) == steps.end()) steps.push_back(count);
         }
         const bool wheel = [&] {

@@ -1,0 +1,103 @@
+#include "reports/command/solve_command.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "compare/channels.hpp"
+#include "compare/rates.hpp"
+#include "models/reader/words.hpp"
+#include "recursive/series/path.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/files/files.hpp"
+#include "reports/tables/csv.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Channel;
+
+// The derivatives beside the curves: positions and angles per unit of the parameter.
+void write_rates(const Model& model, const std::vector<Channel>& asked, const SolveRequest& request) {
+    std::vector<Channel> channels;
+    std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
+    if (channels.empty())
+        throw std::invalid_argument("--rates: of positions and angles only, and --channels has none");
+    FileToBe csv(request.rates, rates_file);
+    csv.add(rates_header(channels));
+    const auto& [leg, how, refine, every] = request.gait;
+    for (const auto& branch : model.branches)
+        for (const auto& way : compare::ways_of(model, branch, how.steps)) {
+            const auto path = recursive::series::follow(way.model, way.branch,
+                                                        std::get<recursive::Series>(how.method.kind));
+            for (const double a : compare::asked_for({way}, every)) {
+                const auto place = recursive::series::find(path, a);
+                if (!place) break;
+                csv.add(rates_row(way.name, compare::unit_of(branch.unit), a,
+                                  compare::channel_rates(way.model, channels, way.branch, path, *place)));
+            }
+        }
+    csv.finish();
+}
+
+}  // namespace
+
+std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
+    if (patterns.empty()) return all;
+    std::vector<Channel> list;
+    std::vector<std::string> names;
+    for (const auto& channel : all) names.push_back(channel.name);
+    for (const auto& pattern : patterns) {
+        bool fits = false;
+        for (const auto& channel : all) {
+            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0) continue;
+            fits = true;
+            if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
+        }
+        if (!fits)
+            throw std::invalid_argument(fmt::format("--channels: no output is called {}{}",
+                                                    reader::quote(pattern),
+                                                    reader::did_you_mean(pattern, names, "outputs")));
+    }
+    return list;
+}
+
+int solve(const std::string& file, const Settings& settings, const SolveRequest& request) {
+    const auto& [leg, how, refine, every] = request.gait;
+    if (!request.output.empty()) check_may_write(request.output, curves_file);
+    if (!request.rates.empty()) check_may_write(request.rates, rates_file);
+    const Model model = load_scene(file, settings, request.detail).model;
+    const auto channels = chosen(compare::channels(model), request.channels);
+    check_every(model, how.steps, every);
+    check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
+    if (!request.rates.empty()) write_rates(model, channels, request);
+
+    std::optional<FileToBe> csv;
+    if (!request.output.empty()) csv.emplace(request.output, curves_file);
+    const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : print(lines); };
+    write(curves_header(channels));
+    int code = fine;
+    for (const auto& branch : model.branches) {
+        if (csv) progress(branch.name);
+        const EquilibriumPath path = compare::walk(
+            compare::ways_of(model, branch, how.steps), request.gait,
+            [&](const Equilibrium& state) { return compare::row_of(model, channels, state); },
+            [&](const compare::Row& row) {
+                write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
+            });
+        if (csv) progress("");
+        if (path.outcome == Outcome::converged) continue;
+        complain("{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
+                 name(path.outcome), path.detail);
+        code = could_not_judge;
+    }
+    if (csv) csv->finish();
+    return code;
+}
+
+}  // namespace elastocheck::reports

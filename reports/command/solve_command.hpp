@@ -1,0 +1,30 @@
+// `elastocheck solve`: one scene, one way, its curves as CSV.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/legs.hpp"
+#include "reports/command/arguments.hpp"
+#include "reports/command/load_scene.hpp"
+
+namespace elastocheck::reports {
+
+struct SolveRequest {
+    compare::Gait gait;
+    Detail detail = Detail::required;
+    std::vector<std::string> channels;  // names, or patterns with *; none: all
+    std::string rates;                  // CSV of the derivatives, by the series; empty: none
+    std::string output;                 // CSV of the curves; empty: standard output
+};
+
+// Each row is written as its point is found, but for the way that comes reversed. What is wrong with the request is said
+// before the work. The exit code; where a branch does not converge, the rows are those that it reached.
+int solve(const std::string& scene, const Settings& settings, const SolveRequest& request);
+
+// The channels that are asked for, in that order, each once. Throws std::invalid_argument for a pattern that fits none,
+// with the nearest name.
+std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all,
+                                     const std::vector<std::string>& patterns);
+
+}  // namespace elastocheck::reports

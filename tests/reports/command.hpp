@@ -1,0 +1,33 @@
+// The elastocheck command, the scenes that come with it, and the CSV that it writes.
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.hpp"
+
+namespace elastocheck {
+
+inline const std::string scenes = ELASTOCHECK_SCENES;
+
+// Runs `elastocheck ARGUMENTS`.
+inline support::Said elastocheck_says(const std::string& arguments) {
+    return support::says(std::string(ELASTOCHECK_COMMAND) + " " + arguments);
+}
+
+inline std::vector<std::string> parts_of(const std::string& text, char between) {
+    std::vector<std::string> parts;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, between);) parts.push_back(part);
+    return parts;
+}
+
+// Cells by row, the head first. Pre: no cell is quoted.
+inline std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& line : parts_of(csv, '\n')) rows.push_back(parts_of(line, ','));
+    return rows;
+}
+
+}  // namespace elastocheck

@@ -1,0 +1,246 @@
+// `elastocheck solve`: rows as their points are found, of what is asked for, in no more memory for more steps.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "compare/legs.hpp"
+#include "models/compile.hpp"
+#include "reports/tables/csv.hpp"
+#include "tests/reports/command.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck {
+namespace {
+
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+
+// All rows at once, from the paths with every point in them.
+std::string csv_of_kept_points(const Model& model, const compare::Gait& gait, int steps) {
+    const auto channels = compare::channels(model);
+    std::string csv = reports::curves_header(channels);
+    for (const auto& branch : model.branches)
+        for (const auto& point : walk(compare::ways_of(model, branch, steps), gait).points)
+            csv += reports::curves_row(branch.name, gait.leg, compare::unit_of(branch.unit),
+                                       compare::row_of(model, channels, point));
+    return csv;
+}
+
+TEST(SolveCommand, WritesTheRowsOfThePointsBitByBitOnEveryScene) {
+    const Folder folder;
+    for (const auto& name : support::small_scene_names()) {
+        const Model model = compile(support::scene(name));
+        for (const char* method : {"published", "series", "equilibrium"}) {
+            compare::Gait gait;
+            if (method == std::string("equilibrium"))
+                gait.leg = compare::Leg::equilibrium;
+            else
+                gait.recursion.method = recursive::find_method(method).value();
+            const auto file = (folder.path / (name + method + ".csv")).string();
+            const auto command = fmt::format("solve {}/{}.yaml --steps 10 --method {}", scenes, name, method);
+            const Said said = elastocheck_says(command);
+            EXPECT_EQ(said.out, csv_of_kept_points(model, gait, 10)) << command;
+            EXPECT_EQ(elastocheck_says(command + " -o " + file).code, said.code) << command;
+            EXPECT_EQ(text_of(file), said.out) << command;
+        }
+    }
+}
+
+TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
+    const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 3";
+    const auto all = cells_of(elastocheck_says(command).out);
+    const auto expect = [&](const std::string& asked, const std::vector<std::string>& heads) {
+        const Said said = elastocheck_says(command + " --channels " + asked);
+        ASSERT_EQ(said.code, 0) << said.err;
+        const auto some = cells_of(said.out);
+        ASSERT_EQ(some.size(), all.size());
+        ASSERT_EQ(some[0].size(), 4 + heads.size()) << said.out;
+        for (std::size_t c = 0; c < some[0].size(); ++c) {
+            if (c >= 4) EXPECT_EQ(some[0][c], heads[c - 4]);
+            const auto at = static_cast<std::size_t>(std::ranges::find(all[0], some[0][c]) - all[0].begin());
+            for (std::size_t row = 0; row < all.size(); ++row) EXPECT_EQ(some[row][c], all[row][at]);
+        }
+    };
+    expect("toe", {"toe [deg]"});
+    expect("camber,wheel_centre_x", {"camber [deg]", "wheel_centre_x [mm]"});
+    expect("camber --channels toe,camber", {"camber [deg]", "toe [deg]"});
+    expect("'wheel_*'", {"wheel_centre_x [mm]", "wheel_centre_y [mm]", "wheel_centre_z [mm]"});
+    expect("travel,'ball_joint.force_?','*_joint.force_z'",
+           {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]", "ball_joint.force_z [N]"});
+}
+
+TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
+    const Folder folder;
+    const std::string file = (folder.path / "c.csv").string();
+    for (const auto& [asked, near] : {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}}) {
+        const Said said = elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked +
+                                           " -o " + file);
+        EXPECT_EQ(said.code, 2) << said.out;
+        EXPECT_TRUE(contains(said.err, "--channels: no output is called")) << said.err;
+        EXPECT_TRUE(contains(said.err, fmt::format("did you mean '{}'?", near))) << said.err;
+    }
+    EXPECT_EQ(elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'").code, 2);
+    EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(SolveCommand, EveryNthStepIsOneOfTheSameRows) {
+    // Two branches of 20 steps, from a = 0 each.
+    for (const char* method : {"published", "adaptive", "series"}) {
+        const auto command = fmt::format("solve {}/bushing_pair.yaml --steps 20 --method {}", scenes, method);
+        const auto all = parts_of(elastocheck_says(command).out, '\n');
+        ASSERT_EQ(all.size(), 1u + 2 * 21);
+        for (const int every : {1, 6, 10, 19, 20}) {
+            std::vector<std::string> expected{all[0]};
+            for (const int branch : {0, 1})
+                for (int k = 0; k <= 20; ++k)
+                    if (k % every == 0 || k == 20)
+                        expected.push_back(all[static_cast<std::size_t>(1 + 21 * branch + k)]);
+            const auto some =
+                parts_of(elastocheck_says(fmt::format("{} --every {}", command, every)).out, '\n');
+            EXPECT_EQ(some, expected) << method << " " << every;
+        }
+    }
+    for (const char* method : {"equilibrium", "energy"}) {
+        const auto rows =
+            parts_of(elastocheck_says(fmt::format("solve {}/bushing_pair.yaml --steps 20 --every 8 "
+                                                  "--method {}",
+                                                  scenes, method))
+                         .out,
+                     '\n');
+        EXPECT_EQ(rows.size(), 1u + 2 * 4) << method;
+    }
+}
+
+TEST(SolveCommand, EveryThatIsNoneOrMoreThanThereAreStepsIsRefused) {
+    const std::string scene = scenes + "/bushing_pair.yaml";
+    for (const char* command : {"solve ", "compare "}) {
+        for (const char* none : {"0", "-1", "x", "1.5"}) {
+            const Said said = elastocheck_says(command + scene + " --every " + none);
+            EXPECT_EQ(said.code, 2) << none;
+            EXPECT_TRUE(contains(said.err, "--every")) << said.err;
+        }
+        const Said said = elastocheck_says(command + scene + " --steps 20 --every 21");
+        EXPECT_EQ(said.code, 2);
+        EXPECT_TRUE(contains(said.err, "--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"))
+            << said.err;
+        EXPECT_TRUE(said.out.empty());
+    }
+}
+
+TEST(CompareCommand, EveryNthStepIsCompared) {
+    const Folder folder;
+    const std::string scene = scenes + "/bushing_pair.yaml", out = (folder.path / "out").string();
+    const Said said = elastocheck_says("compare " + scene + " --steps 40 --every 15 -o " + out);
+    EXPECT_EQ(said.code, 0) << said.err;
+    const Said solved = elastocheck_says("solve " + scene + " --steps 40 --every 15");
+    // scene, branch, leg, parameter, its unit, output, unit, value: the recursion's are those that `solve` writes.
+    const auto all = cells_of(text_of(out + "/curves.csv"));
+    std::vector<std::vector<std::string>> written, expected;
+    std::set<std::string> visited;
+    for (const auto& row : all) {
+        if (row[5] != "nose_z") continue;
+        if (row[2] == "recursive") written.push_back({row[1], row[3], row[7]});
+        if (row[2] == "energy") visited.insert(row[1] + row[3]);
+    }
+    const auto solved =
+        cells_of(elastocheck_says("solve " + scene + " --steps 40 --every 15 --channels nose_z").out);
+    for (const auto& row : solved)
+        if (row[1] == "recursive") expected.push_back({row[0], row[2], row[4]});
+    EXPECT_EQ(written, expected);
+    EXPECT_EQ(written.size(), 2u * 4);  // 0, 15, 30, 40
+    EXPECT_EQ(visited.size(), 2u * 4) << "the references are asked for no more";
+}
+
+// One way of the arch passes its limit point, at -211.5 N.
+TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
+    const Folder folder;
+    const std::string arch = text_of(scenes + "/two_spring_arch.yaml");
+    const auto branches = arch.find("branches:"), probes = arch.find("probes:");
+    for (const bool first : {true, false}) {
+        const auto scene = fmt::format(
+            "{}branches: {{push: {{load: vertical, from: {}, to: {}, steps: 60}}}}\n{}",
+            arch.substr(0, branches), first ? -300 : 300, first ? 300 : -300, arch.substr(probes));
+        const std::string command =
+            "solve " + folder.write("arch.yaml", scene) + " --method equilibrium --channels apex_z";
+        const Said said = elastocheck_says(command);
+        EXPECT_EQ(said.code, 3) << said.err;
+        EXPECT_TRUE(contains(said.err, "equilibrium: branch lost: push to -300 N: ")) << said.err;
+        const auto rows = cells_of(said.out);
+        ASSERT_EQ(rows.size(), 1u + 52) << said.out;  // -210 to 300 N
+        EXPECT_EQ(std::stod(rows[1][2]), first ? -210 : 300);
+        EXPECT_EQ(std::stod(rows[52][2]), first ? 300 : -210);
+        for (std::size_t k = 2; k < rows.size(); ++k)
+            EXPECT_NEAR(std::stod(rows[k][2]) - std::stod(rows[k - 1][2]), first ? 10 : -10, 1e-9);
+        const auto file = (folder.path / "rows.csv").string();
+        EXPECT_EQ(elastocheck_says(command + " -o " + file).code, 3);
+        EXPECT_EQ(text_of(file), said.out) << "what was reached is written";
+    }
+}
+
+TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
+    const Folder folder;
+    const auto file = (folder.path / "rates.csv").string();
+    const std::string command =
+        "solve " + scenes + "/bushing_pair.yaml --method series --steps 20 --every 8 --rates " + file;
+    const Said said = elastocheck_says(command + " --channels nose_x,'*force_x'");
+    EXPECT_EQ(said.code, 0) << said.err;
+    const auto rows = cells_of(said.out), rates = cells_of(text_of(file));
+    ASSERT_EQ(rates.size(), rows.size());
+    for (std::size_t k = 1; k < rows.size(); ++k) EXPECT_EQ(rates[k][1], rows[k][2]);
+    EXPECT_EQ(rates[0], (std::vector<std::string>{"branch", "parameter", "parameter unit",
+                                                  "nose_x [mm per parameter unit]"}));
+    EXPECT_EQ(elastocheck_says(command + " --channels '*force_x'").code, 2);
+}
+
+TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
+    const std::string command =
+        std::string(ELASTOCHECK_COMMAND) + " solve " + scenes + "/pinned_bar.yaml --steps 20000";
+    // As a shell says that a filter was ended by SIGPIPE, whether that signal is ignored or not.
+    for (const char* shell : {"bash -o pipefail -c '", "bash -o pipefail -c 'trap \"\" PIPE; "}) {
+        const Said said = support::says(shell + command + " | head -1'");
+        EXPECT_EQ(said.code, 141);
+        EXPECT_TRUE(said.out.starts_with("branch,leg,parameter,unit,")) << said.out;
+        EXPECT_TRUE(said.err.empty()) << said.err;
+    }
+}
+
+// [kB] at most resident, of a command that does as told.
+long memory_of(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
+        ::execv(argv[0], argv.data());
+        ::_exit(127);
+    }
+    int status = -1;
+    struct rusage used {};
+    EXPECT_EQ(::wait4(child, &status, 0, &used), child);
+    EXPECT_EQ(status, 0);
+    return used.ru_maxrss;
+}
+
+TEST(SolveCommand, MemoryDoesNotGrowWithTheStepsItTakes) {
+    const auto memory = [](const std::string& method, const std::string& steps) {
+        return memory_of({ELASTOCHECK_COMMAND, "solve", scenes + "/pinned_bar.yaml", "--method", method,
+                          "--channels", "tip_z", "--steps", steps});
+    };
+    for (const char* method : {"published", "series"}) {
+        const long few = memory(method, "10000"), many = memory(method, "300000");
+        EXPECT_GT(few, 1000);
+        EXPECT_LE(many, few + 1000) << method;  // a point a step would be 60 MB
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck
