@@ -12,7 +12,7 @@
 
 namespace elastocheck::reports {
 
-int inspect(const std::string& scene, const Settings& settings, Detail detail);
+int inspect(const std::string& scene, const Settings& settings, Detail detail, bool verbose);
 
 // CSV of the curves to `output`, or to standard output where that is empty; of their derivatives to `rates`.
 int solve(const std::string& scene, const Settings& settings, Detail detail, compare::Leg leg,
