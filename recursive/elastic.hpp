@@ -38,6 +38,7 @@ struct ElementStiffness {
     Vector3<Real> s_i, s_j;
     Matrix6<Real> K;         // of (translation, rotation) of j relative to i [N/m  N; N  N·m]
     bool rotational = true;  // whether anything outside K_T is there
+    bool coupled = true;     // whether anything outside K_T and K_R is there
 };
 
 // ---- Geometry: what deforms.
@@ -105,6 +106,7 @@ ElementStiffness<Real> element_stiffness(const AxialSpring& e, const Rest<Real>&
                              q[e.i.body].lever(e.i.s_local),
                              q[e.j.body].lever(e.j.s_local),
                              Matrix6<Real>::Zero(),
+                             false,
                              false};
     const Vector3<Real> D = q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i, n = D.normalized();
     const Real rate = hessian<Real>(
@@ -121,10 +123,18 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
     const Matrix3<Real> A = axes<Real>(e, q);
     const Matrix6<Real> K_local = hessian<Real>(
         e.law, [&] { return strain<Real>(e, deformation<Real>(e, q)); }, rest.piece);
-    for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b)  // K_T = A_f K_T' A_fᵀ, K_R = A_f K_R' A_fᵀ (10)-(11)
-            k.K.template block<3, 3>(3 * a, 3 * b).noalias() =
-                A * K_local.template block<3, 3>(3 * a, 3 * b) * A.transpose();
+    const auto turn = [&](int a, int b) {  // K_T = A_f K_T' A_fᵀ, K_R = A_f K_R' A_fᵀ (10)-(11)
+        const Matrix3<Real> AK = A * K_local.template block<3, 3>(3 * a, 3 * b);
+        k.K.template block<3, 3>(3 * a, 3 * b).noalias() = AK.lazyProduct(A.transpose());
+    };
+    turn(0, 0);
+    turn(1, 1);
+    k.coupled = !K_local.template topRightCorner<3, 3>().isZero(0);
+    if (k.coupled)
+        turn(0, 1);
+    else
+        k.K.template topRightCorner<3, 3>().setZero();
+    k.K.template bottomLeftCorner<3, 3>() = k.K.template topRightCorner<3, 3>().transpose();
     return k;
 }
 
@@ -132,25 +142,36 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
 // corner.
 template <class Real, class Target>
 void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
-    // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b).
-    const Matrix3<Real> K_T = e.K.template topLeftCorner<3, 3>(), C = e.K.template topRightCorner<3, 3>(),
-                        K_R = e.K.template bottomRightCorner<3, 3>();
-    const Matrix3<Real> tilde_i = tilde(e.s_i), tilde_j = tilde(e.s_j);
-    const auto add = [&](BodyId a, BodyId b, const Matrix3<Real>& tilde_a, const Matrix3<Real>& tilde_b,
-                         Real sign) {
-        if (a == ground || b == ground) return;
-        const Matrix3<Real> K_Ts = C - K_T * tilde_b;  // force per rotation of b
-        Matrix3<Real> moment = tilde_a * K_Ts;
-        if (e.rotational) moment += K_R - C.transpose() * tilde_b;
-        target.template block<3, 3>(6 * a, 6 * b) += sign * K_T;
-        target.template block<3, 3>(6 * a, 6 * b + 3) += sign * K_Ts;
-        target.template block<3, 3>(6 * a + 3, 6 * b) += sign * (tilde_a * K_T + C.transpose());
-        target.template block<3, 3>(6 * a + 3, 6 * b + 3) += sign * moment;
+    // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b), and with F_s = C - K_T s̃, the force
+    // that a rotation makes at the lever s, each is ± [K_T  F_b; F_aᵀ  s̃_a F_b + K_R - Cᵀ s̃_b].
+    const Matrix3<Real> K_T = e.K.template topLeftCorner<3, 3>(), C = e.K.template topRightCorner<3, 3>();
+    const auto force = [&](const Vector3<Real>& s) {
+        // K_T s̃, symmetric times skew: its rows are those of K_T crossed with s
+        Matrix3<Real> F;
+        for (int k = 0; k < 3; ++k) F.row(k) = s.cross(K_T.col(k)).transpose();
+        if (e.coupled) F += C;
+        return F;
     };
-    add(e.i, e.i, tilde_i, tilde_i, Real(1));
-    add(e.i, e.j, tilde_i, tilde_j, Real(-1));
-    add(e.j, e.i, tilde_j, tilde_i, Real(-1));
-    add(e.j, e.j, tilde_j, tilde_j, Real(1));
+    const Matrix3<Real> F_i = force(e.s_i), F_j = force(e.s_j);
+    const auto block = [&](const Vector3<Real>& s_a, const Matrix3<Real>& F_a, const Vector3<Real>& s_b,
+                           const Matrix3<Real>& F_b) {
+        Matrix6<Real> K;
+        Matrix3<Real> moment;
+        for (int k = 0; k < 3; ++k) moment.col(k) = s_a.cross(F_b.col(k));
+        if (e.rotational) moment += e.K.template bottomRightCorner<3, 3>();
+        if (e.coupled) moment -= C.transpose() * tilde(s_b);
+        K << K_T, F_b, F_a.transpose(), moment;
+        return K;
+    };
+    const auto add = [&](BodyId a, BodyId b, const Matrix6<Real>& K) {
+        target.template block<6, 6>(6 * a, 6 * b) += K;
+    };
+    if (e.i != ground) add(e.i, e.i, block(e.s_i, F_i, e.s_i, F_i));
+    if (e.j != ground) add(e.j, e.j, block(e.s_j, F_j, e.s_j, F_j));
+    if (e.i == ground || e.j == ground) return;
+    const Matrix6<Real> K_ij = block(e.s_i, F_i, e.s_j, F_j);
+    add(e.i, e.j, -K_ij);
+    add(e.j, e.i, -K_ij.transpose());
 }
 
 template <class Real>

@@ -63,10 +63,11 @@ struct SaddlePoint {
     Vector<Real> scale;    // D, powers of two
     Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
     Held<Real> held;
-    // M̂ with its border, entry by entry of the pattern; where an entry of M lies among its values, -1 - where one
-    // of the border does; what it is multiplied by.
+    // M̂ with its border, entry by entry of the pattern; where an entry of M lies among its values, and what it is
+    // multiplied by (0 in the border); where the two of each entry of the border are.
     std::vector<Real> values, scaling;
     std::vector<int> source;
+    std::vector<std::array<int, 2>> border_at;
     Vector<Real> rhs, solution;
     SparseLU<Real> lu;
 
@@ -158,12 +159,13 @@ void scale_entries(SaddlePoint<Real>& system) {
         }
         b.normalize();
     }
-    const Real* const M = system.M.values.data();
-    for (std::size_t e = 0; e < system.values.size(); ++e) {
-        const int source = system.source[e];
-        system.values[e] =
-            source >= 0 ? M[source] * system.scaling[e] : held.border[static_cast<std::size_t>(-1 - source)];
-    }
+    const Real *const M = system.M.values.data(), *const scaling = system.scaling.data();
+    const int* const source = system.source.data();
+    Real* const values = system.values.data();
+    const std::size_t entries = system.values.size();
+    for (std::size_t e = 0; e < entries; ++e) values[e] = M[source[e]] * scaling[e];
+    for (std::size_t b = 0; b < held.border.size(); ++b)
+        for (const int e : system.border_at[b]) values[e] = held.border[b];
 }
 
 // The places of the directions in the columns of `null_space`: of an idle mode the bodies that it moves, wherever
@@ -243,12 +245,6 @@ inline void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMa
     orthonormalise(system);
 
     const Pattern pattern = bordered(inner, system.held);
-    const auto border = [&](int row, int direction) {
-        const auto& rows = system.held.row;
-        return -1 - static_cast<int>(std::lower_bound(rows.begin() + system.held.begin(direction),
-                                                      rows.begin() + system.held.end(direction), row) -
-                                     rows.begin());
-    };
     system.source.clear();
     system.scaling.clear();
     for (int j = 0; j < pattern.size; ++j)
@@ -256,8 +252,14 @@ inline void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMa
              e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
             const bool inside = i < N && j < N;
-            system.source.push_back(inside ? system.M.at(i, j) : i < N ? border(i, j - N) : border(j, i - N));
-            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 1);
+            system.source.push_back(inside ? system.M.at(i, j) : 0);
+            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 0);
+        }
+    system.border_at.clear();
+    for (int c = 0; c < system.borders(); ++c)
+        for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
+            const int row = system.held.row[static_cast<std::size_t>(e)];
+            system.border_at.push_back({entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)});
         }
     system.values.assign(pattern.entries(), 0);
     system.rhs.setZero(N + system.borders());
@@ -279,6 +281,7 @@ SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
     system.values.assign(from.values.begin(), from.values.end());
     system.scaling.assign(from.scaling.begin(), from.scaling.end());
     system.source = from.source;
+    system.border_at = from.border_at;
     system.rhs = from.rhs.cast<Real>();
     system.solution = from.solution.cast<Real>();
     analyse(system.lu, from.lu.order);

@@ -10,11 +10,13 @@
 //
 //   w ← A_i,     l_ik = w_k / u_kk,   w ← w - l_ik U_k   for every k < i where w can be other than zero,     U_i ← w
 //
-// in one row w of full length. The choice stands while no multiplier of L exceeds
-// a hundred (or what the caller bears); when one does, the order is chosen anew from the values of the moment.
+// in one row w of full length. The choice stands while no multiplier of L exceeds a hundred (or what the caller bears);
+// when one does, the order is chosen anew from the values of the moment.
 //
 // Values are those of the pattern's entries, in its order.
 #pragma once
+
+#include <cstring>
 
 #include "recursive/pivot_search.hpp"
 
@@ -36,13 +38,13 @@ struct Elimination {
 template <class Real>
 struct SparseLU {
     Elimination order;
-    std::vector<Real> L, U;             // without the diagonals, as `left` and `right`
-    std::vector<Real> inverse;          // 1 / pivots
-    std::vector<Real> w;                // a row while it is eliminated
-    std::vector<Real> y;                // the solution in the order of the pivots
-    std::vector<Real> known, unknown;   // the same where it is zero but for a few, zero in between ...
-    std::vector<int> waiting, reached;  // ... and which these are
-    std::vector<char> queued;
+    std::vector<Real> L, U;            // without the diagonals, as `left` and `right`
+    std::vector<Real> inverse;         // 1 / pivots
+    std::vector<Real> w;               // a row while it is eliminated
+    std::vector<Real> y;               // the solution in the order of the pivots
+    std::vector<Real> known, unknown;  // the same where it is zero but for a few, zero in between ...
+    std::vector<int> reached;          // ... which these are,
+    std::vector<char> queued;          // and which are to come: 1
     PivotSearch<Real> search;
     int orders = 0;       // how often the order was chosen here
     int orientation = 0;  // sign of the determinant of the last matrix factorised
@@ -57,7 +59,6 @@ void reserve(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
     for (auto* list : {&lu.inverse, &lu.w, &lu.y, &lu.known, &lu.unknown}) list->assign(n, 0);
     lu.queued.assign(n, 0);
-    lu.waiting.reserve(n);
     lu.reached.reserve(2 * n);
 }
 // ... and what the factors need.
@@ -284,26 +285,21 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
     const Elimination& order = lu.order;
     const auto at = [](int k) { return static_cast<std::size_t>(k); };
     const Real rounding = 4 * std::numeric_limits<Real>::epsilon();
-    const auto push = [&](int k) {
-        if (lu.queued[at(k)]) return;
-        lu.queued[at(k)] = 1;
-        lu.waiting.push_back(k);
-        std::push_heap(lu.waiting.begin(), lu.waiting.end(), std::greater<>());
+    const auto n = static_cast<int>(lu.size());
+    const auto next = [&](int k) {  // that is queued, from k on
+        const void* const found = std::memchr(lu.queued.data() + k, 1, at(n - k));
+        return found == nullptr ? n : static_cast<int>(static_cast<const char*>(found) - lu.queued.data());
     };
-    const auto pop = [&] {
-        std::pop_heap(lu.waiting.begin(), lu.waiting.end(), std::greater<>());
-        const int k = lu.waiting.back();
-        lu.waiting.pop_back();
+    const auto reach = [&](int k) {
         lu.queued[at(k)] = 0;
         lu.reached.push_back(k);
-        return k;
     };
     int last = -1;
     lu.reached.clear();
     lu.known[at(order.row_of[at(j)])] = 1;
-    push(order.row_of[at(j)]);
-    while (!lu.waiting.empty()) {
-        const int k = pop();
+    lu.queued[at(order.row_of[at(j)])] = 1;
+    for (int k = order.row_of[at(j)]; k < n; k = next(k + 1)) {
+        reach(k);
         const Real y = lu.known[at(k)];
         if (!(std::abs(y) > rounding) && !std::isnan(y)) {
             lu.known[at(k)] = 0;
@@ -313,26 +309,30 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
         for (int e = order.first_below[at(k)]; e < order.first_below[at(k) + 1]; ++e) {
             const int i = order.below[at(e)];
             lu.known[at(i)] -= lu.L[at(order.place[at(e)])] * y;
-            push(i);
+            lu.queued[at(i)] = 1;
         }
     }
     const std::size_t forward = lu.reached.size();
+    int k = n;
     for (int c = 0; c < count; ++c)
-        if (const int k = order.col_of[at(wanted[c])]; k <= last) push(k);
-    while (!lu.waiting.empty()) {
-        const int k = pop();
+        if (const int own = order.col_of[at(wanted[c])]; own <= last) {
+            lu.queued[at(own)] = 1;
+            k = std::min(k, own);
+        }
+    for (; k < n; k = next(k + 1)) {
+        reach(k);
         for (int e = order.first_right[at(k)]; e < order.first_right[at(k) + 1]; ++e)
-            if (order.right[at(e)] <= last) push(order.right[at(e)]);
+            if (order.right[at(e)] <= last) lu.queued[at(order.right[at(e)])] = 1;
     }
     for (std::size_t r = lu.reached.size(); r-- > forward;) {
-        const auto k = at(lu.reached[r]);
-        Real sum = lu.known[k];
-        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e)
+        const auto own = at(lu.reached[r]);
+        Real sum = lu.known[own];
+        for (int e = order.first_right[own]; e < order.first_right[own + 1]; ++e)
             sum -= lu.U[at(e)] * lu.unknown[at(order.right[at(e)])];
-        lu.unknown[k] = sum * lu.inverse[k];
+        lu.unknown[own] = sum * lu.inverse[own];
     }
     for (int c = 0; c < count; ++c) x[c] = lu.unknown[at(order.col_of[at(wanted[c])])];
-    for (const int k : lu.reached) lu.known[at(k)] = lu.unknown[at(k)] = 0;
+    for (const int own : lu.reached) lu.known[at(own)] = lu.unknown[at(own)] = 0;
 }
 
 }  // namespace elastocheck::recursive

@@ -1,0 +1,104 @@
+// What a step of the published recursion costs, over what a library asks for the linear algebra alone: one numeric
+// factorisation and one solution of the same matrix by KLU (klu_refactor, klu_solve), its analysis done beforehand. A step
+// assembles, factorises, solves, judges and moves the bodies. Processor time, in turns within one process:
+// benchmark_step [BODIES ...].
+#include <fmt/format.h>
+#include <klu.h>
+
+#include <algorithm>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/settle.hpp"
+#include "tests/benchmark/families.hpp"
+
+namespace {
+
+using namespace elastocheck;
+using namespace elastocheck::recursive;
+
+template <class Job>
+double seconds(Job&& job) {
+    timespec from{}, to{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
+    job();
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
+    return static_cast<double>(to.tv_sec - from.tv_sec) +
+           1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec);
+}
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+struct Klu {
+    klu_common common{};
+    Pattern pattern;
+    klu_symbolic* symbolic = nullptr;
+    klu_numeric* numeric = nullptr;
+
+    Klu(const Pattern& p, std::vector<double>& values) : pattern(p) {
+        klu_defaults(&common);
+        symbolic = klu_analyze(pattern.size, pattern.first.data(), pattern.row.data(), &common);
+        numeric = klu_factor(pattern.first.data(), pattern.row.data(), values.data(), symbolic, &common);
+    }
+    ~Klu() {
+        klu_free_numeric(&numeric, &common);
+        klu_free_symbolic(&symbolic, &common);
+    }
+    Klu(const Klu&) = delete;
+    Klu& operator=(const Klu&) = delete;
+    bool solve(std::vector<double>& values, std::vector<double>& b) {
+        return klu_refactor(pattern.first.data(), pattern.row.data(), values.data(), symbolic, numeric,
+                            &common) == 1 &&
+               klu_solve(symbolic, numeric, pattern.size, 1, b.data(), &common) == 1;
+    }
+};
+
+bool compare(const families::Family& family, int steps) {
+    const Model model = compile(parse_scene(families::scene(family), "family"));
+    const Branch& branch = model.branches[0];
+    March<double> s(model, branch, analyse(model));
+    const Linear published;
+    if (settle(s, published, 1) != Outcome::converged) return false;
+    std::vector<double> step_time, own_time, klu_time, ratio;
+    std::vector<double> values = s.system.values;
+    Klu klu(s.system.lu.order.pattern, values);
+    std::vector<double> b(s.system.lu.size()), x(b.size());
+    bool good = true;
+    for (int k = 1; k <= steps; ++k) {
+        const Place<double> next{1, 1e-3 * branch.to * k / steps};
+        step_time.push_back(seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
+        values = s.system.values;
+        std::ranges::fill(b, 1);
+        own_time.push_back(seconds([&] {
+            factorise(s.system.lu, values.data());
+            solve(s.system.lu, b.data(), x.data());
+        }));
+        klu_time.push_back(seconds([&] { good = klu.solve(values, b) && good; }));
+        ratio.push_back(step_time.back() / klu_time.back());
+    }
+    fmt::print("{:<9} {:>6} {:>9} {:>9} {:>9} {:>9.1f} {:>9.1f} {:>9.1f} {:>6.2f}\n",
+               families::name(family.hinge), family.bodies, s.system.lu.size(),
+               s.system.lu.L.size() + s.system.lu.U.size() + s.system.lu.size(),
+               klu.numeric->lnz + klu.numeric->unz, 1e6 * median(step_time), 1e6 * median(own_time),
+               1e6 * median(klu_time), median(ratio));
+    return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::vector<int> bodies;
+    for (int k = 1; k < argc; ++k) bodies.push_back(std::stoi(argv[k]));
+    if (bodies.empty()) bodies = {300, 1000};
+    fmt::print("chain of {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "bodies", "unknowns", "entries",
+               "KLU's", "step, us", "own LU", "KLU", "ratio");
+    bool good = true;
+    for (const auto hinge : {families::Hinge::bushing, families::Hinge::revolute})
+        for (const int n : bodies) good = compare({families::Kind::chain, n, hinge}, 101) && good;
+    return good ? 0 : 1;
+}

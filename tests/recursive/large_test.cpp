@@ -1,0 +1,203 @@
+// Models of hundreds of bodies: what they hold, and that they come out as the closed form says.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/analysis.hpp"
+#include "recursive/loops.hpp"
+#include "recursive/solve.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+// n bodies in a row along x, each on the one before by a bushing of rate k, the first on the ground; F pulls at the last.
+constexpr double k = 1e6, F = 1e4, pitch = 0.1;
+Scene springs_in_series(int n) {
+    std::string points = "  p0: [0, 0, 0]\n", bodies, bushings;
+    for (int i = 1; i <= n; ++i) {
+        points += fmt::format("  p{}: [{}, 0, 0]\n", i, i * pitch);
+        bodies += fmt::format("  b{}: {{origin: p{}}}\n", i, i);
+        bushings += fmt::format(
+            "  s{}: {{bodies: [b{}, {}], at: p{}, rates: [{}, 2e6, 3e6], rotational_rates: [100, 200, "
+            "300]}}\n",
+            i, i, i == 1 ? std::string("ground") : fmt::format("b{}", i - 1), i - 1, k);
+    }
+    return parse_scene(
+        fmt::format("elastocheck: 1\nname: springs in series\n"
+                    "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
+                    "loads:\n  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}\n"
+                    "branches:\n  pull: {{load: pull, to: {}, steps: 5}}\n"
+                    "probes:\n  end: {{on: b{}, at: p{}}}\n",
+                    points, bodies, bushings, n, n, F, n, n),
+        "springs");
+}
+
+TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
+    for (const int n : {2, 30, 300}) {
+        const Model model = compile(springs_in_series(n));
+        ASSERT_EQ(model.bodies.size(), static_cast<std::size_t>(n));
+        const Analysis analysis = analyse(model);
+        for (const Method& method : methods) {
+            const auto path = solve(model, model.branches[0], {.method = method, .steps = 5}, analysis);
+            ASSERT_EQ(path.outcome, Outcome::converged) << method.name << " " << path.detail;
+            for (const auto& point : path.points)
+                for (int i = 1; i <= n; ++i) {
+                    const Pose& pose = point.poses[static_cast<std::size_t>(i - 1)];
+                    const Eigen::Vector3d there(i * pitch + i * point.load / k, 0, 0);
+                    EXPECT_LE((pose.r - there).norm(), 1e-10 * i) << method.name << " " << i << " of " << n;
+                    EXPECT_LE(pose.p.vec().norm(), 1e-10) << method.name;
+                }
+        }
+    }
+}
+
+TEST(Large, MemoryOfTheFactorsGrowsAsTheChain) {
+    const auto entries = [](int n) {
+        const Analysis analysis = analyse(compile(springs_in_series(n)));
+        const auto& system = analysis.system;
+        EXPECT_EQ(system.M.values.size(), static_cast<std::size_t>(36 * (3 * n - 2)));
+        return static_cast<double>(system.lu.L.size() + system.lu.U.size());
+    };
+    const double few = entries(50), many = entries(200);
+    EXPECT_LE(many, 4.2 * few);
+    EXPECT_LE(many, 200 * (2 * 36 +
+                           30));  // of every body: the triangles of its own block, and the next one's twice
+}
+
+// n carriers on bushings to the ground, side by side along y, each tied to the next by a rod with two balls, which is
+// free to spin about itself; a force on the first.
+Scene carriers_and_rods(int n) {
+    std::string points, bodies, bushings, joints;
+    for (int i = 0; i < n; ++i) {
+        points += fmt::format("  p{}: [0, {}, 0]\n", i, 0.3 * i);
+        bodies += fmt::format("  c{}: {{origin: p{}}}\n", i, i);
+        bushings += fmt::format(
+            "  s{}: {{bodies: [c{}, ground], at: p{}, rates: [1e4, 2e4, 3e4], rotational_rates: [100, 200, "
+            "300]}}\n",
+            i, i, i);
+        if (i == 0) continue;
+        points += fmt::format("  m{}: [{}, {}, 0.02]\n", i, 0.01 * (i % 3), 0.3 * i - 0.1);
+        points += fmt::format("  e{}: [{}, {}, 0.05]\n", i, 0.02 * (i % 3), 0.3 * i - 0.02);
+        bodies += fmt::format("  rod{}: {{origin: m{}}}\n", i, i);
+        joints +=
+            fmt::format("  a{}: {{type: spherical, bodies: [rod{}, c{}], at: p{}}}\n", i, i, i - 1, i - 1);
+        joints += fmt::format("  b{}: {{type: spherical, bodies: [rod{}, c{}], at: e{}}}\n", i, i, i, i);
+    }
+    return parse_scene(
+        fmt::format("elastocheck: 1\nname: carriers and rods\n"
+                    "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}joints:\n{}"
+                    "bushings:\n{}loads:\n  push: {{on: c0, at: p0, force: [0.3, 1, 0.2]}}\n"
+                    "branches:\n  push: {{load: push, to: 500, steps: 5}}\n"
+                    "probes:\n  end: {{on: c{}, at: p{}}}\n",
+                    points, bodies, joints, bushings, n - 1, n - 1),
+        "rods");
+}
+
+TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
+    const int n = 25;
+    const Scene scene = carriers_and_rods(n);
+    const Model rods = compile(scene, Detail::everything), distances = compile(scene);
+    ASSERT_EQ(rods.bodies.size(), static_cast<std::size_t>(2 * n - 1));
+    ASSERT_EQ(distances.bodies.size(), static_cast<std::size_t>(n));
+    const Analysis analysis = analyse(rods);
+    const auto& held = analysis.system.held;
+    ASSERT_EQ(held.idle, n - 1);
+    EXPECT_EQ(held.row.size(), static_cast<std::size_t>(6 * (n - 1)));
+    for (const char* name : {"tangent", "adaptive", "series"}) {
+        const Options options{.method = *find_method(name), .steps = 20};
+        const auto one = solve(rods, rods.branches[0], options, analysis),
+                   other = solve(distances, distances.branches[0], options);
+        ASSERT_EQ(one.outcome, Outcome::converged) << name << " " << one.detail;
+        ASSERT_EQ(other.outcome, Outcome::converged) << name << " " << other.detail;
+        double worst = 0;
+        for (std::size_t b = 0; b < rods.bodies.size(); ++b)
+            for (std::size_t c = 0; c < distances.bodies.size(); ++c)
+                if (rods.bodies[b].name == distances.bodies[c].name)
+                    worst = std::max(worst,
+                                     (one.points.back().poses[b].r - other.points.back().poses[c].r).norm());
+        EXPECT_LE(worst, name == std::string("series") ? 1e-11 : 1e-4) << name;
+    }
+}
+
+// A link on two parallel hinges of its own: three of its rows say what the others do.
+std::string stiff_link(int at) {
+    return fmt::format(
+        "  l{}: {{type: revolute, bodies: [link{}, ground], at: q{}, axis: y}}\n"
+        "  r{}: {{type: revolute, bodies: [link{}, ground], at: r{}, axis: y}}\n",
+        at, at, at, at, at, at);
+}
+
+TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
+    const int n = 12;
+    std::string points, bodies, joints;
+    for (int i = 0; i < n; ++i) {
+        points += fmt::format("  q{}: [{}, 0, 0]\n  r{}: [{}, 0.2, 0]\n", i, i, i, i);
+        bodies += fmt::format("  link{}: {{origin: q{}}}\n", i, i);
+        joints += stiff_link(i);
+    }
+    const Model model = compile(
+        parse_scene(
+            fmt::format("elastocheck: 1\nname: repeated hinges\nunits: {{length: m, angle: rad, force: N}}\n"
+                        "points:\n{}bodies:\n{}joints:\n{}torsion_springs:\n"
+                        "  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}\n"
+                        "loads:\n  push: {{on: link0, at: r0, force: [1, 0, 0]}}\n"
+                        "branches:\n  push: {{load: push, to: 1, steps: 2}}\n"
+                        "probes:\n  end: {{on: link0, at: r0}}\n",
+                        points, bodies, joints),
+            "hinges"),
+        Detail::everything);
+    const std::vector<int> loop = loops(model);
+    ASSERT_EQ(loop.size(), static_cast<std::size_t>(10 * n));
+    for (std::size_t row = 0; row < loop.size(); ++row)
+        for (std::size_t other = 0; other < loop.size(); ++other)
+            EXPECT_EQ(loop[row] == loop[other], row / 10 == other / 10) << row << " " << other;
+    const auto& held = analyse(model).system.held;
+    EXPECT_EQ(held.size() - held.idle, 5 * n);
+    for (int c = held.idle; c < held.size(); ++c) EXPECT_EQ(held.end(c) - held.begin(c), 10);
+}
+
+TEST(Large, LoopsAreWhatNoSingleBodyDivides) {
+    // ground - a - b - ground is a loop; c hangs on b, d and e go round from c; the ground divides them from f.
+    const char* text = R"(elastocheck: 1
+name: loops
+units: {length: m, angle: rad, force: N}
+points: {o: [0, 0, 0], p: [1, 0, 0], q: [1, 1, 0], r: [0, 1, 0], s: [2, 1, 0], t: [2, 2, 0], u: [1, 2, 0], v: [-1, 0, 0]}
+bodies: {a: {origin: p}, b: {origin: q}, c: {origin: s}, d: {origin: t}, e: {origin: u}, f: {origin: v}}
+joints:
+  ga: {type: spherical, bodies: [a, ground], at: o}
+  ab: {type: spherical, bodies: [a, b], at: p}
+  bg: {type: spherical, bodies: [b, ground], at: r}
+  bc: {type: spherical, bodies: [b, c], at: q}
+  cd: {type: spherical, bodies: [c, d], at: s}
+  de: {type: spherical, bodies: [d, e], at: t}
+  ec: {type: spherical, bodies: [e, c], at: u}
+  fg: {type: spherical, bodies: [f, ground], at: v}
+loads: {push: {on: c, at: s, force: [1, 0, 0]}}
+branches: {push: {load: push, to: 1, steps: 2}}
+probes: {end: {on: c, at: s}}
+)";
+    const Model model = compile(parse_scene(text, "loops"), Detail::everything);
+    const std::vector<int> loop = loops(model);
+    ASSERT_EQ(model.joints.size(), 8u);
+    ASSERT_EQ(loop.size(), 24u);
+    const auto of = [&](const char* name) {
+        for (std::size_t c = 0, row = 0; c < model.constraints.size(); row += 3, ++c)
+            if (model.joints[static_cast<std::size_t>(model.constraints[c].joint)].name == name)
+                return loop[row];
+        return -1;
+    };
+    EXPECT_EQ(of("ga"), of("ab"));
+    EXPECT_EQ(of("ga"), of("bg"));
+    EXPECT_EQ(of("cd"), of("de"));
+    EXPECT_EQ(of("cd"), of("ec"));
+    for (const char* alone : {"bc", "fg"})
+        for (const char* other : {"ga", "cd"}) EXPECT_NE(of(alone), of(other)) << alone << " " << other;
+    EXPECT_NE(of("ga"), of("cd"));
+    EXPECT_NE(of("bc"), of("fg"));
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive
