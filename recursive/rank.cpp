@@ -65,8 +65,9 @@ struct Reduced {
 
 }  // namespace
 
-// Elimination in the order of the rows, the pivot of each row chosen among its columns: the largest would do, of
-// those nearly as large the one that the fewest rows touch keeps the rest sparse. Then what is left of row k is
+// Elimination in the order of the rows, the pivot of each row chosen among its columns: the largest would do; of
+// those nearly as large the one that the fewest rows to come touch keeps these sparse. In a chain it is one of the
+// body that is done with: else every row would have something of every joint before it. What is left of row k is
 //
 //   u_k = row k - Σ_j l_kj u_j     over the j < k that do not repeat,
 //
@@ -75,9 +76,10 @@ struct Reduced {
 // dependency in the rows themselves.
 Repeated repeated(const Rows& rows) {
     const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
-    std::vector<int> users(n, 0), pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
+    std::vector<int> to_come(n, 0),
+        pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
     for (int k = 0; k < rows.outerSize(); ++k)
-        for (Rows::InnerIterator e(rows, k); e; ++e) ++users[static_cast<std::size_t>(e.col())];
+        for (Rows::InnerIterator e(rows, k); e; ++e) ++to_come[static_cast<std::size_t>(e.col())];
 
     Repeated result;
     std::vector<Eigen::Triplet<double>> dependencies;
@@ -90,7 +92,10 @@ Repeated repeated(const Rows& rows) {
             if (x.add(at, value))
                 if (const int row = pivot_of[static_cast<std::size_t>(at)]; row >= 0) earlier.push(row);
         };
-        for (Rows::InnerIterator e(rows, k); e; ++e) add(static_cast<int>(e.col()), e.value());
+        for (Rows::InnerIterator e(rows, k); e; ++e) {
+            add(static_cast<int>(e.col()), e.value());
+            --to_come[static_cast<std::size_t>(e.col())];
+        }
         Reduced& u = reduced[static_cast<std::size_t>(k)];
         while (!earlier.empty()) {
             const int j = earlier.top();
@@ -109,9 +114,9 @@ Repeated repeated(const Rows& rows) {
                 const double size = std::abs(x.value[at]);
                 if (!(size >= pivot_threshold * largest)) continue;
                 const auto column = static_cast<std::size_t>(at);
-                const int fewest = u.pivot < 0 ? 0 : users[static_cast<std::size_t>(u.pivot)];
-                if (u.pivot >= 0 &&
-                    (users[column] > fewest || (users[column] == fewest && size <= std::abs(u.pivot_value))))
+                const int fewest = u.pivot < 0 ? 0 : to_come[static_cast<std::size_t>(u.pivot)];
+                if (u.pivot >= 0 && (to_come[column] > fewest ||
+                                     (to_come[column] == fewest && size <= std::abs(u.pivot_value))))
                     continue;
                 u.pivot = at;
                 u.pivot_value = x.value[at];

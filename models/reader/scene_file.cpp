@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "models/reader/beams.hpp"
@@ -104,14 +105,16 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
     const std::size_t begin = elastics.size();
     read_section(scene, key, defs, Sides::both, elastics, read);
     const auto section = scene.optional(key);
-    for (std::size_t k = begin; k < elastics.size(); ++k) {
-        const auto is_twin = [&](const std::string& name) {
-            return defs.mirror && turned(*defs.mirror, name) == elastics[k].name;
-        };
-        const bool is_written = section->optional(elastics[k].name).has_value();
-        if (is_written || std::ranges::any_of(section->value->keys, is_twin))
-            named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name, !is_written};
+    if (!section) return;
+    std::unordered_map<std::string, bool> is_written;  // false of a twin that is not
+    for (const std::string& name : section->value->keys) {
+        is_written[name] = true;
+        if (const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt)
+            is_written.emplace(*twin, false);
     }
+    for (std::size_t k = begin; k < elastics.size(); ++k)
+        if (const auto found = is_written.find(elastics[k].name); found != is_written.end())
+            named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name, !found->second};
 }
 
 // `wheel` is the short form for one that needs no name.
@@ -135,10 +138,12 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
     std::map<int, int> drives;
     const auto section = scene.optional("joints");
     if (!section) return drives;
+    std::unordered_map<std::string, int> positions;
+    for (std::size_t k = 0; k < result.joints.size(); ++k)
+        positions.emplace(result.joints[k].name, static_cast<int>(k));
     const auto hold = [&](const Cursor& at, const std::string& name) {
-        const auto joint = std::ranges::find(result.joints, name, &Joint::name);
-        const int position = static_cast<int>(joint - result.joints.begin());
-        const Joint drive = *drive_of(*joint);
+        const int position = positions.at(name);
+        const Joint drive = *drive_of(result.joints[static_cast<std::size_t>(position)]);
         drives[position] = add_joint(at, drive, result);
     };
     for (const auto& [name, at] : section->entries()) {
@@ -152,6 +157,8 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
 
 // The names that the reader gives to stops, after what they are written in, must be free.
 void require_own_names(const Cursor& scene, const Definitions& defs, const std::vector<Elastic>& elastics) {
+    std::unordered_map<std::string, int> called;
+    for (const Elastic& elastic : elastics) ++called[elastic.name];
     for (const char* key : {"springs", "stops"}) {
         const auto section = scene.optional(key);
         if (!section) continue;
@@ -162,7 +169,7 @@ void require_own_names(const Cursor& scene, const Definitions& defs, const std::
                 const std::string name = owner + "." + field;
                 const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt;
                 for (const std::string& made : {name, twin.value_or(name)})
-                    if (std::ranges::count(elastics, made, &Elastic::name) > 1)
+                    if (called[made] > 1)
                         stop->fail(fmt::format(
                             "needs an element of its own called {}, but there is one already; call "
                             "that one something else",

@@ -106,8 +106,10 @@ int run(int argc, char** argv) {
         command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_name());
         add_settings(*command, settings);
     }
-    bool keep_all = false, formulations = false;
+    bool keep_all = false, formulations = false, verbose = false;
     int every = 1;
+    inspect_command->add_flag("--verbose", verbose,
+                              "long lists whole, and the size of the matrix, its order and its fill-in");
     for (auto* command : {inspect_command, solve_command, compare_command})
         command->add_flag("--keep-all", keep_all, "solve the whole scene, also what no output depends on");
     compare_command->add_flag(
@@ -179,7 +181,7 @@ int run(int argc, char** argv) {
         if (*report_command) return report(request, command, progress);
         if (*new_command) return new_scene(template_name);
         const Detail detail = keep_all ? Detail::everything : Detail::required;
-        if (*inspect_command) return inspect(scene, settings, detail);
+        if (*inspect_command) return inspect(scene, settings, detail, verbose);
         if (*solve_command || *compare_command) {
             const auto leg =
                 std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });

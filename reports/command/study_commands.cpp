@@ -65,12 +65,13 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
 
 }  // namespace
 
-int inspect(const std::string& file, const Settings& settings, Detail detail) {
+int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose) {
     const LoadedScene loaded = load_scene(file, settings, detail);
     print(inspection({.scene = loaded.scene,
                       .model = loaded.model,
                       .trim = loaded.trim,
-                      .diagnosis = recursive::diagnose(loaded.model)}));
+                      .diagnosis = recursive::diagnose(loaded.model),
+                      .verbose = verbose}));
     return fine;
 }
 

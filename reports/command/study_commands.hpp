@@ -12,7 +12,7 @@
 
 namespace elastocheck::reports {
 
-int inspect(const std::string& scene, const Settings& settings, Detail detail);
+int inspect(const std::string& scene, const Settings& settings, Detail detail, bool verbose);
 
 struct CompareRequest {
     recursive::Options recursion;

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <numbers>
+#include <unordered_map>
 
 #include "models/overloaded.hpp"
 
@@ -116,12 +117,14 @@ std::string formulation_words(const Formulation& f) {
     return text;
 }
 
-// As written, before compile() turned it round.
-Formulation written_formulation(const Scene& scene, const std::string& name, const Bushing& modelled) {
+// The formulations of bushings as written, before compile() turned them round.
+using Written = std::unordered_map<std::string, Formulation>;
+Written written_formulations(const Scene& scene) {
+    Written written;
     for (const auto& elastic : scene.elastics)
-        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind); bushing && elastic.name == name)
-            return bushing->formulation;
-    return modelled.formulation;
+        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind))
+            written.emplace(elastic.name, bushing->formulation);
+    return written;
 }
 
 bool is_beam(const Elastic& elastic) {
@@ -130,7 +133,7 @@ bool is_beam(const Elastic& elastic) {
            std::holds_alternative<LinearStiffness>(bushing->law);
 }
 
-std::string bushing_words(const Scene& scene, const Elastic& elastic, const Bushing& bushing) {
+std::string bushing_words(const Written& written, const Elastic& elastic, const Bushing& bushing) {
     const Resisted axes = resisted(bushing.law);
     if (elastic.only_where_driven && axes.all == std::vector<std::size_t>{2})
         return fmt::format("tyre, {}, stands on the branches that drive its road",
@@ -138,7 +141,10 @@ std::string bushing_words(const Scene& scene, const Elastic& elastic, const Bush
     if (axes.all == std::vector<std::size_t>{5})
         return "torsion spring, " + law_words(bushing.law, 5, angles);
     std::string text = is_beam(elastic) ? "beam" : "bushing";
-    if (!is_beam(elastic)) text += formulation_words(written_formulation(scene, elastic.name, bushing));
+    if (!is_beam(elastic)) {
+        const auto as_written = written.find(elastic.name);
+        text += formulation_words(as_written != written.end() ? as_written->second : bushing.formulation);
+    }
     for (const std::size_t k : axes.curves)
         text += fmt::format(", {}: {}", components[k], law_words(bushing.law, k, k < 3 ? lengths : angles));
     if (!bushing.undeformed.isZero(0)) text += ", undeformed elsewhere than drawn";
@@ -164,6 +170,7 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
     const auto ends = [](const Elastic& elastic) {
         return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, elastic.kind);
     };
+    const Written written = written_formulations(scene);
     std::vector<ElementLine> lines;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];
@@ -186,7 +193,7 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
         lines.push_back(
             {elastic.name, body(i) + " - " + body(j),
              std::visit(overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
-                                   [&](const Bushing& e) { return bushing_words(scene, elastic, e); }},
+                                   [&](const Bushing& e) { return bushing_words(written, elastic, e); }},
                         elastic.kind)});
     }
     return lines;

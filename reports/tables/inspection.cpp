@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <span>
 
 #include "compare/channels.hpp"
 #include "compare/legs.hpp"
 #include "models/overloaded.hpp"
+#include "recursive/analysis.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/elements.hpp"
 
@@ -26,6 +29,22 @@ std::string constraint_name(const ConstraintKind& kind) {
                                  [](const DirectionAtAngle&) { return "direction at an angle"; }},
                       kind);
 }
+
+// What each joint is made of.
+std::vector<std::string> compositions(const Model& model) {
+    std::vector<std::string> made_of(model.joints.size());
+    for (const auto& c : model.constraints) {
+        std::string& text = made_of[static_cast<std::size_t>(c.joint)];
+        text += (text.empty() ? "" : " + ") + constraint_name(c.kind);
+    }
+    return made_of;
+}
+
+// A scene that a person wrote is shown whole; of one that a program wrote the beginning of every list.
+constexpr std::size_t most_shown = 40;
+
+// "body" of "body 'arm'".
+std::string kind_of(const Omission& omission) { return omission.what.substr(0, omission.what.find(" '")); }
 
 std::string words(const Size& size) {
     return fmt::format("{} bodies, {} joints, {} elements: {} coordinates, {} constraints, {} unknowns",
@@ -47,6 +66,20 @@ std::string trim_words(const compare::TrimRecord& trim) {
     return text;
 }
 
+// What solving a step takes: the matrix with the border that holds what is idle or redundant, and its factors.
+std::string cost_words(const Model& model) {
+    const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
+    const recursive::Elimination& order = system.lu.order;
+    const std::size_t entries = order.pattern.entries(),
+                      factors = order.left.size() + order.right.size() + system.lu.size();
+    return fmt::format(
+        "  matrix            {:>6}   unknowns in eq. (24), {} with what is held; {} entries other than zero\n"
+        "  factors           {:>6}   entries of L + U: {:.3g} times as many; order by least fill-in "
+        "(Markowitz)\n",
+        system.n + system.m, system.lu.size(), entries, factors,
+        entries > 0 ? static_cast<double>(factors) / static_cast<double>(entries) : 1.0);
+}
+
 }  // namespace
 
 std::string inspection(const Inspected& inspected) {
@@ -58,6 +91,13 @@ std::string inspection(const Inspected& inspected) {
         fmt::vformat_to(std::back_inserter(text), format, fmt::make_format_args(args...));
         text += '\n';
     };
+    // The beginning of a list, and how much of it is left.
+    const auto shown = [&](std::size_t size) {
+        return inspected.verbose || size <= most_shown ? size : most_shown;
+    };
+    const auto rest = [&](std::size_t size, const std::string& what) {
+        if (shown(size) < size) line("  ... and {} more {}; --verbose lists all", size - shown(size), what);
+    };
     line("{}", model.name);
     line("");
     line("  coordinates         {:>4}   6 for each of {} bodies", d.coordinates, model.bodies.size());
@@ -66,23 +106,26 @@ std::string inspection(const Inspected& inspected) {
     line("  degrees of freedom  {:>4}   {} of them idle", d.degrees_of_freedom(), d.idle.size());
     line("  condition        {:>7.2g}   of eq. (24), equilibrated; {:.2g} as it stands",
          condition.equilibrated, condition.raw);
+    if (inspected.verbose) text += cost_words(model);
     line("");
     line("bodies");
-    for (const auto& body : model.bodies)
+    for (const auto& body : std::span(model.bodies).first(shown(model.bodies.size())))
         line("  {:<20} origin ({:.6g}, {:.6g}, {:.6g}) m", body.name, body.design.r.x(), body.design.r.y(),
              body.design.r.z());
+    rest(model.bodies.size(), "bodies");
     if (!model.joints.empty()) line("\njoints");
-    for (int k = 0; k < static_cast<int>(model.joints.size()); ++k) {
-        const auto& joint = model.joints[static_cast<std::size_t>(k)];
-        std::string made_of;
-        for (const auto& c : model.constraints)
-            if (c.joint == k) made_of += (made_of.empty() ? "" : " + ") + constraint_name(c.kind);
+    const auto made_of = compositions(model);
+    for (std::size_t k = 0; k < shown(model.joints.size()); ++k) {
+        const auto& joint = model.joints[k];
         line("  {:<20} {} - {}: {}", joint.name, body_name(model, joint.i), body_name(model, joint.j),
-             made_of);
+             made_of[k]);
     }
+    rest(model.joints.size(), "joints");
     if (!model.elastics.empty()) line("\nelastic elements");
-    for (const auto& [name, between, what] : elements(inspected.scene, model))
+    const auto element_lines = elements(inspected.scene, model);
+    for (const auto& [name, between, what] : std::span(element_lines).first(shown(element_lines.size())))
         line("  {:<20} {}: {}", name, between, what);
+    rest(element_lines.size(), "elements");
     if (inspected.trim) text += trim_words(*inspected.trim);
     line("\nbranches");
     for (const auto& branch : model.branches) {
@@ -113,16 +156,22 @@ std::string inspection(const Inspected& inspected) {
         line("  {:<30} {}", head, meaning);
     }
     line("\nredundant constraints");
-    for (const auto& r : d.redundant)
+    for (const auto& r : std::span(d.redundant).first(shown(d.redundant.size())))
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
              model.joints[static_cast<std::size_t>(r.joint)].name, r.rows,
              r.contradicts ? ", and contradict it" : "");
+    rest(d.redundant.size(), "joints");
     if (d.redundant.empty()) line("  none");
     line("\nidle modes (nothing resists them; they are held, and reported here)");
-    for (const auto& mode : d.idle) line("  {}", mode.description);
+    for (const auto& mode : std::span(d.idle).first(shown(d.idle.size()))) line("  {}", mode.description);
+    rest(d.idle.size(), "modes");
     if (d.idle.empty()) line("  none");
     line("\nleft out or condensed, because no output depends on it");
-    for (const auto& o : model.left_out) line("  {}: {}", o.what, o.why);
+    std::map<std::string, std::size_t> left_out;
+    for (const auto& o : model.left_out)
+        if (const auto place = left_out[kind_of(o)]++; inspected.verbose || place < most_shown)
+            line("  {}: {}", o.what, o.why);
+    for (const auto& [kind, count] : left_out) rest(count, "of kind '" + kind + "'");
     if (model.left_out.empty()) line("  nothing");
     line("  the scene  {}", words(model.as_written));
     line("  as solved  {}", words(model.as_solved));

@@ -15,6 +15,7 @@ struct Inspected {
     const Model& model;  // as it is solved
     const std::optional<compare::TrimRecord>& trim;
     const recursive::Diagnosis diagnosis;  // of `model`
+    bool verbose = false;                  // long lists whole; what solving a step takes
 };
 
 std::string inspection(const Inspected& inspected);

@@ -161,6 +161,34 @@ TEST(Inspect, SaysWhatElementsAre) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
+TEST(Inspect, ShowsTheBeginningOfLongListsAndAllWhenVerbose) {
+    std::string points = "  p0: [0, 0, 0]\n", bodies, bushings;
+    for (int k = 1; k <= 100; ++k) {
+        points += "  p" + std::to_string(k) + ": [" + std::to_string(k) + ", 0, 0]\n";
+        bodies += "  b" + std::to_string(k) + ": {origin: p" + std::to_string(k) + "}\n";
+        bushings += "  k" + std::to_string(k) + ": {bodies: [b" + std::to_string(k) + ", " +
+                    (k == 1 ? "ground" : "b" + std::to_string(k - 1)) + "], at: p" + std::to_string(k - 1) +
+                    ", rates: [1e6, 1e6, 1e6], rotational_rates: [1e4, 1e4, 1e4]}\n";
+    }
+    const Folder folder;
+    const auto scene = folder.write(
+        "chain.yaml",
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints:\n" + points +
+            "bodies:\n" + bodies + "bushings:\n" + bushings +
+            "loads: {up: {on: b100, at: p100, force: [0, 0, 1]}}\n"
+            "branches: {up: {load: up, to: 1, steps: 4}}\nprobes: {tip: {on: b100, at: p100}}\n");
+    const Said some = elastocheck_says("inspect " + scene),
+               all = elastocheck_says("inspect --verbose " + scene);
+    EXPECT_EQ(some.code, 0) << some.err;
+    EXPECT_TRUE(contains(some.out, "... and 60 more bodies; --verbose lists all")) << some.out;
+    EXPECT_TRUE(contains(some.out, "... and 60 more elements; --verbose lists all")) << some.out;
+    EXPECT_FALSE(contains(some.out, "  b41 "));
+    EXPECT_FALSE(contains(some.out, "  factors "));
+    EXPECT_FALSE(contains(all.out, "--verbose")) << all.out;
+    for (const char* part : {"  b41 ", "  k100 ", "  matrix ", "  factors ", "entries of L + U: "})
+        EXPECT_TRUE(contains(all.out, part)) << part << "\n" << all.out;
+}
+
 TEST(Inspect, TellsTheSizeBeforeAndAfter) {
     const Said said = elastocheck_says("inspect " + scenes + "/four_bar.yaml");
     EXPECT_TRUE(contains(said.out, "the scene  ") && contains(said.out, "as solved  ")) << said.out;
