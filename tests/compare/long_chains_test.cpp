@@ -21,7 +21,8 @@ using std::numbers::pi;
 using Real = long double;
 
 constexpr double EA = E * width * thick;
-constexpr std::array segments{25, 50, 100}, links{20, 100};
+constexpr std::array segments{25, 50, 100};
+constexpr std::array links{20, 100};
 
 Model read(const std::string& text, const std::string& name) {
     return compile(parse_scene(
