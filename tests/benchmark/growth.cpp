@@ -18,12 +18,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reports/page/plot.hpp"
@@ -199,27 +198,30 @@ std::string csv(const std::vector<Growth>& all) {
     return text;
 }
 
-std::string or_none(double exponent) {
-    return std::isfinite(exponent) ? fmt::format("{:.2f}", exponent) : "-";
+// One row a family, one column a method: what the largest size took that was solved, and the exponents.
+std::string cell(const Growth& g) {
+    const auto done = g.done();
+    if (done.empty()) return g.rows.empty() ? "-" : g.rows.front().cost.outcome;
+    const auto grows = [&](double Cost::*what) {
+        const double p = exponent(g, what);
+        return std::isfinite(p) ? fmt::format(" ~ n^{:.2f}", p) : "";
+    };
+    return fmt::format("{}: {:.2g} s{}, {:.0f} MB{}", done.back().bodies, done.back().cost.seconds,
+                       grows(&Cost::seconds), done.back().cost.megabytes - g.start.megabytes,
+                       grows(&Cost::megabytes));
 }
-
-void print_table(const std::vector<Growth>& all, const std::vector<int>& sizes) {
-    fmt::print("| family | method |");
-    for (const int n : sizes) fmt::print(" {} |", n);
-    fmt::print(" time ~ n^ | memory at the largest | memory ~ n^ |\n|---|---|");
-    for (std::size_t k = 0; k < sizes.size() + 3; ++k) fmt::print("---|");
-    fmt::print("\n");
-    for (const Growth& g : all) {
-        fmt::print("| {} | `{}` |", title(g.family), g.method);
-        for (const Row& row : g.rows)
-            fmt::print(" {} |", row.cost.outcome.empty() ? fmt::format("{:.2g} s", row.cost.seconds)
-                                                         : row.cost.outcome);
-        const auto done = g.done();
-        fmt::print(
-            " {} | {} | {} |\n", or_none(exponent(g, &Cost::seconds)),
-            done.empty() ? "-" : fmt::format("{:.0f} MB", done.back().cost.megabytes - g.start.megabytes),
-            or_none(exponent(g, &Cost::megabytes)));
+void print_table(const std::vector<Growth>& all, const std::vector<std::string>& asked) {
+    fmt::print("| family | {} |\n|---|", fmt::join(asked, " | "));
+    for (std::size_t k = 0; k < asked.size(); ++k) fmt::print("---|");
+    for (const Family& family : all_families) {
+        bool first = true;
+        for (const Growth& g : all) {
+            if (title(g.family) != title(family)) continue;
+            if (std::exchange(first, false)) fmt::print("\n| {} |", title(family));
+            fmt::print(" {} |", cell(g));
+        }
     }
+    fmt::print("\n");
 }
 
 reports::Figure figure(const std::vector<Growth>& all, const Family& family) {
@@ -291,7 +293,7 @@ int main(int argc, char** argv) {
     }
     fs::remove_all(scratch);
     std::ofstream(folder / "growth.csv") << csv(all);
-    print_table(all, sizes);
+    print_table(all, asked);
     for (const Family& family : all_families)
         if (auto picture = figure(all, family); !picture.series.empty())
             figures.push_back(std::move(picture));

@@ -21,6 +21,8 @@ using std::numbers::pi;
 using Real = long double;
 
 constexpr double EA = E * width * thick;
+constexpr std::array segments{25, 50, 100};
+constexpr std::array links{20, 100};
 
 Model read(const std::string& text, const std::string& name) {
     return compile(parse_scene(
@@ -29,7 +31,7 @@ Model read(const std::string& text, const std::string& name) {
 
 EquilibriumPath walked(const Model& model, const Branch& branch, Leg leg) {
     return walk(ways_of(model, branch),
-                {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{.tolerance = 1e-13}}}});
+                {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{}}}});
 }
 
 // ---- The elastica.
@@ -74,7 +76,7 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
     for (const double alpha : {2., 10.})
         EXPECT_NEAR(static_cast<double>(rod(alpha * EI / (L * L), 0).y), elastica(alpha).y, 1e-12) << alpha;
     std::vector<double> errors;
-    for (const int n : {125, 250, 500}) {
+    for (const int n : segments) {
         const Model model =
             read(leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
                                        "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
@@ -101,6 +103,7 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
                     if (!(apart <= off)) off = apart;
                 }
                 EXPECT_LE(1e3 * off, 1e-8) << n << " " << name(leg) << " at " << point.load << " N";
+                if (leg != Leg::equilibrium) continue;  // the other one stands there as well
                 const RodEnd exact = rod(point.load, 1 / Real(EA));
                 const auto& r = point.poses[tip].r;
                 error = std::max(error, std::hypot(static_cast<double>(r.x() - exact.x),
@@ -111,7 +114,8 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
     }
     for (std::size_t k = 1; k < errors.size(); ++k)
         EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.02) << errors[k - 1] << " to " << errors[k];
-    EXPECT_LE(1e3 * errors.back(), 2e-3) << "mm";
+    EXPECT_LE(1e3 * errors.back(), 500. / segments.back() / segments.back())
+        << "mm, of a tip that comes 810 mm across";
 }
 
 // ---- Euler's column.
@@ -120,7 +124,7 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
 TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
     const double euler = pi * pi * EI / (4 * L * L), limit = 2 * euler / (1 + std::sqrt(1 - 4 * euler / EA));
     std::vector<double> errors;
-    for (const int n : {125, 250, 500}) {
+    for (const int n : segments) {
         const Model model = read(leaf(n) +
                                      "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
                                      "branches: {press: {load: press, to: 1, steps: 1}}\n",
@@ -288,7 +292,7 @@ struct HangingChain {
         }
         joints += fmt::format(
             "  height: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: z}}\n"
-            "  span: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: x, held: true}}\n",
+            "  span: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: x}}\n",
             n);
         return points + bodies + joints + (rope.k > 0 ? springs : "") +
                fmt::format(
@@ -302,7 +306,7 @@ struct HangingChain {
 };
 
 TEST(HangingChain, StandsOnTheDiscreteCatenaryAndFollowsItsLoadAndItsEnd) {
-    for (const int n : {20, 1000}) {
+    for (const int n : links) {
         const HangingChain chain(n, 1);
         const Model model = read(chain.text(), fmt::format("chain of {}", n));
         for (const auto& branch : model.branches)
