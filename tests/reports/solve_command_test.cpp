@@ -64,7 +64,9 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
         ASSERT_EQ(some.size(), all.size());
         ASSERT_EQ(some[0].size(), 4 + heads.size()) << said.out;
         for (std::size_t c = 0; c < some[0].size(); ++c) {
-            if (c >= 4) EXPECT_EQ(some[0][c], heads[c - 4]);
+            if (c >= 4) {
+                EXPECT_EQ(some[0][c], heads[c - 4]);
+            }
             const auto at = static_cast<std::size_t>(std::ranges::find(all[0], some[0][c]) - all[0].begin());
             for (std::size_t row = 0; row < all.size(); ++row) EXPECT_EQ(some[row][c], all[row][at]);
         }
