@@ -23,8 +23,8 @@ using Real = long double;
 constexpr double EA = E * width * thick;
 constexpr std::array segments{25, 50, 100};
 constexpr std::array links{20, 100};
-constexpr int series_segments =
-    50;  // of a clamped leaf under a force across it; with more, its round-off is above 1e-12 m
+// Of a leaf that is bent by a force: with 100 the series, told 1e-12 m, has not arrived after 200 expansions.
+constexpr int series_segments = 50;
 
 Model read(const std::string& text, const std::string& name) {
     return compile(parse_scene(
@@ -103,7 +103,7 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
                         static_cast<std::size_t>(std::lround(model.bodies[i].design.r.x() * n / L)) - 1;
                     const double apart = std::hypot(static_cast<double>(r.x() - known.x.at(node)),
                                                     static_cast<double>(r.y() - known.z.at(node)), r.z());
-                    if (!(apart <= off)) off = apart;
+                    if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN stays
                 }
                 EXPECT_LE(1e3 * off, 1e-8) << n << " " << name(leg) << " at " << point.load << " N";
                 if (leg != Leg::equilibrium) continue;  // the other one stands there as well
@@ -328,7 +328,7 @@ TEST(HangingChain, StandsOnTheDiscreteCatenaryAndFollowsItsLoadAndItsEnd) {
                         const auto& r = point.poses[i].r;
                         const double apart = std::hypot(static_cast<double>(r.x() - known.x[i]), r.y(),
                                                         static_cast<double>(r.z() - known.z[i]));
-                        if (!(apart <= off)) off = apart;
+                        if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN stays
                     }
                     EXPECT_LE(1e3 * off, 1e-8)
                         << n << " " << branch.name << " " << name(leg) << " at " << point.load;

@@ -122,7 +122,7 @@ TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
     }
 }
 
-// A link on two parallel hinges of its own: three of its rows say what the others do.
+// A link on two hinges in one line: the second says all over again what the first does, five rows.
 std::string stiff_link(int at) {
     return fmt::format(
         "  l{}: {{type: revolute, bodies: [link{}, ground], at: q{}, axis: y}}\n"
