@@ -1,4 +1,5 @@
-// Reference leg 1: the full nonlinear constraint and equilibrium equations, solved by Ceres.
+// Reference leg 1: the full nonlinear constraint and equilibrium equations, differentiated by Ceres, solved by Newton's
+// method. Its cost grows with the scene, as long as what connects the bodies is sparse.
 //
 // Everything is SI (m, N, N·m, rad). Nothing is kept between calls and nothing is shared: any number of
 // threads may solve and judge one model at the same time.
