@@ -191,14 +191,14 @@ TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
     const Folder folder;
     const auto file = (folder.path / "rates.csv").string();
     const std::string command =
-        "solve " + scenes + "/bushing_pair.yaml --method series --steps 20 --every 8 --rates " + file;
-    const Said said = elastocheck_says(command + " --channels nose_x,'*force_x'");
+        "solve " + scenes + "/chrono_mcpherson.yaml --method series --steps 20 --every 8 --rates " + file;
+    const Said said = elastocheck_says(command + " --channels toe,ball_joint.force_x");
     EXPECT_EQ(said.code, 0) << said.err;
     const auto rows = cells_of(said.out), rates = cells_of(text_of(file));
     ASSERT_EQ(rates.size(), rows.size());
     for (std::size_t k = 1; k < rows.size(); ++k) EXPECT_EQ(rates[k][1], rows[k][2]);
     EXPECT_EQ(rates[0], (std::vector<std::string>{"branch", "parameter", "parameter unit",
-                                                  "nose_x [mm per parameter unit]"}));
+                                                  "toe [deg per parameter unit]"}));
     EXPECT_EQ(elastocheck_says(command + " --channels '*force_x'").code, 2);
 }
 
