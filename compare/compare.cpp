@@ -123,7 +123,7 @@ std::vector<std::string> Objections::texts() const {
 }
 
 bool energy_bears_witness(const BranchComparison& branch) {
-    return branch.second != Leg::energy && run_of(branch, Leg::energy).path.outcome == Outcome::too_large;
+    return branch.second != Leg::energy && run_of(branch, Leg::energy).outcome == Outcome::too_large;
 }
 
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
