@@ -14,7 +14,7 @@
 // motions 2 n k (n + k) (nothing where m = 0), its eigenvectors 9 k³, and the directions across 4 n² m.
 //
 // How many: the walk takes a step for each value asked for, and some more because it begins with 1/64 of the
-// span and doubles. A step is two or three states, where it starts, where each chart ends, and some eight evaluations.
+// span and doubles. A step is two or three states, where it starts, where each chart ends, and some six evaluations.
 // On the built-in scenes and on chains of any length the counts come out within a factor of four; stops that close
 // take most. Not foreseen: scenes that settle under a load before they walk, and steps that had to be halved.
 #pragma once

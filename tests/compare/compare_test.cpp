@@ -152,7 +152,7 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     ASSERT_FALSE(comparison.conclusive());
     EXPECT_NE(comparison.branches[0].inconclusive.texts().at(0).find("disagree on tip_"), std::string::npos);
     options = {};
-    options.agreement.residual_length = 0;
+    options.agreement.residual_force = 0;
     EXPECT_FALSE(compare(compile(support::scene("pinned_bar")), options).conclusive());
     options = {};
     options.agreement.length = std::numeric_limits<double>::quiet_NaN();

@@ -21,8 +21,8 @@ using std::numbers::pi;
 using Real = long double;
 
 constexpr double EA = E * width * thick;
-constexpr std::array segments{25, 50, 100};
-constexpr std::array links{20, 100};
+constexpr std::array segments{50, 250, 500};
+constexpr std::array links{20, 1000};
 // Of a leaf that is bent by a force: with 100 the series, told 1e-12 m, has not arrived after 200 expansions.
 constexpr int series_segments = 50;
 

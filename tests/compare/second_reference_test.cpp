@@ -129,7 +129,7 @@ TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitn
     BranchComparison branch = compared_chain().branches[0];
     EXPECT_TRUE(compared_chain().conclusive())
         << (branch.inconclusive.empty() ? "" : branch.inconclusive.worst.front().what);
-    EXPECT_EQ(branch.runs[2].path.outcome, Outcome::too_large);
+    EXPECT_EQ(branch.runs[2].outcome, Outcome::too_large);
     EXPECT_NE(branch.not_asked.find("operations for 840 coordinates"), std::string::npos) << branch.not_asked;
     EXPECT_EQ(branch.second, Leg::series);
     EXPECT_TRUE(energy_bears_witness(branch));
@@ -141,7 +141,7 @@ TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitn
 TEST(SecondReference, TheWitnessSeesAMicrometre) {
     BranchComparison branch = compared_chain().branches[0];
     const Way way = ways_of(chain(), chain().branches[0]).front();
-    Equilibrium moved = branch.runs[1].path.points.back();
+    Equilibrium moved = branch.runs[1].landmarks.back.value();
     moved.poses[70].r.y() += 1e-6;
     witness(branch) = judge(Leg::energy, way, moved);
     const Objections objections =

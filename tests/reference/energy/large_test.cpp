@@ -122,7 +122,7 @@ TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
             for (int k : {3, 4, 9}) scene.joints.push_back(scene.joints[static_cast<std::size_t>(k)]);
             for (std::size_t k = 12; k < scene.joints.size(); ++k) scene.joints[k].name += "again";
         }
-        const Model model = compile(scene, Detail::all);
+        const Model model = compile(scene, Detail::everything);
         const Scales scales = lengths_of(model, course_of(model, model.branches[0]));
         const Chart chart = chart_about(bent(model, 0.05).poses);
         const auto values = constraints(model, nothing_prescribed(model), chart);
