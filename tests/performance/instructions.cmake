@@ -7,7 +7,7 @@ if(NOT VALGRIND)
 endif()
 execute_process(
   COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null
-          "--toggle-collect=elastocheck::recursive::solve(elastocheck::Model const&, elastocheck::Branch const&, elastocheck::recursive::Options const&)"
+          "--toggle-collect=elastocheck::recursive::solve(elastocheck::Model const&, elastocheck::Branch const&, elastocheck::recursive::Options const&, std::function<void (elastocheck::Equilibrium const&)> const&)"
           ${SWEEP} ${SCENE}
   OUTPUT_VARIABLE said ERROR_VARIABLE told RESULT_VARIABLE failed)
 if(failed OR NOT said MATCHES "600 steps" OR NOT told MATCHES "Collected : ([0-9]+)")
