@@ -5,6 +5,10 @@
 
 namespace elastocheck::recursive::series {
 
+// Of the first coefficient: what its correction may be, and no digits are lost that matter. Along hundreds of stiff links
+// the matrix, whose entries are rounded, answers to 1e-12 only, which no expansion, however short, brings back.
+constexpr double loses_digits = 1e-13;
+
 Coefficients reserve_coefficients(const March<double>& s, int order) {
     const int N = s.n() + s.m();
     return {Matrix<double>::Zero(N, order + 1), Vector<double>::Zero(order + 1), Vector<double>::Zero(N),
@@ -42,6 +46,21 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     c.x.col(1) = c.load[1] * c.unit;
     s.x = c.x.col(1);
 
+    // What coefficient k of (G, Φ), taken element by element with x_k in it, still asks of x_k: the rounding of the matrix.
+    const auto correct = [&](int k) {
+        assign(e, k, s.x, c.load[k]);
+        evaluate(e, {k, Pass::known});
+        s.upper = -e.G;
+        s.lower = -e.Phi;
+        back_substitute(s);
+    };
+    bool loses = false;
+    if (!arc_length) {
+        correct(1);
+        loses = !(s.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
+        if (loses) c.x.col(1) += s.x;
+        s.x = c.x.col(1);
+    }
     for (int k = 1; k <= e.order(); ++k) {
         assign(e, k, c.none, 0);
         evaluate(e, {k, Pass::known});
@@ -54,6 +73,13 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
                 s.x += c.load[k] * c.unit;
             }
             c.x.col(k) = s.x;
+            if (loses) {
+                correct(k);
+                c.x.col(k) += s.x;
+                s.x = c.x.col(k);
+                assign(e, k, c.none, 0);
+                evaluate(e, {k, Pass::known});
+            }
         }
         if (k == e.order() && !e.curved) break;  // whose deformations are looked at for knots
         assign(e, k, s.x, c.load[k]);

@@ -36,6 +36,6 @@ struct Cost {
 Cost cost_of(const Model& model, std::size_t values);
 
 // More operations than this are not worth it: of the order of a minute of a desk computer.
-inline constexpr double most_operations = 2e11;
+inline constexpr double most_operations = 1e11;
 
 }  // namespace elastocheck::reference::energy

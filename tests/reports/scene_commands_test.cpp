@@ -297,7 +297,7 @@ TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
     EXPECT_EQ(solved.code, 3) << solved.out;
     EXPECT_TRUE(contains(
         solved.err,
-        "too large: branch 'up': the energy leg is not asked: some 3e+11 operations for 900 coordinates"))
+        "too large: branch 'up': the energy leg is not asked: some 2e+11 operations for 900 coordinates"))
         << solved.err;
     const Said said = elastocheck_says("compare " + scene + " -o " + out);
     EXPECT_EQ(said.code, 0) << said.out << said.err;
