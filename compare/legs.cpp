@@ -263,7 +263,7 @@ References references(const Model& model, const std::vector<Channel>& channels, 
     result.scale = scale_of(standing, branch, {});
     Walked equilibrium =
                walk(model, channels, branch, ways, {.leg = Leg::equilibrium},
-                    [&](const Equilibrium& state) {
+                    [&](const Equilibrium&state) {
                         result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
                     }),
            second = walk(model, channels, branch, ways, {.leg = Leg::energy});

@@ -33,8 +33,8 @@ enum class Outcome {
     limit_point,               // the branch ends here: it turns back, and no equilibrium continues it
     branch_lost,               // no equilibrium continues the branch, however small the load step
     not_conservative,          // a load or a formulation has no energy: the energy leg cannot be asked
-    too_large,                 // more work than a leg whose cost grows with the cube of the scene is worth: not asked
-    outside_table,             // a curve that says nothing beyond its ends was led beyond them
+    too_large,      // more work than a leg whose cost grows with the cube of the scene is worth: not asked
+    outside_table,  // a curve that says nothing beyond its ends was led beyond them
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
 
