@@ -8,7 +8,9 @@
 #include "models/reader/scene_file.hpp"
 #include "recursive/analysis.hpp"
 #include "recursive/loops.hpp"
+#include "recursive/series/path.hpp"
 #include "recursive/solve.hpp"
+#include "tests/support/cantilever.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -52,6 +54,21 @@ TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
                 }
         }
     }
+}
+
+// Its matrix, rounded, answers to 1e-12 only: coefficients that are not corrected by their own equations bring the
+// expansions to a halt.
+TEST(Large, ALongLeafIsBentInFewExpansions) {
+    using namespace support;
+    const Model model = compile(
+        parse_scene("elastocheck: 1\nname: leaf\nunits: {length: m, angle: rad, force: N}\n" + leaf(100) +
+                        fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
+                                    "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+                                    10 * EI / (L * L)),
+                    "leaf"));
+    const series::Path path = series::follow(model, model.branches[0], {}, analyse(model));
+    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+    EXPECT_LE(path.expansions.size(), 40u);
 }
 
 TEST(Large, MemoryOfTheFactorsGrowsAsTheChain) {
