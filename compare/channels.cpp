@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -45,6 +46,9 @@ const ModelJoint& joint_of(const Model& model, int joint) {
 
 double read(const Model&, const Equilibrium& state, const Coordinate& c) {
     return position(state, c.at)[c.axis] - c.counted_from;
+}
+double read(const Model&, const Equilibrium&, const Characteristic&) {
+    return std::numeric_limits<double>::quiet_NaN();
 }
 double read(const Model& model, const Equilibrium& state, const Toe& c) {
     const Vector3d e = spin_axis(model, state, c.wheel);
@@ -177,17 +181,36 @@ const char* symbol(Unit unit) {
         case Unit::newton: return "N";
         case Unit::newton_metre: return "N·m";
         case Unit::none: return "-";
+        case Unit::deg_per_m: return "deg/m";
+        case Unit::deg_per_100mm: return "deg/100 mm";
+        case Unit::mm_per_100mm: return "mm/100 mm";
+        case Unit::deg_per_mm: return "deg/mm";
+        case Unit::deg_per_deg: return "deg/deg";
+        case Unit::newton_per_mm: return "N/mm";
+        case Unit::deg_per_kN: return "deg/kN";
+        case Unit::deg_per_100Nm: return "deg/(100 N·m)";
+        case Unit::percent: return "%";
     }
     return "";
 }
 
 double in_unit(Unit unit) {
+    constexpr double deg = 180 / std::numbers::pi;
     switch (unit) {
         case Unit::mm: return 1e3;
-        case Unit::deg: return 180 / std::numbers::pi;
+        case Unit::deg:
+        case Unit::deg_per_m: return deg;
         case Unit::newton:
         case Unit::newton_metre:
+        case Unit::deg_per_deg:
         case Unit::none: return 1;
+        case Unit::deg_per_100mm: return deg / 10;
+        case Unit::mm_per_100mm: return 100;
+        case Unit::deg_per_mm: return deg / 1e3;
+        case Unit::newton_per_mm: return 1e-3;
+        case Unit::deg_per_kN: return 1e3 * deg;
+        case Unit::deg_per_100Nm: return 100 * deg;
+        case Unit::percent: return 100;
     }
     return 1;
 }
@@ -203,7 +226,9 @@ Unit unit_of(ParameterUnit unit) {
     return Unit::none;
 }
 
-bool Channel::kinematic() const { return joints().empty(); }
+bool Channel::kinematic() const {
+    return joints().empty() && !std::holds_alternative<Characteristic>(reads);
+}
 
 std::vector<int> Channel::joints() const {
     return std::visit(overloaded{[](const Coordinate&) { return std::vector<int>{}; },
@@ -211,7 +236,8 @@ std::vector<int> Channel::joints() const {
                                  [](const Camber&) { return std::vector<int>{}; },
                                  [](const Effort& e) { return std::vector<int>{e.joint}; },
                                  [](const Reaction& r) { return std::vector<int>{r.joint}; },
-                                 [](const Total& t) { return t.joints; }},
+                                 [](const Total& t) { return t.joints; },
+                                 [](const Characteristic&) { return std::vector<int>{}; }},
                       reads);
 }
 

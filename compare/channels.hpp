@@ -1,6 +1,7 @@
 // Outputs: what is read off a configuration, the same for every leg and independent of all of them.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,8 +14,24 @@
 namespace elastocheck::compare {
 
 // Engineering units from here on: mm, deg, N, N·m.
-enum class Unit { mm, deg, newton, newton_metre, none };
-const char* symbol(Unit unit);     // "mm", ..., "-"
+enum class Unit {
+    mm,
+    deg,
+    newton,
+    newton_metre,
+    none,
+    // Of rates, which are characteristics (characteristics.hpp).
+    deg_per_m,
+    deg_per_100mm,
+    mm_per_100mm,
+    deg_per_mm,
+    deg_per_deg,
+    newton_per_mm,
+    deg_per_kN,
+    deg_per_100Nm,
+    percent,
+};
+const char* symbol(Unit unit);     // "mm", ..., "-", "deg/kN"
 double in_unit(Unit unit);         // how many of them one m, rad, N, N·m or 1 is
 Unit unit_of(ParameterUnit unit);  // in which a branch's parameter is shown
 
@@ -51,7 +68,15 @@ struct Total {
     BodyId on = ground;
     int component = 0;
 };
-using Reads = std::variant<Coordinate, Toe, Camber, Effort, Reaction, Total>;
+// Of a state and how it answers small changes (characteristics.hpp).
+struct Characteristic {
+    std::size_t entry = 0;  // which it is
+    std::size_t of = 0;     // whose: of which wheel, spring, damper
+};
+using Reads = std::variant<Coordinate, Toe, Camber, Effort, Reaction, Total, Characteristic>;
+
+// The value of an output where it has none: the length of an arm whose end is nowhere. NaN is a failure.
+inline constexpr double undefined = std::numeric_limits<double>::infinity();
 
 struct Channel {
     std::string
@@ -60,6 +85,7 @@ struct Channel {
     bool main = true;  // false: joint forces, and travel, which is wheel_centre_z once more
     Reads reads = {};
     std::string definition = {};  // one line with its sign: the only place where it is written
+    std::string undefined = {};   // what it means where it has no value; empty where it always has one
 
     bool kinematic() const;           // of the configuration alone: a position or an angle
     std::vector<int> joints() const;  // whose wrenches it reads
@@ -82,7 +108,7 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
 // Position of a channel by its name, or -1.
 int find_channel(std::span<const Channel> channels, std::string_view name);
 
-// Their values at one equilibrium, same order.
+// Their values at one equilibrium, same order. What a characteristic is, the state alone does not tell: NaN.
 std::vector<double> evaluate(const Model& model, std::span<const Channel> channels, const Equilibrium& state);
 std::vector<double> evaluate(const Model& model, const Equilibrium& state);  // of channels(model)
 

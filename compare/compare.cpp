@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/characteristics.hpp"
 #include "recursive/diagnosis.hpp"
 
 namespace elastocheck::compare {
@@ -24,6 +25,26 @@ double seconds_alone(const std::vector<Way>& ways, const Gait& gait) {
     const auto start = clock::now();
     for (const auto& way : ways) walk(way, gait, [](const Equilibrium&) {});
     return std::chrono::duration<double>(clock::now() - start).count();
+}
+
+bool asks_for_characteristics(const std::vector<Channel>& channels) {
+    return std::ranges::any_of(
+        channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
+}
+
+std::vector<Compliance> compliance_of(const Model& model, const Way& way, const Gait& gait, const LegRun& run) {
+    std::vector<Compliance> list;
+    for (const auto* state : {&run.landmarks.front, &run.landmarks.start, &run.landmarks.back}) {
+        if (!*state) continue;
+        const double a = in_unit(run.curve.unit) * (*state)->load;
+        if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
+        const Answers answers = answer(way, gait, steering_joint(model), **state);
+        Compliance& at = list.emplace_back(Compliance{.a = a, .why_not = answers.why_not_free});
+        at.centre = compliance(way.model, WheelPoint::centre, **state, answers);
+        at.patch = compliance(way.model, WheelPoint::patch, **state, answers);
+        at.reciprocity = reciprocity(way.model, at.centre);
+    }
+    return list;
 }
 
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
@@ -54,6 +75,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     });
     if (!front) front = start;
     if (!back) back = start;
+    if (!model.wheels.empty() && asks_for_characteristics(channels)) run.compliance = compliance_of(model, way, gait, run);
     if (gait.leg == Leg::recursive || gait.leg == Leg::series) run.seconds = seconds_alone(ways, gait);
     return run;
 }
@@ -74,9 +96,8 @@ double bound_of(Unit unit, const Bounds& bounds) {
         case Unit::deg: return bounds.angle;
         case Unit::newton: return bounds.force;
         case Unit::newton_metre: return bounds.moment;
-        case Unit::none: return 0;
+        default: return 0;  // of a characteristic: apart
     }
-    return 0;
 }
 
 int count(const Reading& reading, const std::vector<bool>& determined) {
@@ -188,6 +209,7 @@ LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::O
 Comparison compare(const Model& model, const Options& options) {
     Comparison result;
     result.channels = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(result.channels));
     const int asked = options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
     if (asked < 0 && !options.abscissa.empty())
         throw std::invalid_argument(fmt::format("'{}' is no output of the scene", options.abscissa));

@@ -26,6 +26,15 @@ struct Landmarks {
     std::optional<Equilibrium> front, start, middle, back;
 };
 
+// How far the wheels give at one point of a branch (characteristics.hpp): matrices about the wheel centres and the contact
+// patches, SI; empty where nothing resists the wheels.
+struct Compliance {
+    double a = 0;  // of the branch's parameter, in its unit
+    Eigen::MatrixXd centre, patch;
+    double reciprocity = 0;    // of `centre`
+    std::string why_not = {};  // there is none
+};
+
 // One leg along one branch. Of its points the outputs are kept, not the states.
 struct LegRun : Walked {
     Leg leg = Leg::recursive;
@@ -34,6 +43,7 @@ struct LegRun : Walked {
         // forces are NaN by the energy leg's where there is no energy
     Scale scale = {};  // of what acts over the points
     Landmarks landmarks = {};
+    std::vector<Compliance> compliance = {};  // at front, start and back, as far as they are apart; of a scene with wheels
 };
 
 // The recursion goes as `recursion` says, the published one unless it says otherwise, and every one of its

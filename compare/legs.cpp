@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compare/characteristics.hpp"
 #include "compare/deformation.hpp"
 #include "models/branch.hpp"
 #include "reference/energy/solve.hpp"
@@ -160,8 +161,17 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
     return path;
 }
 
-Row row_of(const Model& model, std::span<const Channel> channels, const Equilibrium& state) {
-    return {state.load, state.constraint_error, evaluate(model, channels, state)};
+Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
+           const Equilibrium& state) {
+    Row row{state.load, state.constraint_error, evaluate(model, channels, state)};
+    std::optional<Answers> answers;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
+        if (characteristic == nullptr) continue;
+        if (!answers) answers = answer(way, gait, steering_joint(model), state);
+        row.values[c] = in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
+    }
+    return row;
 }
 
 EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait,
@@ -182,7 +192,7 @@ Walked walk(const Model& model, std::span<const Channel> channels, const Branch&
         [&](const Equilibrium& state) {
             const auto found = clock::now();
             if (also) also(state);
-            Row row = row_of(model, channels, state);
+            Row row = row_of(model, channels, ways.front(), gait, state);
             reading += clock::now() - found;
             return row;
         },

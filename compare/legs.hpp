@@ -64,7 +64,9 @@ struct Row {
     double constraint_error = 0;  // likewise
     std::vector<double> values;   // per channel, in its unit
 };
-Row row_of(const Model& model, std::span<const Channel> channels, const Equilibrium& state);
+// By whoever walks as `gait` says: a characteristic is asked of the leg that found the state.
+Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
+           const Equilibrium& state);
 
 // The same path, no point of which is kept: each is read once, as it is found, and its row handed over in the order of
 // the path. What comes reversed, the first of two ways, is kept as rows until it ends.

@@ -50,7 +50,8 @@ double rate(const Model& model, const Channel& channel, const Equilibrium& state
                                  },
                                  [&](const Effort& c) { return unknown(c); },
                                  [&](const Reaction& c) { return unknown(c); },
-                                 [&](const Total& c) { return unknown(c); }},
+                                 [&](const Total& c) { return unknown(c); },
+                                 [&](const Characteristic& c) { return unknown(c); }},
                       channel.reads) *
            in_unit(channel.unit);
 }

@@ -36,6 +36,10 @@ Table settled_table(const std::vector<Channel>& channels, const std::vector<Sett
 Table curve_table(const Comparison& comparison);         // every leg, branch and point, all channels
 Table deviation_table(const Comparison& comparison);     // per branch, reading and channel
 Table agreement_table(const Comparison& comparison);     // bounds and objections per branch
+// Kinematics and compliance at the design position, each with the error of the recursion; empty without a wheel.
+Table characteristic_table(const Comparison& comparison);
+// How far the wheels give, per branch, landmark, leg and point: a row each component of the answer, a column each of what acts.
+Table compliance_table(const Model& model, const Comparison& comparison);
 Table rate_table(const std::vector<RateError>& errors);  // wheel rates
 // Per branch and main output: the spread beside what it is to be read against; of the same scene's comparison.
 Table formulation_table(const FormulationStudy& study, const Comparison& comparison);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "compare/channels.hpp"
+#include "compare/characteristics.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
 #include "recursive/series/path.hpp"
@@ -72,7 +73,10 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     if (!request.output.empty()) check_may_write(request.output, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     const Model model = load_scene(file, settings, request.detail).model;
-    const auto channels = chosen(compare::channels(model), request.channels);
+    // A characteristic costs as much as a step of a leg: only who asks for it by name gets it.
+    auto all = compare::channels(model);
+    if (!request.channels.empty()) std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    const auto channels = chosen(all, request.channels);
     check_every(model, how.steps, every);
     check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request);
@@ -84,9 +88,12 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     int code = fine;
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
+        const auto ways = compare::ways_of(model, branch, how.steps);
         const EquilibriumPath path = compare::walk(
-            compare::ways_of(model, branch, how.steps), request.gait,
-            [&](const Equilibrium& state) { return compare::row_of(model, channels, state); },
+            ways, request.gait,
+            [&](const Equilibrium& state) {
+                return compare::row_of(model, channels, ways.front(), request.gait, state);
+            },
             [&](const compare::Row& row) {
                 write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
             });

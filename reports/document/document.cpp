@@ -270,6 +270,10 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     scene_document["branches"] = branches;
     scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
+    if (!model.wheels.empty())
+        scene_document["characteristics"] = {
+            {"design", table_json(compare::characteristic_table(comparison))},
+            {"compliance", table_json(compare::compliance_table(model, comparison))}};
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 

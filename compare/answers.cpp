@@ -1,0 +1,189 @@
+#include "compare/answers.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "compare/deformation.hpp"
+#include "compare/positions.hpp"
+#include "models/branch.hpp"
+#include "recursive/respond.hpp"
+#include "reference/energy/respond.hpp"
+#include "reference/equilibrium/respond.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+// A plane that carries a point of a wheel, and stands only where it is driven.
+bool is_jack(const Model& model, std::size_t joint) {
+    const ModelJoint& j = model.joints[joint];
+    return j.only_where_driven && j.j == ground &&
+           std::ranges::any_of(model.constraints, [&](const Constraint& c) {
+               return c.joint == static_cast<int>(joint) && std::holds_alternative<PointInPlane>(c.kind);
+           }) &&
+           std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
+               return wheel.body == j.i &&
+                      (wheel.centre_local == j.at.s_local || wheel.contact_local == j.at.s_local);
+           });
+}
+
+// A tyre that stands: what resists d_z alone between ground and a wheel, and stands only where it is driven.
+const Bushing* tyre(const Elastic& elastic) {
+    return elastic.only_where_driven ? std::get_if<Bushing>(&elastic.kind) : nullptr;
+}
+
+// What a tyre exerts on its wheel, upright [N].
+double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch, const Equilibrium& state) {
+    double stress = tyre.preload.z();
+    for (const auto& driver : branch.drivers)
+        if (const auto* preload = std::get_if<Preload>(&driver.what);
+            preload != nullptr && preload->elastic == static_cast<int>(element))
+            stress += (driver.start + driver.rate * state.load) * preload->direction.z();
+    const auto& K = std::get<LinearStiffness>(tyre.law).K;
+    return -(stress + K(2, 2) * deformation(tyre, state).z());
+}
+
+struct Stand {
+    Model model;
+    Branch branch;
+    Equilibrium state;
+};
+
+Stand freed(const Way& way, const Equilibrium& state) {
+    Stand free{way.model, way.branch, state};
+    const auto push = [&](const Point& at, double force) {
+        free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
+    };
+    std::erase_if(free.branch.drivers, [&](const Driver& driver) {
+        const auto* motion = std::get_if<Motion>(&driver.what);
+        return motion != nullptr && is_jack(way.model, static_cast<std::size_t>(motion->joint));
+    });
+    for (std::size_t k = 0; k < way.model.joints.size(); ++k)
+        if (is_jack(way.model, k)) {
+            push(way.model.joints[k].at, state.reactions[k].force.z());
+            free.state.reactions[k] = {};
+        }
+    for (std::size_t k = 0; k < way.model.elastics.size(); ++k)
+        if (const Bushing* at = tyre(way.model.elastics[k])) {
+            push({at->j.body, at->j.s_local}, tyre_force(*at, k, way.branch, state));
+            std::erase_if(free.branch.drivers, [&](const Driver& driver) {
+                const auto* preload = std::get_if<Preload>(&driver.what);
+                return preload != nullptr && preload->elastic == static_cast<int>(k);
+            });
+        }
+    free.model = on_branch(free.model, free.branch);
+    return free;
+}
+
+// One jack a wheel, at the height where its centre is; returns the first one's position in Model::joints.
+std::size_t jack_up(Stand& stand) {
+    const std::size_t first = stand.model.joints.size();
+    for (const Wheel& wheel : stand.model.wheels) {
+        const Point centre{wheel.body, wheel.centre_local};
+        const Vector3d here = position(stand.state.poses, centre);
+        const int joint = static_cast<int>(stand.model.joints.size());
+        stand.model.joints.push_back({.name = wheel.name + " jack",
+                                      .i = wheel.body,
+                                      .j = ground,
+                                      .at = centre,
+                                      .driven = static_cast<int>(stand.model.constraints.size())});
+        stand.model.constraints.push_back(
+            {joint, PointInPlane{centre, {ground, here}, {ground, Vector3d::UnitZ()}, 0}});
+        stand.state.reactions.emplace_back();
+    }
+    return first;
+}
+
+std::vector<Disturbance> causes_at(const Model& model) {
+    std::vector<Disturbance> list;
+    for (const Wheel& wheel : model.wheels) {
+        const Point centre{wheel.body, wheel.centre_local}, patch{wheel.body, wheel.contact_local};
+        for (int k = 0; k < 3; ++k) list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
+        for (int k = 0; k < 3; ++k) list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
+        for (int k = 0; k < 3; ++k) list.push_back(UnitWrench{patch, Vector3d::Unit(k), Vector3d::Zero()});
+    }
+    return list;
+}
+
+std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& all, std::size_t wheels) {
+    std::vector<std::array<Motions, causes>> list(wheels);
+    for (std::size_t w = 0; w < wheels; ++w)
+        for (std::size_t k = 0; k < causes; ++k) list[w][k] = all[causes * w + k];
+    return list;
+}
+
+std::string told(const Response& response) {
+    return std::string(name(response.outcome)) + (response.detail.empty() ? "" : ": " + response.detail);
+}
+
+}  // namespace
+
+int steering_joint(const Model& model) {
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (const auto* motion = std::get_if<Motion>(&driver.what);
+                motion != nullptr && driver.rate != 0 &&
+                !is_jack(model, static_cast<std::size_t>(motion->joint)))
+                return motion->joint;
+    return -1;
+}
+
+Response respond(const Gait& gait, const Model& model, const Branch& branch, const Equilibrium& state,
+                 std::span<const Disturbance> disturbances) {
+    switch (gait.leg) {
+        case Leg::recursive:
+            return recursive::respond(model, branch, state, disturbances, gait.recursion.method);
+        case Leg::series:
+            return recursive::respond(model, branch, state, disturbances,
+                                      recursive::find_method("series").value());
+        case Leg::equilibrium:
+            return reference::equilibrium::respond(model, branch, state, disturbances);
+        case Leg::energy: return reference::energy::respond(model, branch, state, disturbances);
+    }
+    return {};
+}
+
+Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state) {
+    Answers answers;
+    const std::size_t wheels = way.model.wheels.size();
+    Stand stand = freed(way, state);
+    const auto causes = causes_at(way.model);
+    if (const Response free = respond(gait, stand.model, stand.branch, stand.state, causes);
+        free.outcome == Outcome::converged)
+        answers.free = by_wheel(free.increments, wheels);
+    else
+        answers.why_not_free = told(free);
+
+    const std::size_t first = jack_up(stand);
+    std::vector<Disturbance> changes = causes;
+    for (std::size_t w = 0; w < wheels; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
+    const bool steers =
+        steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+    if (steers) changes.push_back(Motion{steering});
+    Response jacked = respond(gait, stand.model, stand.branch, stand.state, changes);
+    if (jacked.outcome != Outcome::converged) {
+        answers.why_not = told(jacked);
+        return answers;
+    }
+    if (steers) {
+        answers.steering = std::move(jacked.increments.back());
+        jacked.increments.pop_back();
+    }
+    answers.held = by_wheel(jacked.increments, wheels);
+    answers.travel.assign(jacked.increments.end() - static_cast<std::ptrdiff_t>(wheels),
+                          jacked.increments.end());
+    return answers;
+}
+
+Vector3d turned(const Motions& motions, BodyId body) {
+    return body == ground ? Vector3d::Zero() : motions[static_cast<std::size_t>(body)].dpi;
+}
+
+Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point) {
+    if (point.body == ground) return Vector3d::Zero();
+    const auto b = static_cast<std::size_t>(point.body);
+    return motions[b].dr + motions[b].dpi.cross(state.poses[b].p * point.s_local);
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,364 @@
+// Kinematics and compliance: what is known by hand, by every leg; mirrored, in other units; and that forces say the same
+// as motion.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "compare/characteristics.hpp"
+#include "compare/compare.hpp"
+#include "compare/trim.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double deg = 180 / pi;
+constexpr std::array all_legs{Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive};
+
+Model model_of(const std::string& text, const std::string& units = "{length: m, angle: rad, force: N}") {
+    return compile(parse_scene("elastocheck: 1\nname: test\nunits: " + units + "\n" + text, "test.yaml"));
+}
+
+// At a = 0 of a branch, the first unless another is named, by one leg.
+class Read {
+  public:
+    Read(const Model& model, Leg leg, const std::string& branch = "")
+        : way_(way(model, branch)), channels_(characteristics(model)) {
+        const auto path = rest(way_, leg);
+        EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+        if (path.points.empty()) return;
+        state = path.points.front();
+        answers = answer(way_, {.leg = leg}, steering_joint(model), state);
+        values_ = row_of(model, channels_, way_, {.leg = leg}, state).values;
+    }
+    double operator[](const std::string& name) const {
+        const int c = find_channel(channels_, name);
+        if (c < 0 || values_.empty()) {
+            ADD_FAILURE() << "no " << name;
+            return std::nan("");
+        }
+        return values_[static_cast<std::size_t>(c)];
+    }
+    const std::vector<double>& values() const { return values_; }
+    const std::vector<Channel>& channels() const { return channels_; }
+
+    Equilibrium state;
+    Answers answers;
+
+  private:
+    static Way way(const Model& model, const std::string& name) {
+        for (const auto& branch : model.branches)
+            if (name.empty() || branch.name == name) return ways_of(model, branch).front();
+        throw std::logic_error("no branch " + name);
+    }
+    Way way_;
+    std::vector<Channel> channels_;
+    std::vector<double> values_;
+};
+
+// ---- One arm about a fixed axis: everything is the velocity field ω × (p - a), by hand.
+
+struct Arm {
+    Vector3d a, b;  // of the axis
+    Vector3d centre{0, 1.1, 0}, patch{0, 1.1, -0.3};
+    Vector3d n() const { return (b - a).normalized(); }
+    Vector3d v(const Vector3d& p) const { return n().cross(p - a); }
+};
+
+std::string arm_scene(const Arm& arm, const std::string& more = "") {
+    const auto point = [](const Vector3d& p) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", p.x(), p.y(), p.z()); };
+    return fmt::format(
+        "points: {{a: {}, b: {}, c: {}, p: {}, top: [0.1, 1.0, 0.4], low: [0.1, 1.0, 0.0]}}\n"
+        "bodies: {{arm: {{origin: c}}}}\n"
+        "joints: {{axis: {{type: revolute, bodies: [arm, ground], at: a, axis: [a, b]}}}}\n"
+        "springs: {{coil: {{bodies: [arm, ground], from: low, to: top, rate: 50e3}}}}\n"
+        "loads: {{up: {{on: arm, at: p, force: [0, 0, 1]}}}}\n"
+        "branches: {{up: {{load: up, to: 500, steps: 2}}}}\n"
+        "wheel: {{body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}}\n{}",
+        point(arm.a), point(arm.b), point(arm.centre), point(arm.patch), more);
+}
+
+TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
+    const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}};
+    const Model model = model_of(arm_scene(arm));
+    const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0), de = n.cross(e);
+    const double dz = v_c.z();
+    const Vector3d top(0.1, 1.0, 0.4), low(0.1, 1.0, 0);
+    const double ratio = arm.v(low).z() / dz, k = 50e3;
+    for (const Leg leg : all_legs) {
+        SCOPED_TRACE(name(leg));
+        const Read is(model, leg);
+        EXPECT_NEAR(is["bump_steer"], deg * de.x() / dz, 1e-9);
+        EXPECT_NEAR(is["bump_camber"], deg / 10 * -de.z() / dz, 1e-9);
+        EXPECT_NEAR(is["track_gradient"], 100 * v_p.y() / dz, 1e-9);
+        EXPECT_NEAR(is["recession_gradient"], 100 * -v_c.x() / dz, 1e-9);
+        EXPECT_NEAR(is["roll_centre_height"], 1e3 * arm.patch.y() * v_p.y() / v_p.z(), 1e-6);
+        // Seen from the side the axis passes the wheel's plane y = 1.1 where the arm turns about.
+        const Vector3d from_side = arm.a + n * (arm.centre.y() - arm.a.y()) / n.y();
+        EXPECT_NEAR(is["side_view_swing_arm"], 1e3 * (from_side.x() - arm.centre.x()), 1e-6);
+        const Vector3d from_front = arm.a + n * (arm.centre.x() - arm.a.x()) / n.x();
+        EXPECT_NEAR(is["front_view_swing_arm"], 1e3 * (arm.centre.y() - from_front.y()), 1e-6);
+        EXPECT_NEAR(is["coil.motion_ratio"], ratio, 1e-12);
+        // Unloaded: force at the patch over travel of the centre is k (dℓ/dφ)² / (v_p v_c).
+        EXPECT_NEAR(is["wheel_rate"], 1e-3 * k * std::pow(arm.v(low).z(), 2) / (v_p.z() * dz), 1e-9);
+        EXPECT_EQ(is["lateral_stiffness"], undefined);  // rigid while the wheel is held
+        EXPECT_NEAR(is["lateral_force_steer"], 0, 1e-12);
+    }
+}
+
+TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromTheFront) {
+    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
+    for (const Leg leg : all_legs) {
+        const Read is(model_of(arm_scene(arm)), leg);
+        EXPECT_NEAR(is["roll_centre_height"], 0, 1e-9);
+        EXPECT_EQ(is["front_view_swing_arm"], undefined);
+        EXPECT_NEAR(is["side_view_swing_arm"], 500, 1e-9);
+        EXPECT_NEAR(is["bump_steer"], 0, 1e-9);
+    }
+}
+
+// The patch goes back by (0.1 + 0.3)/0.5 of what it rises, the centre by 0.1/0.5: the pivot is ahead and above.
+TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
+    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
+    const auto with = [&](const char* axle) {
+        return model_of(arm_scene(arm, fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
+                                                   "drive_share: 1}}\n",
+                                                   axle)));
+    };
+    const Read rear(with("rear"), Leg::equilibrium), front(with("front"), Leg::equilibrium);
+    EXPECT_NEAR(rear["anti_lift"], 100 * 0.4 * 0.8 * 5, 1e-9);
+    EXPECT_NEAR(rear["anti_squat"], 100 * 0.2 * 5, 1e-9);
+    // A leading pivot dives at the front.
+    EXPECT_NEAR(front["anti_dive"], -100 * 0.4 * 0.8 * 5, 1e-9);
+    EXPECT_NEAR(front["anti_lift"], -100 * 0.2 * 5, 1e-9);
+}
+
+// ---- Two arms in the plane across: the wheel turns about where their lines meet.
+
+std::string wishbones(const std::string& upper_inner, const std::string& upper_outer, const std::string& lower_inner,
+                      const std::string& lower_outer) {
+    return fmt::format(
+        "points: {{ui: {}, uo: {}, li: {}, lo: {}, c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, 0.8]}}\n"
+        "bodies: {{upper: {{origin: ui}}, lower: {{origin: li}}, wheel: {{origin: c}}}}\n"
+        "joints:\n"
+        "  ui: {{type: revolute, bodies: [upper, ground], at: ui, axis: x}}\n"
+        "  li: {{type: revolute, bodies: [lower, ground], at: li, axis: x}}\n"
+        "  uo: {{type: revolute, bodies: [wheel, upper], at: uo, axis: x}}\n"
+        "  lo: {{type: revolute, bodies: [wheel, lower], at: lo, axis: x}}\n"
+        "springs: {{coil: {{bodies: [wheel, ground], from: lo, to: top, rate: 30e3}}}}\n"
+        "loads: {{up: {{on: wheel, at: p, force: [0, 0, 1]}}}}\n"
+        "branches: {{up: {{load: up, to: 100, steps: 2}}}}\n"
+        "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}}\n",
+        upper_inner, upper_outer, lower_inner, lower_outer);
+}
+
+TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFront) {
+    // Both fall by 0.1 over 0.4 towards the wheel: its points go inwards by a quarter of what they rise... and outwards
+    // where they rise towards the wheel.
+    for (const double fall : {0.0, 0.1, -0.1}) {
+        const Model model = model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall), "[0, 0.3, 0.15]",
+                                               fmt::format("[0, 0.7, {}]", 0.15 - fall)));
+        for (const Leg leg : all_legs) {
+            const Read is(model, leg);
+            EXPECT_NEAR(is["bump_camber"], 0, 1e-9) << fall;
+            EXPECT_EQ(is["front_view_swing_arm"], undefined) << fall;
+            EXPECT_NEAR(is["track_gradient"], 100 * fall / 0.4, 1e-9);
+            EXPECT_NEAR(is["roll_centre_height"], 1e3 * 0.8 * fall / 0.4, 1e-8) << fall;
+        }
+    }
+}
+
+TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
+    const Model model = model_of(wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
+    // Where the lines z = 0.42 + 0.04/0.33 (y - 0.35) and z = 0.18 - 0.04/0.42 (y - 0.3) meet.
+    const double m = 0.04 / 0.33, n = -0.04 / 0.42, y = (0.18 - n * 0.3 - 0.42 + m * 0.35) / (m - n),
+                 z = 0.42 + m * (y - 0.35);
+    for (const Leg leg : all_legs) {
+        const Read is(model, leg);
+        EXPECT_NEAR(is["front_view_swing_arm"], 1e3 * (0.8 - y), 1e-6);
+        EXPECT_NEAR(is["roll_centre_height"], 1e3 * z * 0.8 / (0.8 - y), 1e-6);
+        EXPECT_NEAR(is["bump_camber"], deg / 10 * -1 / (0.8 - y), 1e-9);
+    }
+}
+
+// ---- Steering.
+
+// A carrier on two balls, held to the ground: it turns about the line through them, as the rack pushes its arm. The line
+// passes the wheel centre, whose height the steering then keeps.
+TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
+    const double caster = 0.1, inclination = 0.2;  // slopes: dx/dz, dy/dz to the top
+    for (const int side : {1, -1}) {
+        const auto point = [&](double x, double y, double z) { return fmt::format("[{}, {}, {}]", x, side * y, z); };
+        const Model model = model_of(fmt::format(
+            "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
+            "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: above}}}}\n"
+            "joints:\n"
+            "  top: {{type: spherical, bodies: [wheel, link], at: top}}\n"
+            "  low: {{type: spherical, bodies: [wheel, link], at: low}}\n"
+            "  slide: {{type: translational, bodies: [link, ground], at: above, axis: z}}\n"
+            "  tie: {{type: distance, bodies: [wheel, rack], from: outer, to: inner}}\n"
+            "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: true}}\n"
+            "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
+            "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
+            "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
+            point(-0.2 * caster, 0.8 - 0.2 * inclination, 0.5), point(0.2 * caster, 0.8 + 0.2 * inclination, 0.1),
+            point(0, 0.8, 0.3), point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9),
+            side > 0 ? "" : "-", side > 0 ? "left" : "right"));
+        for (const Leg leg : all_legs) {
+            const Read is(model, leg);
+            EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
+            EXPECT_NEAR(is["kingpin_inclination_steered"], deg * std::atan(inclination), 1e-8);
+            EXPECT_NEAR(is["mechanical_trail_steered"], 1e3 * 0.3 * caster, 1e-7);
+            // 0.3 below the wheel centre the axis has come out by 0.3 · 0.2: beyond the patch.
+            EXPECT_NEAR(is["scrub_radius_steered"], -1e3 * 0.3 * inclination, 1e-7);
+        }
+    }
+}
+
+// ---- Compliance.
+
+// One body on one bushing: what a wrench at a point at r from it does is r and K by hand.
+TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
+    const Model model = model_of(
+        "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
+        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], rotational_rates: [9e3, 7e3, 8e3]}}\n"
+        "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, steps: 2}}\n"
+        "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n");
+    const Vector3d lever = Vector3d(0, 1, 0) - Vector3d(0.1, 0.7, 0.4);
+    const auto tilde = [](const Vector3d& v) {
+        Eigen::Matrix3d m;
+        m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+        return m;
+    };
+    Matrix6 A = Matrix6::Identity();  // the wrench about the bushing of one at the patch
+    A.bottomLeftCorner<3, 3>() = tilde(lever);
+    const Vector6 flexible = (Vector6() << 1 / 2e6, 1 / 5e6, 1 / 4e6, 1 / 9e3, 1 / 7e3, 1 / 8e3).finished();
+    const Matrix6 expected = A.transpose() * flexible.asDiagonal() * A;
+    for (const Leg leg : all_legs) {
+        const Read is(model, leg);
+        const Eigen::MatrixXd C = compliance(model, WheelPoint::patch, is.state, is.answers);
+        ASSERT_EQ(C.rows(), 6);
+        EXPECT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff()) << name(leg) << "\n" << C;
+        EXPECT_LE(reciprocity(model, C), 1e-13);
+        EXPECT_NEAR(is["wheel_rate"], 1e-3 / compliance(model, WheelPoint::centre, is.state, is.answers)(2, 2), 1e-6);
+        // With the wheel's height held: the compliance less what the jack takes.
+        Matrix6 at_centre = compliance(model, WheelPoint::centre, is.state, is.answers);
+        const Vector6 z = at_centre.col(2);
+        at_centre -= z * z.transpose() / z[2];
+        EXPECT_NEAR(is["longitudinal_stiffness_at_centre"], 1e-3 / at_centre(0, 0), 1e-6);
+        EXPECT_NEAR(is["aligning_torque_steer"], 100 * deg * at_centre(5, 5), 1e-12);
+        EXPECT_NEAR(is["traction_force_steer"], 1e3 * deg * -at_centre(5, 0), 1e-9);
+    }
+}
+
+// ---- On the suspensions that come with the house.
+
+// Trimmed where it asks for that.
+Model standing(const Scene& scene) { return compile(trim(scene).scene); }
+
+TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
+    for (const char* scene : {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid", "multi_link",
+                              "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
+        SCOPED_TRACE(scene);
+        const Model model = standing(support::scene(scene));
+        const Read truth(model, Leg::equilibrium), second(model, Leg::energy), series(model, Leg::series);
+        for (std::size_t c = 0; c < truth.values().size(); ++c) {
+            const double is = truth.values()[c];
+            for (const Read* other : {&second, &series}) {
+                if (is == undefined) {
+                    EXPECT_EQ(other->values()[c], undefined) << truth.channels()[c].name;
+                } else {
+                    EXPECT_NEAR(other->values()[c], is, 1e-6 * std::max(1.0, std::abs(is))) << truth.channels()[c].name;
+                }
+            }
+        }
+        for (const Read* leg : {&truth, &second, &series}) {
+            const auto C = compliance(model, WheelPoint::centre, leg->state, leg->answers);
+            EXPECT_LE(reciprocity(model, C), 1e-8);
+        }
+    }
+}
+
+TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
+    for (const char* name : {"double_wishbone", "semi_trailing_arm", "front_axle"}) {
+        const Scene scene = support::scene(name);
+        const Read is(standing(scene), Leg::equilibrium), other(standing(support::mirrored(scene)), Leg::equilibrium),
+            units(standing(support::in_millimetres_and_kilonewtons(name)), Leg::equilibrium);
+        for (std::size_t c = 0; c < is.values().size(); ++c) {
+            const auto& channel = is.channels()[c];
+            for (const Read* same : {&other, &units}) {
+                if (is.values()[c] == undefined)
+                    EXPECT_EQ(same->values()[c], undefined) << name << " " << channel.name;
+                else
+                    EXPECT_NEAR(same->values()[c], is.values()[c], 1e-7 * std::max(1.0, std::abs(is.values()[c])))
+                        << name << " " << channel.name;
+            }
+            // Of an axle the left is the right.
+            if (channel.name.starts_with("left."))
+                EXPECT_NEAR(is["right." + channel.name.substr(5)], is.values()[c],
+                            1e-7 * std::max(1.0, std::abs(is.values()[c])))
+                    << name << " " << channel.name;
+        }
+    }
+}
+
+// Virtual work: as much as the patch goes aside when the wheel rises, the jack gives way when it is pushed aside. The
+// first is a motion, the second a force, read off curves that know nothing of either.
+TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
+    for (const char* name : {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
+        Scene scene = support::scene(name);
+        for (auto& branch : scene.branches)
+            if (branch.name == "lateral") branch.from = -1, branch.to = 1, branch.steps = 2;
+        const Model model = standing(scene);
+        const auto& lateral = *std::ranges::find(model.branches, "lateral", &Branch::name);
+        const auto force = run(model, lateral, Leg::equilibrium);
+        const auto jack = static_cast<std::size_t>(find_channel(channels(model), "jack.drive_force"));
+        const double per_newton = (force.curve.values.back()[jack] - force.curve.values.front()[jack]) / 2;
+        const Read is(model, Leg::equilibrium, "lateral");
+        const double y = model.wheels[0].contact_local.y() +
+                         is.state.poses[static_cast<std::size_t>(model.wheels[0].body)].r.y();
+        EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton, 1e-3) << name;
+    }
+}
+
+// What the curves show between two points is what the rates say at the one between them.
+TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
+    Scene scene = support::scene("double_wishbone");
+    const double step = 1e-4;
+    for (auto& branch : scene.branches)
+        if (branch.name == "travel") branch.from = -step, branch.to = step, branch.steps = 2;
+    const Model model = standing(scene);
+    const auto& travel = *std::ranges::find(model.branches, "travel", &Branch::name);
+    const auto curve = run(model, travel, Leg::equilibrium).curve;
+    const auto slope = [&](const char* channel) {
+        const auto c = static_cast<std::size_t>(find_channel(channels(model), channel));
+        return (curve.values.back()[c] - curve.values.front()[c]) / (2e3 * step);
+    };
+    const Read is(model, Leg::equilibrium, "travel");
+    EXPECT_NEAR(is["bump_steer"], 1e3 * slope("toe"), 1e-4);
+    EXPECT_NEAR(is["bump_camber"], 1e2 * slope("camber"), 1e-4);
+    EXPECT_NEAR(is["recession_gradient"], -1e2 * slope("wheel_centre_x"), 1e-4);
+}
+
+// The published matrix knows nothing of the force in the spring: its wheel rate is that of the unloaded one.
+TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
+    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
+    const Model unloaded = model_of(arm_scene(arm));
+    std::string text = arm_scene(arm, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
+    const Model loaded = model_of(text);
+    const double published = Read(loaded, Leg::recursive)["wheel_rate"], truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
+    EXPECT_GT(std::abs(published - truth), 0.01 * truth);
+    EXPECT_NEAR(Read(unloaded, Leg::recursive)["wheel_rate"], Read(unloaded, Leg::equilibrium)["wheel_rate"], 1e-9);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
