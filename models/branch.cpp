@@ -77,7 +77,8 @@ Model on_branch(const Model& model, const Branch& branch) {
     }
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         if (!stands.elastics[k])
-            result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind)};
+            result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind), false,
+                                  model.elastics[k].written_as};
     return result;
 }
 

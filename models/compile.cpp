@@ -116,6 +116,8 @@ Model compile(const Scene& asked, Detail detail) {
     turn_round(model);
     model.wheels = scene.wheels;
     model.probes = scene.probes;
+    model.dampers = scene.dampers;
+    model.vehicle = scene.vehicle;
     model.left_out = scene.left_out;
     name_what_cannot_move(model);
     return model;

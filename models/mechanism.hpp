@@ -193,10 +193,21 @@ struct Bushing {
 };
 
 using ElasticKind = std::variant<AxialSpring, Bushing>;
+
+// What an element was written as, for the names of its outputs and for drawings: no leg reads it.
+enum class WrittenAs {
+    itself,
+    stop,
+    torsion_spring,
+    beam,
+    tyre
+};  // itself: a spring or bushing, as its kind is
+
 struct Elastic {
     std::string name;
     ElasticKind kind;
     bool only_where_driven = false;  // a tyre: stands only on the branches that drive it
+    WrittenAs written_as = WrittenAs::itself;
 };
 
 // ---- Loads. Dead ones keep their direction in ground axes while their point of application moves, followers

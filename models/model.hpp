@@ -4,6 +4,7 @@
 // (reduce/passes.hpp), and joints are lowered to four basic constraints (lowering.hpp).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -74,6 +75,8 @@ struct Model {
     std::vector<Branch> branches;  // their drivers speak of Model::joints and Model::elastics
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
+    std::vector<Damper> dampers;
+    std::optional<Vehicle> vehicle;
     std::vector<Omission> left_out;
     Size as_written, as_solved;  // the scene's, and what is left of it here
 };

@@ -48,6 +48,12 @@ struct Branch {
     std::vector<Driver> drivers;
 };
 
+// About which the wheel is steered, as it is drawn: the line through two points, each on the body where it sits (two
+// ball joints of a wheel carrier; the top mount of a strut). For outputs alone: no leg sees it.
+struct SteeringAxis {
+    Point lower, upper;  // or ground
+};
+
 struct Wheel {
     std::string name;  // "left"; empty where the scene has only the one
     BodyId body = ground;
@@ -58,12 +64,30 @@ struct Wheel {
     int side = +1;                                               // +1 left, -1 right
     double tyre_rate =
         0;  // vertical, k_t [N/m]; 0 where no tyre is given. Ride rate: 1 / (1/k_wheel + 1/k_t)
+    std::optional<SteeringAxis> steering_axis = {};  // none where the geometry has none, as of a multi-link
 };
 
 // A body point whose position is an output, for scenes that are not suspensions.
 struct Probe {
     std::string name;
     Point at;
+};
+
+// Two points whose distance is an output. In quasi-statics a damper has no force.
+struct Damper {
+    std::string name;
+    Point i, j;  // or ground
+};
+
+// What the wheels of the scene belong to, for the outputs that depend on it: anti-dive, Ackermann.
+enum class Axle { front, rear };
+struct Vehicle {
+    double wheelbase = 0;  // [m] > 0
+    double cg_height =
+        0;  // of the whole vehicle, above the road: the contact patches of the design position [m] > 0
+    Axle axle = Axle::front;  // that the wheels of the scene are on
+    double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
+    double drive_share = 0;   // of its driving force, likewise
 };
 
 // A named position of the design, ground axes [m]. For drawings; no leg sees it.
@@ -133,6 +157,8 @@ struct Scene {
     std::vector<Branch> branches;
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
+    std::vector<Damper> dampers;
+    std::optional<Vehicle> vehicle;
     std::optional<Trim> trim;
     std::vector<Omission> left_out;  // what the file defines and nothing uses
 };

@@ -251,7 +251,7 @@ std::vector<Elastic> segments(const std::string& name, const Cursor& at, const D
                         .j = marker(body_at(k)),
                         .law = LinearStiffness{stiffness(section, (to - from).norm())}};
         bushing.formulation.frame = Formulation::Frame::middle;
-        list.push_back({numbered(name, k), bushing});
+        list.push_back({numbered(name, k), bushing, false, WrittenAs::beam});
     }
     return list;
 }
@@ -291,7 +291,7 @@ void read_beams(const Cursor& scene, const Definitions& defs, std::vector<Elasti
         const auto other = turned(*defs.mirror, name);
         if (!other) continue;
         for (std::size_t k = 0; k < list.size(); ++k)
-            elastics.push_back({numbered(*other, k + 1), twin(list[k].kind, defs)});
+            elastics.push_back({numbered(*other, k + 1), twin(list[k].kind, defs), false, WrittenAs::beam});
     }
 }
 

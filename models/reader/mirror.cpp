@@ -229,13 +229,16 @@ LoadKind twin(const LoadKind& load, const Definitions& defs) {
 }
 
 Wheel twin(const Wheel& wheel, const Definitions& defs) {
+    std::optional<SteeringAxis> axis = wheel.steering_axis;
+    if (axis) axis = {twin(axis->lower, defs), twin(axis->upper, defs)};
     return {.name = wheel.name,
             .body = twin(wheel.body, defs),
             .centre_local = twin_place(wheel.body, wheel.centre_local, defs),
             .contact_local = twin_place(wheel.body, wheel.contact_local, defs),
             .spin_axis_local = reflected(wheel.spin_axis_local),
             .side = -wheel.side,
-            .tyre_rate = wheel.tyre_rate};
+            .tyre_rate = wheel.tyre_rate,
+            .steering_axis = axis};
 }
 
 }  // namespace elastocheck::reader

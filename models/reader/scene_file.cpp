@@ -67,6 +67,11 @@ Probe reflected(Probe probe, const Definitions& defs) {
     probe.at = twin(probe.at, defs);
     return probe;
 }
+Damper reflected(Damper damper, const Definitions& defs) {
+    damper.i = twin(damper.i, defs);
+    damper.j = twin(damper.j, defs);
+    return damper;
+}
 Wheel reflected(const Wheel& wheel, const Definitions& defs) { return twin(wheel, defs); }
 
 // The entries of a section, and behind them their twins. Sections of what may be on one side only have no check.
@@ -178,6 +183,23 @@ void require_own_names(const Cursor& scene, const Definitions& defs, const std::
     }
 }
 
+// A spring and a damper each have an output NAME.compression.
+void require_own_names(const Cursor& scene, const Scene& result) {
+    for (const Damper& damper : result.dampers)
+        for (const Elastic& elastic : result.elastics) {
+            if (elastic.name != damper.name || elastic.written_as != WrittenAs::itself ||
+                !std::holds_alternative<AxialSpring>(elastic.kind))
+                continue;
+            const Cursor section = scene.require("dampers");
+            section.optional(damper.name)
+                .value_or(section)
+                .fail(
+                    fmt::format("a spring is called {} as well, and each has an output of its name; call one "
+                                "of the two something else",
+                                quote(damper.name)));
+        }
+}
+
 // A number that is read in two places is one number of the file.
 void keep_each_once(std::vector<Number>& numbers) {
     std::set<std::string> seen;
@@ -188,7 +210,8 @@ Scene read_tree(const Cursor& scene, const Folder& folder) {
     if (scene.value->kind == Value::Kind::nothing) scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",  "name",    "units", "mirror",          "gravity",  "points", "bodies",
                      "joints",       "springs", "stops", "torsion_springs", "bushings", "beams",  "tyres",
-                     "static_loads", "loads",   "trim",  "branches",        "wheel",    "wheels", "probes"});
+                     "static_loads", "loads",   "trim",  "branches",        "wheel",    "wheels", "probes",
+                     "dampers",      "vehicle"});
     check_version(scene);
     Scene result;
     result.source = *scene.file;
@@ -211,6 +234,9 @@ Scene read_tree(const Cursor& scene, const Folder& folder) {
     read_section(scene, "loads", defs, Sides::any, loads, read_load);
     read_wheels(scene, defs, result.wheels);
     read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
+    read_section(scene, "dampers", defs, Sides::both, result.dampers, read_damper);
+    require_own_names(scene, result);
+    if (const auto vehicle = scene.optional("vehicle")) result.vehicle = read_vehicle(*vehicle, defs);
     if (result.wheels.empty() && result.probes.empty()) scene.fail("no output; a wheel or a probe is needed");
 
     std::map<std::string, Load> by_name;
@@ -237,32 +263,6 @@ Scene read_whole(std::string_view text, const std::string& name, std::span<const
 }
 
 }  // namespace
-
-Wheel read_wheel(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"body", "centre", "contact_patch", "spin_axis", "side"});
-    const BodyId body = moving_body(at.require("body"), defs, "a wheel");
-    const auto contact = at.optional("contact_patch");
-    const Cursor centre = at.require("centre"), spin_axis = at.require("spin_axis");
-    const auto local = [&](const Cursor& field) {
-        return point_of(body, hardpoint(field, defs), defs).s_local;
-    };
-    Wheel wheel{.name = {},
-                .body = body,
-                .centre_local = local(centre),
-                .contact_local = local(contact ? *contact : centre),
-                .spin_axis_local = direction(spin_axis, defs),
-                .side = at.require("side").one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
-    if (!(wheel.side * wheel.spin_axis_local.y() > 0))
-        spin_axis.fail(fmt::format("does not point outboard, which is {}y for a {} wheel",
-                                   wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));
-    return wheel;
-}
-
-Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"on", "at"});
-    const BodyId on = moving_body(at.require("on"), defs, "a probe");
-    return {name, point_of(on, hardpoint(at.require("at"), defs), defs)};
-}
 
 }  // namespace reader
 

@@ -23,6 +23,8 @@ Load read_load(const std::string& name, const Cursor& at, const Definitions& def
 Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs);  // SI
 Wheel read_wheel(const Cursor& at, const Definitions& defs);
 Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs);
+Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs);
+Vehicle read_vehicle(const Cursor& at, const Definitions& defs);
 
 // `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);

@@ -54,7 +54,7 @@ void add_stops(const std::string& name, const Cursor& at, const AxialSpring& end
         if (const auto stop = at.optional(field)) {
             AxialSpring element = ends;
             element.law = read_stop(*stop, kind, defs);
-            list.push_back({name + "." + field, element});
+            list.push_back({name + "." + field, element, false, WrittenAs::stop});
         }
 }
 

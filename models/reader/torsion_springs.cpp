@@ -36,7 +36,7 @@ Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Def
     Bushing spring{.i = marker(i), .j = marker(j), .law = about_z(read_law(at, of_angles(defs.units), defs))};
     if (const auto moment = at.optional("preload_moment"))
         spring.preload[5] = defs.units.moment.si(moment->number(defs.units.moment.name));
-    return {name, spring};
+    return {name, spring, false, WrittenAs::torsion_spring};
 }
 
 }  // namespace elastocheck::reader

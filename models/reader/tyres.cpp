@@ -51,7 +51,7 @@ void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::
         at.fail(fmt::format("wheel {} has a tyre already; allowed: one", quote(above.name)));
     above.tyre_rate = tyre.k;
     const int id = static_cast<int>(scene.elastics.size());
-    scene.elastics.push_back({name, bushing(tyre, above, defs), true});
+    scene.elastics.push_back({name, bushing(tyre, above, defs), true, WrittenAs::tyre});
     drivables.table["tyres." + name + ".road"] = {ParameterUnit::metre, defs.units.length,
                                                   Preload{id, -tyre.k * Vector6::Unit(2)}, 1, std::nullopt};
 }

@@ -48,8 +48,7 @@ Attached attached(const Scene& scene) {
     each_driven(scene, [&](const Driven& driven) {
         if (const auto* load = std::get_if<Load>(&driven)) more(body_of(load->kind));
     });
-    for (const Wheel& wheel : scene.wheels) more(wheel.body);
-    for (const Probe& probe : scene.probes) more(probe.at.body);
+    each_output_body(scene, more);
     return result;
 }
 

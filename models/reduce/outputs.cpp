@@ -30,8 +30,7 @@ Graph graph_of(const Scene& scene) {
         connect(ends(joint.kind), is_strained_at_design(joint.kind, scene));
     for (const Elastic& elastic : scene.elastics)
         connect(ends(elastic.kind), is_loaded_at_design(elastic.kind, scene));
-    for (const auto& wheel : scene.wheels) graph.outputs.insert(wheel.body);
-    for (const auto& probe : scene.probes) graph.outputs.insert(probe.at.body);
+    each_output_body(scene, [&](BodyId body) { graph.outputs.insert(body); });
     for (const auto& load : scene.static_loads) graph.loaded.insert(body_of(load.kind));
     const auto both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
     const auto element = [&](int k) { both(ends(scene.elastics[static_cast<std::size_t>(k)].kind)); };

@@ -222,8 +222,7 @@ void keep_only(Scene& scene, Kept kept) {
     const auto renumber_place = [&](auto& place) { renumber(place.body); };
     for (Joint& j : scene.joints) each_place(j.kind, renumber_place);
     for (Elastic& e : scene.elastics) each_place(e.kind, renumber_place);
-    for (Wheel& wheel : scene.wheels) renumber(wheel.body);
-    for (Probe& probe : scene.probes) renumber(probe.at.body);
+    each_output_body(scene, renumber);
 }
 
 }  // namespace elastocheck::reduce

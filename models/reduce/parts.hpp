@@ -34,6 +34,17 @@ void each_place(ElasticKind& elastic, F f) {
     std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic);
 }
 
+// Every body that an output reads, ground among them, given to f(BodyId&), of a const Scene f(const BodyId&).
+template <class S, class F>
+void each_output_body(S& scene, F f) {
+    for (auto& wheel : scene.wheels) {
+        f(wheel.body);
+        if (wheel.steering_axis) f(wheel.steering_axis->lower.body), f(wheel.steering_axis->upper.body);
+    }
+    for (auto& probe : scene.probes) f(probe.at.body);
+    for (auto& damper : scene.dampers) f(damper.i.body), f(damper.j.body);
+}
+
 struct Ends {
     BodyId i, j;
 };
@@ -86,7 +97,7 @@ struct Kept {
 
 // Takes out the rest, which the caller has named in left_out, and what is attached to a body that goes: joints,
 // elements and loads, each named here. Drivers of what goes, go with it; all else keeps to what it spoke of.
-// Pre: no wheel and no probe is on a body that goes.
+// Pre: no output reads a body that goes.
 void keep_only(Scene& scene, Kept kept);
 
 }  // namespace elastocheck::reduce

@@ -15,7 +15,7 @@ void drop_what_does_nothing(Scene& scene);
 void drop_what_never_stands(Scene& scene);
 
 // Bodies held together by Fixed joints as drawn become one, which has the name of the first, or ground. A body with
-// an output is never made part of ground.
+// a wheel or a probe is never made part of ground.
 void weld(Scene& scene);
 
 // Joints and elements with both ends on one body, or on ground: nothing deforms or moves them. What is strained there, or

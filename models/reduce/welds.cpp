@@ -23,6 +23,7 @@ bool is_as_drawn(const Fixed& s, const Scene& scene) {
 }
 
 // Sets of bodies that are one, each known by its first; ground, which comes before all, is number 0, body b is b + 1.
+// An output that needs a body keeps it from becoming ground; an end of a damper or of an axis may well be there.
 class Sets {
   public:
     explicit Sets(const Scene& scene)
@@ -99,6 +100,7 @@ struct Told {  // of the body c
         wheel.centre_local = centre.s_local;
         wheel.contact_local = contact.s_local;
         wheel.body = centre.body;
+        if (wheel.steering_axis) (*this)(wheel.steering_axis->lower), (*this)(wheel.steering_axis->upper);
     }
 };
 
@@ -152,6 +154,7 @@ void weld(Scene& scene) {
             if (auto* load = std::get_if<Load>(&driver.what)) told(load->kind);
     for (Wheel& wheel : scene.wheels) told(wheel);
     for (Probe& probe : scene.probes) told(probe.at);
+    for (Damper& damper : scene.dampers) told(damper.i), told(damper.j);
     keep_only(scene, kept);
 }
 

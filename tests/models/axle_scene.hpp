@@ -66,9 +66,12 @@ branches:
   lift: {drive: [joints.arm_left, joints.arm_right], to: 9, steps: 6}
   trim: {drive: {bushings.mount_left.preload.y: 1, bushings.mount_right.preload.y: 1}, to: 9, steps: 6}
 wheels:
-  left: {body: hub_left, centre: wheel_left, contact_patch: contact_left, spin_axis: [0.1, 1, 0.02], side: left}
+  left: {body: hub_left, centre: wheel_left, contact_patch: contact_left, spin_axis: [0.1, 1, 0.02], side: left, steering_axis: [ball_left, {on: arm_left, at: top_left}]}
 probes:
   tip_left: {on: arm_left, at: ball_left}
+dampers:
+  damper_left: {bodies: [hub_left, rack], from: lower_left, to: top_left}
+vehicle: {wheelbase: 2700, cg_height: 550, axle: front, brake_share: 0.7, drive_share: 0.25}
 )";
 
 }  // namespace elastocheck

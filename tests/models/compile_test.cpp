@@ -228,6 +228,22 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
              s.probes.push_back({"p", {.body = 2}});
          }},
         {"the wheel", [](Scene& s) { s.wheels.emplace_back().body = 2; }},
+        {"the lower end of a steering axis",
+         [](Scene& s) {
+             s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{2}, {ground}}});
+         }},
+        {"the upper end of a steering axis",
+         [](Scene& s) {
+             s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{0}, {2}}});
+         }},
+        {"the first end of a damper",
+         [](Scene& s) {
+             s.dampers.push_back({"d", {2}, {ground}});
+         }},
+        {"the second end of a damper",
+         [](Scene& s) {
+             s.dampers.push_back({"d", {0}, {2}});
+         }},
         {"a joint to ground", [](Scene& s) { ball(s, "held", 2, ground); }},
         {"a spring to ground", [](Scene& s) { spring(s, "held", 2, ground, 1e3); }},
         {"a joint to another body", [](Scene& s) { ball(s, "loop", 2, 0); }},

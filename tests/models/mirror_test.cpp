@@ -111,11 +111,15 @@ branches:
   lift: {drive: [joints.arm_left, joints.arm_right], to: 9, steps: 6}
   trim: {drive: {bushings.mount_left.preload.y: 1, bushings.mount_right.preload.y: -1}, to: 9, steps: 6}
 wheels:
-  left: {body: hub_left, centre: wheel_left, contact_patch: contact_left, spin_axis: [0.1, 1, 0.02], side: left}
-  right: {body: hub_right, centre: wheel_right, contact_patch: contact_right, spin_axis: [0.1, -1, 0.02], side: right}
+  left: {body: hub_left, centre: wheel_left, contact_patch: contact_left, spin_axis: [0.1, 1, 0.02], side: left, steering_axis: [ball_left, {on: arm_left, at: top_left}]}
+  right: {body: hub_right, centre: wheel_right, contact_patch: contact_right, spin_axis: [0.1, -1, 0.02], side: right, steering_axis: [ball_right, {on: arm_right, at: top_right}]}
 probes:
   tip_left: {on: arm_left, at: ball_left}
   tip_right: {on: arm_right, at: ball_right}
+dampers:
+  damper_left: {bodies: [hub_left, rack], from: lower_left, to: top_left}
+  damper_right: {bodies: [hub_right, rack], from: lower_right, to: top_right}
+vehicle: {wheelbase: 2700, cg_height: 550, axle: front, brake_share: 0.7, drive_share: 0.25}
 )";
 
 Scene parsed(const std::string& text) { return parse_scene(text, "axle.yaml"); }
@@ -245,9 +249,17 @@ TEST(Mirror, WhatCannotBeMirroredIsRefused) {
          "not to "
          "'hub_right'"},
         {"  left: {body", "  front: {body",
-         "61: wheels.front: shared by both sides, as 'left' is not in its name, but refers to 'contact_left' "
+         "61: wheels.front: shared by both sides, as 'left' is not in its name, but refers to 'arm_left' "
          "and not "
-         "to 'contact_right'"},
+         "to 'arm_right'"},
+        {"  damper_left:", "  damper:",
+         "65: dampers.damper: shared by both sides, as 'left' is not in its name, but refers to 'hub_left' "
+         "and not "
+         "to 'hub_right'"},
+        {"  damper_left:", "  coil_left:",
+         "65: dampers.coil_left: a spring is called 'coil_left' as well, and each has an output of its name; "
+         "call "
+         "one of the two something else"},
     };
     for (const auto& [from, to, message] : cases) {
         try {

@@ -126,6 +126,11 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
         list = &result["wheel " + wheel.name];
         note(Point{wheel.body, wheel.centre_local}), note(Point{wheel.body, wheel.contact_local});
         note(Direction{wheel.body, wheel.spin_axis_local});
+        if (wheel.steering_axis) note(wheel.steering_axis->lower), note(wheel.steering_axis->upper);
+    }
+    for (const Damper& damper : scene.dampers) {
+        list = &result["damper " + damper.name];
+        note(damper.i), note(damper.j);
     }
     for (const Probe& probe : scene.probes) {
         list = &result["probe " + probe.name];
@@ -154,7 +159,9 @@ Scene welded() {
                   pushing({"spin", FollowerMoment{2, Vector3d(1, 2, 3)}})};
     s.wheels.push_back(
         {.name = "wheel", .body = 3, .centre_local = Vector3d(1, 2, 3), .contact_local = Vector3d(4, 5, 6)});
+    s.wheels.back().steering_axis = {at(s, 3, p), at(s, 2, q)};
     s.probes.push_back({"tip", at(s, 2, n)});
+    s.dampers.push_back({"damper", at(s, 3, q), at(s, 2, p)});
     return s;
 }
 
@@ -331,6 +338,14 @@ TEST(Link, WithAnythingToSayStays) {
              s.probes.push_back({"p", at(s, 1, there)});
          }},
         {"the wheel", [](Scene& s) { s.wheels.push_back({.name = "w", .body = 1}); }},
+        {"an end of a steering axis",
+         [](Scene& s) {
+             s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{0}, {1}}});
+         }},
+        {"an end of a damper",
+         [](Scene& s) {
+             s.dampers.push_back({"d", {ground}, {1}});
+         }},
         {"a bushing",
          [](Scene& s) {
              s.elastics.push_back({"r", bushing(s, 1, 0, there)});

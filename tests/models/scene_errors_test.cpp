@@ -31,7 +31,7 @@ std::string repeated(const std::string& text, int times) {
 const std::string sections =
     "elastocheck, name, units, mirror, gravity, points, bodies, joints, springs, stops, torsion_springs, "
     "bushings, "
-    "beams, tyres, static_loads, loads, trim, branches, wheel, wheels, probes";
+    "beams, tyres, static_loads, loads, trim, branches, wheel, wheels, probes, dampers, vehicle";
 const std::string joint_types =
     "spherical, revolute, universal, cylindrical, translational, planar, fixed, distance, "
     "in_plane, in_line, perpendicular, parallel";
@@ -425,7 +425,7 @@ const std::vector<Mistake> mistakes{
      "48: wheel.spin_axis: does not point outboard, which is +y for a left wheel"},
     {"UnknownFieldOfWheel", "contact_patch: side", "contact: side",
      "48: wheel: unknown field 'contact'; allowed: body, centre, contact_patch, spin_axis, "
-     "side"},
+     "side, steering_axis"},
 };
 
 std::string text_with(const Mistake& mistake) {

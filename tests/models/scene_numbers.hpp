@@ -144,8 +144,21 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("contact", wheel.contact_local);
         n.add("spin_axis", wheel.spin_axis_local);
         n.add("side", wheel.side);
+        if (!wheel.steering_axis) continue;
+        n.add("steering_axis.lower", wheel.steering_axis->lower);
+        n.add("steering_axis.upper", wheel.steering_axis->upper);
     }
     for (const auto& probe : scene.probes) n.where = "probe " + probe.name, n.add("at", probe.at);
+    for (const auto& damper : scene.dampers)
+        n.where = "damper " + damper.name, n.add("i", damper.i), n.add("j", damper.j);
+    if (const auto& vehicle = scene.vehicle) {
+        n.where = "vehicle";
+        n.add("wheelbase", vehicle->wheelbase);
+        n.add("cg_height", vehicle->cg_height);
+        n.add("axle", static_cast<double>(vehicle->axle));
+        n.add("brake_share", vehicle->brake_share);
+        n.add("drive_share", vehicle->drive_share);
+    }
     return n.all;
 }
 

@@ -42,6 +42,9 @@ void for_each_feature(Scene& scene, F&& f) {
             joint.kind);
     for (auto& elastic : scene.elastics) std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic.kind);
     for (auto& probe : scene.probes) f(probe.at);
+    for (auto& damper : scene.dampers) f(damper.i), f(damper.j);
+    for (auto& wheel : scene.wheels)
+        if (auto& axis = wheel.steering_axis) f(axis->lower), f(axis->upper);
 }
 
 template <class F>

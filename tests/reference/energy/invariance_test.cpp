@@ -81,6 +81,7 @@ Scene changed(Scene scene, const Change& change) {
                 change.preload(std::get<Preload>(driver.what).direction);
             }
     for (auto& probe : scene.probes) point(probe.at);
+    for (auto& damper : scene.dampers) point(damper.i), point(damper.j);
     for (auto& wheel : scene.wheels) {
         Point centre{wheel.body, wheel.centre_local};
         Point contact{wheel.body, wheel.contact_local};
@@ -90,6 +91,7 @@ Scene changed(Scene scene, const Change& change) {
         wheel.centre_local = centre.s_local;
         wheel.contact_local = contact.s_local;
         wheel.spin_axis_local = axis.u_local;
+        if (auto& steering = wheel.steering_axis) point(steering->lower), point(steering->upper);
     }
     return scene;
 }

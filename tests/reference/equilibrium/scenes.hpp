@@ -102,9 +102,12 @@ inline void visit(Scene& s, const Visitor& v) {
         Point centre{wheel.body, wheel.centre_local}, contact{wheel.body, wheel.contact_local};
         Direction axis{wheel.body, wheel.spin_axis_local};
         v(centre), v(contact), v(axis);
-        wheel = {wheel.name, centre.body, centre.s_local, contact.s_local, axis.u_local, wheel.side};
+        if (auto& steering = wheel.steering_axis) v(steering->lower), v(steering->upper);
+        wheel = {wheel.name,   centre.body, centre.s_local,  contact.s_local,
+                 axis.u_local, wheel.side,  wheel.tyre_rate, wheel.steering_axis};
     }
     for (auto& probe : s.probes) v(probe.at);
+    for (auto& damper : s.dampers) v(damper.i), v(damper.j);
 }
 
 inline void turn_loads(Scene& s, const Matrix3d& force, const Matrix3d& moment) {
