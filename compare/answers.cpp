@@ -148,15 +148,15 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
     Answers answers;
     const std::size_t wheels = way.model.wheels.size();
     Stand stand = freed(way, state);
-    const auto causes = causes_at(way.model);
-    if (const Response free = respond(gait, stand.model, stand.branch, stand.state, causes);
+    const auto wrenches = causes_at(way.model);
+    if (const Response free = respond(gait, stand.model, stand.branch, stand.state, wrenches);
         free.outcome == Outcome::converged)
         answers.free = by_wheel(free.increments, wheels);
     else
         answers.why_not_free = told(free);
 
     const std::size_t first = jack_up(stand);
-    std::vector<Disturbance> changes = causes;
+    std::vector<Disturbance> changes = wrenches;
     for (std::size_t w = 0; w < wheels; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
     const bool steers =
         steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;

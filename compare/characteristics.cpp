@@ -264,7 +264,7 @@ const std::array table{
           [](const Wheels& x, std::size_t w) {
               const Motions by = raised(x);
               const Vector3d v = moved(x.state, by, x.centre(w));
-              return x.side(w) * ratio(v.z(), turned(by, x[w].body).x(), nowhere);
+              return ratio(x.side(w) * v.z(), turned(by, x[w].body).x(), nowhere);
           }},
     Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
           "distance from the wheel centre, along the vehicle, to where the carrier seen from the side turns about, all wheels "

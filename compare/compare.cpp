@@ -39,7 +39,9 @@ std::vector<Compliance> compliance_of(const Model& model, const Way& way, const 
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
         const Answers answers = answer(way, gait, steering_joint(model), **state);
-        Compliance& at = list.emplace_back(Compliance{.a = a, .why_not = answers.why_not_free});
+        Compliance& at = list.emplace_back();
+        at.a = a;
+        at.why_not = answers.why_not_free;
         at.centre = compliance(way.model, WheelPoint::centre, **state, answers);
         at.patch = compliance(way.model, WheelPoint::patch, **state, answers);
         at.reciprocity = reciprocity(way.model, at.centre);

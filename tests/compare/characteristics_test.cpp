@@ -38,6 +38,7 @@ class Read {
         if (path.points.empty()) return;
         state = path.points.front();
         answers = answer(way_, {.leg = leg}, steering_joint(model), state);
+        EXPECT_EQ(answers.why_not, "") << name(leg);
         values_ = row_of(model, channels_, way_, {.leg = leg}, state).values;
     }
     double operator[](const std::string& name) const {
@@ -296,17 +297,20 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
         for (std::size_t c = 0; c < is.values().size(); ++c) {
             const auto& channel = is.channels()[c];
             for (const Read* same : {&other, &units}) {
-                if (is.values()[c] == undefined)
+                if (is.values()[c] == undefined) {
                     EXPECT_EQ(same->values()[c], undefined) << name << " " << channel.name;
-                else
+                } else {
                     EXPECT_NEAR(same->values()[c], is.values()[c], 1e-7 * std::max(1.0, std::abs(is.values()[c])))
                         << name << " " << channel.name;
+                }
             }
             // Of an axle the left is the right.
-            if (channel.name.starts_with("left."))
+            if (channel.name.starts_with("left.") && is.values()[c] != undefined &&
+                !channel.name.ends_with("steer_gradient")) {  // one rack turns one in and the other out
                 EXPECT_NEAR(is["right." + channel.name.substr(5)], is.values()[c],
                             1e-7 * std::max(1.0, std::abs(is.values()[c])))
                     << name << " " << channel.name;
+            }
         }
     }
 }
@@ -324,9 +328,11 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const auto jack = static_cast<std::size_t>(find_channel(channels(model), "jack.drive_force"));
         const double per_newton = (force.curve.values.back()[jack] - force.curve.values.front()[jack]) / 2;
         const Read is(model, Leg::equilibrium, "lateral");
-        const double y = model.wheels[0].contact_local.y() +
-                         is.state.poses[static_cast<std::size_t>(model.wheels[0].body)].r.y();
-        EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton, 1e-3) << name;
+        const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
+        const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
+        // The jack is under the centre; the patch rises a little more or less where the wheel leans.
+        const double rises = moved(is.state, is.answers.travel[0], {model.wheels[0].body, model.wheels[0].contact_local}).z();
+        EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }
 
