@@ -141,8 +141,7 @@ Response respond(const Model& model, const Branch& branch, const Equilibrium& st
         return response;
     };
     if (const Outcome outcome = factorise(s, method); outcome != Outcome::converged)
-        return fail(outcome,
-                    "the state does not answer alone: a small disturbance has no one response there");
+        return fail(outcome, "a small disturbance has no one response at the state");
     for (const Disturbance& disturbance : disturbances) {
         disturb(s, disturbance);
         back_substitute(s);
