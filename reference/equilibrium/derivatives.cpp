@@ -103,9 +103,10 @@ Pattern pattern_of(const System& system, const Loading& loading, const VectorXd&
 
 // A body on its way through x: as above.
 using Dual = ceres::Jet<double, 1>;
+Frame<Dual> at_rest(const Frame<double>& at) { return {at.r.cast<Dual>(), at.p.cast<Dual>()}; }
 Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd& dx, BodyId body) {
     const Frame<double> at = frame_of(system, x, body);
-    Frame<Dual> frame{at.r.cast<Dual>(), at.p.cast<Dual>()};
+    Frame<Dual> frame = at_rest(at);
     if (body == ground) return frame;
     const Eigen::Vector3d v = at.p.vec(), turn = dx.segment<3>(6 * body + 3);
     const Eigen::Vector3d dv = (at.p.w() * turn + cross(turn, v)) / 2;
@@ -131,6 +132,36 @@ Derivatives derivatives(const System& system, const Loading& loading, const Vect
     by.E -= loading.held * system.at_design;
     by.E_rate -= loading.held_rate * system.at_design;
     return by;
+}
+
+VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x) {
+    struct Source {
+        const System& system;
+        const VectorXd& x;
+        Frame<Dual> frame(const Part& part, int which) const {
+            return at_rest(frame_of(system, x, which == 0 ? part.i : part.j));
+        }
+        Dual reaction(const Part& part, int k) const { return Dual(x[7 * system.bodies + part.row + k]); }
+    };
+    struct Sum {
+        const System& system;
+        VectorXd E_rate;
+        void balance(const Part&, BodyId body, const Vec3<Dual>& force, const Vec3<Dual>& moment) {
+            for (int k = 0; k < 3; ++k) {
+                E_rate[6 * body + k] += force[k].v[0];
+                E_rate[6 * body + 3 + k] += moment[k].v[0];
+            }
+        }
+        void constraint(const Part& part, int k, const Dual& Phi) {
+            E_rate[6 * system.bodies + part.row + k] += Phi.v[0];
+        }
+    };
+    Dual a(loading.a), held(loading.held);
+    a.v[0] = loading.a_rate;
+    held.v[0] = loading.held_rate;
+    Sum sum{system, -loading.held_rate * system.at_design};
+    assemble<Dual>(system, a, held, loading.pieces, Source{system, x}, sum);
+    return std::move(sum.E_rate);
 }
 
 std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,

@@ -15,6 +15,9 @@ struct Derivatives {
 Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x,
                         Counts& counts);
 
+// dE/dt alone.
+Eigen::VectorXd rate_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
+
 // A deformation that follows a curve, and how fast it changes.
 struct OnCurve {
     std::size_t element, axis;

@@ -8,41 +8,26 @@
 #include <limits>
 
 #include "models/compile.hpp"
-#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/slopes.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using support::apart, support::at_wheel, support::bare, support::OneWay, support::stacked, support::way_of;
 
 Method rung(const char* name) { return find_method(name).value(); }
 
-// One way of a scene by its branch's name, walked towards `to` where there are two.
-OneWay way_of(const Scene& scene, const std::string& branch, double to) {
-    for (const auto& way : one_ways(compile(scene)))
-        if (way.branch.name.starts_with(branch) && way.branch.to * to > 0) return way;
-    throw std::logic_error("no branch " + branch);
-}
 OneWay way_of(const char* scene, const std::string& branch, double to) {
-    return way_of(support::scene(scene), branch, to);
+    return support::way_of(support::scene(scene), branch, to);
 }
 
 Equilibrium end_of(const Model& model, const Branch& branch) {
     const auto path = solve(model, branch, {.method = rung("series"), .steps = 1});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return path.points.back();
-}
-// Nothing but the configuration and where on the branch it is.
-Equilibrium bare(const Equilibrium& state) { return {state.load, state.poses, {}, 0}; }
-
-VectorXd stacked(const std::vector<Increment>& increments) {
-    VectorXd all(6 * static_cast<Eigen::Index>(increments.size()));
-    for (Eigen::Index b = 0; b < all.size() / 6; ++b)
-        all.segment<6>(6 * b) << increments[static_cast<std::size_t>(b)].dr,
-            increments[static_cast<std::size_t>(b)].dpi;
-    return all;
 }
 VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& disturbance,
              const Method& method = rung("series")) {
@@ -51,52 +36,14 @@ VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& dis
     return response.increments.size() == 1 ? stacked(response.increments[0])
                                            : VectorXd::Constant(6, std::nan(""));
 }
-double apart(const VectorXd& a, const VectorXd& b) {
-    return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff() : INFINITY;
-}
-
 BodyId body_named(const Model& model, const std::string& name) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
         if (model.bodies[b].name == name) return static_cast<BodyId>(b);
     throw std::logic_error("no body " + name);
 }
-Disturbance at_wheel(const Model& model, const Vector3d& force, const Vector3d& moment) {
-    const Wheel& wheel = model.wheels[0];
-    return UnitWrench{{wheel.body, wheel.contact_local}, force, moment};
-}
-
-// The disturbance `by` times, held on the whole branch.
-Branch disturbed(Branch branch, const Disturbance& disturbance, double by) {
-    if (const auto* wrench = std::get_if<UnitWrench>(&disturbance)) {
-        branch.drivers.push_back({Load{"f", DeadForce{wrench->at, wrench->force}}, by, 0});
-        branch.drivers.push_back({Load{"m", DeadMoment{wrench->at.body, wrench->moment}}, by, 0});
-    } else {
-        branch.drivers.push_back({std::get<Motion>(disturbance), by, 0});
-    }
-    return branch;
-}
-// Central differences of the own solutions at the end of the branch.
-VectorXd slope(const OneWay& way, const Disturbance& disturbance, double h) {
-    const Equilibrium plus = end_of(way.model, disturbed(way.branch, disturbance, h)),
-                      minus = end_of(way.model, disturbed(way.branch, disturbance, -h));
-    VectorXd dq(coordinates(way.model));
-    for (std::size_t b = 0; b < plus.poses.size(); ++b) {
-        const Eigen::AngleAxisd turn(plus.poses[b].p * minus.poses[b].p.conjugate());
-        const auto at = static_cast<Eigen::Index>(6 * b);
-        dq.segment<3>(at) = (plus.poses[b].r - minus.poses[b].r) / (2 * h);
-        dq.segment<3>(at + 3) = turn.angle() * turn.axis() / (2 * h);
-    }
-    return dq;
-}
 void expect_slope(const OneWay& way, const Disturbance& disturbance, double h, const std::string& where) {
-    const VectorXd answer = one(way, end_of(way.model, way.branch), disturbance);
-    const VectorXd coarse = slope(way, disturbance, h), fine = slope(way, disturbance, h / 2);
-    const double missed = apart(coarse, answer);
-    // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of fourth.
-    if (missed > 1e-5) {
-        EXPECT_NEAR(missed / apart(fine, answer), 4, 0.5) << where;
-    }
-    EXPECT_LE(apart((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
+    support::expect_slope(one(way, end_of(way.model, way.branch), disturbance), way, disturbance, h, end_of,
+                          where);
 }
 
 TEST(Respond, IsTheSlopeOfTheOwnSolutionFarFromDesign) {
@@ -193,7 +140,7 @@ TEST(Respond, OnlyTheConsistentTangentKnowsThatTheTautSpringIsStiffAcross) {
 TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
-    const auto side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
+    const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     const VectorXd linear = one(way, state, side, rung("published")), consistent = one(way, state, side);
     for (const Method& method : methods)
         EXPECT_EQ(one(way, state, side, method),
@@ -250,7 +197,7 @@ TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
 TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
-    const auto side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
+    const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     const VectorXd dq = one(way, state, side);
     // The idle mode itself, by the diagnosis of the model drawn where the state is.
     Model there = way.model;
@@ -328,7 +275,7 @@ TEST(Respond, StatesThatAreNoNumbersAreSaidToBeNone) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(way.model, way.branch);
     state.poses[1].r.y() = std::numeric_limits<double>::quiet_NaN();
-    const auto side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
+    const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     for (const char* method : {"published", "series"})
         EXPECT_EQ(respond(way.model, way.branch, state, {&side, 1}, rung(method)).outcome,
                   Outcome::not_finite);
