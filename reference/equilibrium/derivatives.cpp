@@ -164,29 +164,6 @@ VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x
     return std::move(sum.E_rate);
 }
 
-double straining(const System& system, const Loading& loading, const VectorXd& x, const VectorXd& dx) {
-    double most = 0;
-    const auto& elastics = system.model->elastics;
-    for (std::size_t e = 0; e < elastics.size(); ++e) {
-        const auto [i, j] = bodies_of(elastics[e].kind);
-        const Vec6<Dual> now = deformations(system, e, Dual(loading.a), moving_frame(system, x, dx, i),
-                                            moving_frame(system, x, dx, j));
-        const ElementPieces& on = loading.pieces.empty() ? all_by_themselves : loading.pieces[e];
-        std::visit(overloaded{[&](const AxialSpring& spring) {
-                                  const Dual t = gradient(spring.law, now[0], on[0]);
-                                  most = std::max(most, std::abs(t.v[0]) / system.force);
-                              },
-                              [&](const Bushing& bushing) {
-                                  const Vec6<Dual> stress = gradient(bushing.law, now, on);
-                                  for (int k = 0; k < 6; ++k)
-                                      most = std::max(most, std::abs(stress[k].v[0]) / system.force /
-                                                                (k < 3 ? 1 : system.length));
-                              }},
-                   elastics[e].kind);
-    }
-    return most;
-}
-
 std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,
                                const VectorXd& dx) {
     std::vector<OnCurve> all;

@@ -18,10 +18,6 @@ Derivatives derivatives(const System& system, const Loading& loading, const Eige
 // dE/dt alone.
 Eigen::VectorXd rate_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
-// How much a step dx changes the stress of any element, over F or F L: 0 where no element notices it. The drivers stand.
-double straining(const System& system, const Loading& loading, const Eigen::VectorXd& x,
-                 const Eigen::VectorXd& dx);
-
 // A deformation that follows a curve, and how fast it changes.
 struct OnCurve {
     std::size_t element, axis;

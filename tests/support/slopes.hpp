@@ -1,0 +1,96 @@
+// What a small disturbance does, by differences of whole solutions: what a leg's response is held against.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/response.hpp"
+
+namespace elastocheck::support {
+
+// The model on one way of the branch whose name begins so: the way towards the sign of `to`.
+struct OneWay {
+    Model model;
+    Branch branch;
+};
+inline OneWay way_of(const Scene& scene, const std::string& name, double to) {
+    const Model model = compile(scene);
+    for (const auto& branch : model.branches)
+        for (const auto& way : ways(branch))
+            if (way.name.starts_with(name) && way.to * to > 0) return {on_branch(model, way), way};
+    throw std::logic_error("no branch " + name);
+}
+
+// Nothing but the configuration and where on the branch it is.
+inline Equilibrium bare(const Equilibrium& state) { return {state.load, state.poses, {}, 0}; }
+
+// (dr, dπ) of every body [6nb].
+inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
+    Eigen::VectorXd all(6 * static_cast<Eigen::Index>(increments.size()));
+    for (Eigen::Index b = 0; b < all.size() / 6; ++b) {
+        const Increment& body = increments[static_cast<std::size_t>(b)];
+        all.segment<6>(6 * b) << body.dr, body.dpi;
+    }
+    return all;
+}
+
+// Of the largest entry of b; infinite where they are not alike.
+inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff() : INFINITY;
+}
+
+inline UnitWrench at_wheel(const Model& model, const Eigen::Vector3d& force,
+                           const Eigen::Vector3d& moment = Eigen::Vector3d::Zero()) {
+    const Wheel& wheel = model.wheels[0];
+    return {{wheel.body, wheel.contact_local}, force, moment};
+}
+
+// The disturbance `by` times, held on the whole branch.
+inline Branch disturbed(Branch branch, const Disturbance& disturbance, double by) {
+    if (const auto* wrench = std::get_if<UnitWrench>(&disturbance)) {
+        branch.drivers.push_back({Load{"f", DeadForce{wrench->at, wrench->force}}, by, 0});
+        branch.drivers.push_back({Load{"m", DeadMoment{wrench->at.body, wrench->moment}}, by, 0});
+    } else {
+        branch.drivers.push_back({std::get<Motion>(disturbance), by, 0});
+    }
+    return branch;
+}
+
+// The state at the end of a branch, by some leg.
+using Solve = std::function<Equilibrium(const Model&, const Branch&)>;
+
+// Central differences of it.
+inline Eigen::VectorXd slope(const OneWay& way, const Disturbance& disturbance, double h,
+                             const Solve& solve) {
+    const Equilibrium plus = solve(way.model, disturbed(way.branch, disturbance, h)),
+                      minus = solve(way.model, disturbed(way.branch, disturbance, -h));
+    Eigen::VectorXd dq(coordinates(way.model));
+    for (std::size_t b = 0; b < plus.poses.size(); ++b) {
+        const Eigen::AngleAxisd turn(plus.poses[b].p * minus.poses[b].p.conjugate());
+        const auto at = static_cast<Eigen::Index>(6 * b);
+        dq.segment<3>(at) = (plus.poses[b].r - minus.poses[b].r) / (2 * h);
+        dq.segment<3>(at + 3) = turn.angle() * turn.axis() / (2 * h);
+    }
+    return dq;
+}
+
+inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way, const Disturbance& disturbance,
+                         double h, const Solve& solve, const std::string& where) {
+    const Eigen::VectorXd coarse = slope(way, disturbance, h, solve),
+                          fine = slope(way, disturbance, h / 2, solve);
+    // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of
+    // fourth.
+    const double missed = apart(coarse, answer);
+    if (missed > 1e-5) {
+        EXPECT_NEAR(missed / apart(fine, answer), 4, 0.5) << where;
+    }
+    EXPECT_LE(apart((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
+}
+
+}  // namespace elastocheck::support
