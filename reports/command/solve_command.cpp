@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "compare/channels.hpp"
+#include "compare/elements.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
 #include "recursive/series/path.hpp"
@@ -45,6 +46,14 @@ void write_rates(const Model& model, const std::vector<Channel>& asked, const So
     csv.finish();
 }
 
+// What bushings, springs and links bear is written where it is asked for by name.
+std::vector<Channel> asked_for(const Model& model, const std::vector<std::string>& patterns) {
+    auto all = compare::channels(model);
+    if (patterns.empty()) return all;
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    return chosen(all, patterns);
+}
+
 }  // namespace
 
 std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
@@ -72,7 +81,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     if (!request.output.empty()) check_may_write(request.output, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     const Model model = load_scene(file, settings, request.detail).model;
-    const auto channels = chosen(compare::channels(model), request.channels);
+    const auto channels = asked_for(model, request.channels);
     check_every(model, how.steps, every);
     check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request);
@@ -86,7 +95,10 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         if (csv) progress(branch.name);
         const EquilibriumPath path = compare::walk(
             compare::ways_of(model, branch, how.steps), request.gait,
-            [&](const Equilibrium& state) { return compare::row_of(model, channels, state); },
+            [&](const Equilibrium& state) {
+                return compare::Row{state.load, state.constraint_error,
+                                    compare::evaluate(model, branch, channels, state)};
+            },
             [&](const compare::Row& row) {
                 write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
             });

@@ -270,6 +270,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     scene_document["branches"] = branches;
     scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
+    scene_document["forces"] = table_json(force_table(element_values(model, comparison)));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 
