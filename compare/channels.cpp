@@ -174,9 +174,9 @@ void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w, co
             {.name = prefix + "wheelbase_change",
              .main = false,
              .reads = Coordinate{patch, 0, drawn.x(), model.vehicle->axle == Axle::front ? +1 : -1},
-             .definition = fmt::format("how far the contact patch of this wheel is along from where "
-                                       "it is drawn, positive where the wheelbase grows: {}",
-                                       model.vehicle->axle == Axle::front ? "forward" : "rearward")});
+             .definition = "how far the contact patch of this wheel is along from where it is drawn, "
+                           "positive where the wheelbase grows (forward in front, rearward at the "
+                           "rear)"});
 }
 
 void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& prefix) {
