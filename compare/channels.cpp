@@ -45,7 +45,7 @@ const ModelJoint& joint_of(const Model& model, int joint) {
 // ---- Values in SI, one function a kind.
 
 double read(const Model&, const Equilibrium& state, const Coordinate& c) {
-    return position(state, c.at)[c.axis] - c.counted_from;
+    return c.sign * (position(state, c.at)[c.axis] - c.counted_from);
 }
 double read(const Model&, const Equilibrium&, const Characteristic&) {
     return std::numeric_limits<double>::quiet_NaN();
@@ -56,6 +56,50 @@ double read(const Model& model, const Equilibrium& state, const Toe& c) {
 }
 double read(const Model& model, const Equilibrium& state, const Camber& c) {
     return -std::asin(spin_axis(model, state, c.wheel).z());
+}
+
+// ---- What steers.
+
+constexpr double flattest = 0.1;  // [rad] of a steering axis to the road
+const double least_steering = 2 * std::numbers::pi / 180;
+
+// From the contact patch to where the steering axis meets the road; undefined where it lies too flat.
+Vector3d pivot(const Model& model, const Equilibrium& state, std::size_t wheel) {
+    const Wheel& w = model.wheels[wheel];
+    const Vector3d l = position(state, w.steering_axis->lower),
+                   u = position(state, w.steering_axis->upper) - l,
+                   c = position(state, {w.body, w.contact_local});
+    if (!(std::abs(u.z()) > std::sin(flattest) * u.norm())) return Vector3d::Constant(undefined);
+    return l + u * ((c.z() - l.z()) / u.z()) - c;
+}
+
+double read(const Model& model, const Equilibrium& state, const Steering& c) {
+    const Wheel& w = model.wheels[c.wheel];
+    const Vector3d u = position(state, w.steering_axis->upper) - position(state, w.steering_axis->lower);
+    const Vector3d off = pivot(model, state, c.wheel), e = spin_axis(model, state, c.wheel);
+    if (std::isinf(off.x())) return undefined;
+    const Vector3d n = Vector3d(e.x(), e.y(), 0).normalized(), h = w.side * n.cross(Vector3d::UnitZ());
+    switch (c.figure) {
+        case Steering::Figure::caster: return std::atan(-u.x() / u.z());
+        case Steering::Figure::kingpin_inclination: return std::atan(-w.side * u.y() / u.z());
+        case Steering::Figure::scrub_radius: return -n.dot(off);
+        case Steering::Figure::mechanical_trail: return h.dot(off);
+    }
+    return undefined;
+}
+double read(const Model& model, const Equilibrium& state, const Track& c) {
+    const auto y = [&](std::size_t w) {
+        return position(state, {model.wheels[w].body, model.wheels[w].contact_local}).y();
+    };
+    return y(c.left) - y(c.right);
+}
+double read(const Model& model, const Equilibrium& state, const Ackermann& c) {
+    const double left = -read(model, state, Toe{c.left}), right = read(model, state, Toe{c.right});
+    if (!(left * right > 0 && std::min(std::abs(left), std::abs(right)) >= least_steering)) return undefined;
+    return (1 / std::tan(right) - 1 / std::tan(left)) * c.wheelbase_by_pivots;
+}
+double read(const Model&, const Equilibrium& state, const Compression& c) {
+    return c.drawn - (position(state, c.j) - position(state, c.i)).norm();
 }
 double read(const Model& model, const Equilibrium& state, const Effort& c) {
     const int driven = joint_of(model, c.joint).driven;
@@ -73,6 +117,12 @@ double read(const Model& model, const Equilibrium& state, const Effort& c) {
                    [](const CoincidentPoints&) { return std::nan(""); },
                    [](const PerpendicularDirections&) { return std::nan(""); }},
         model.constraints[static_cast<std::size_t>(driven)].kind);
+}
+double read(const Model&, const Equilibrium&, const OfElement&) { return std::nan(""); }
+double read(const Model& model, const Equilibrium& state, const AxialForce& c) {
+    const auto& rod =
+        std::get<DistanceBetween>(model.constraints[static_cast<std::size_t>(c.constraint)].kind);
+    return wrench(state, c.joint).force.dot((position(state, rod.j) - position(state, rod.i)).normalized());
 }
 double read(const Model&, const Equilibrium& state, const Reaction& c) {
     const Wrench& on_i = wrench(state, c.joint);
@@ -107,6 +157,96 @@ void add_position(std::vector<Channel>& list, const std::string& stem, const std
                                                   towards[static_cast<std::size_t>(k)])});
 }
 
+// Of a wheel, beside its position and angles.
+void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w, const std::string& prefix) {
+    const Wheel& wheel = model.wheels[w];
+    const Point patch{wheel.body, wheel.contact_local};
+    const Vector3d drawn = position(design_state(model), patch);
+    const std::size_t first = list.size();
+    add_position(list, prefix + "contact_patch",
+                 "the point of the wheel's body that is the contact patch as drawn", patch);
+    for (std::size_t k = first; k < list.size(); ++k) list[k].main = false;
+    list.push_back({.name = prefix + "track_change",
+                    .main = false,
+                    .reads = Coordinate{patch, 1, drawn.y(), wheel.side},
+                    .definition = "how far the contact patch of this wheel is across from where it is drawn, "
+                                  "positive outwards"});
+    if (model.vehicle)
+        list.push_back(
+            {.name = prefix + "wheelbase_change",
+             .main = false,
+             .reads = Coordinate{patch, 0, drawn.x(), model.vehicle->axle == Axle::front ? +1 : -1},
+             .definition = "how far the contact patch of this wheel is along from where it is drawn, "
+                           "positive where the wheelbase grows (forward in front, rearward at the "
+                           "rear)"});
+}
+
+void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& prefix) {
+    using Figure = Steering::Figure;
+    const auto add = [&](const char* name, Unit unit, Figure figure, const char* definition) {
+        list.push_back({.name = prefix + name,
+                        .unit = unit,
+                        .main = false,
+                        .reads = Steering{figure, w},
+                        .definition = definition});
+    };
+    add("caster", Unit::deg, Figure::caster,
+        "angle of the steering axis to the vertical seen from the side, positive where its top leans "
+        "backwards; undefined where it lies flatter than 0.1 rad");
+    add("kingpin_inclination", Unit::deg, Figure::kingpin_inclination,
+        "angle of the steering axis to the vertical seen from behind, positive where its top leans inwards; "
+        "undefined where it lies flatter than 0.1 rad");
+    add("scrub_radius", Unit::mm, Figure::scrub_radius,
+        "across the wheel, from the contact patch to where the steering axis meets the road (a horizontal "
+        "plane through the patch), positive where that is inboard; undefined where the axis lies flatter "
+        "than "
+        "0.1 rad");
+    add("mechanical_trail", Unit::mm, Figure::mechanical_trail,
+        "along the wheel, from the contact patch to where the steering axis meets the road (a horizontal "
+        "plane through the patch), positive where that is in front; undefined where the axis lies flatter "
+        "than 0.1 rad");
+}
+
+// Of two wheels that are opposite.
+void add_axle(std::vector<Channel>& list, const Model& model) {
+    if (model.wheels.size() != 2 || model.wheels[0].side == model.wheels[1].side) return;
+    const std::size_t left = model.wheels[0].side > 0 ? 0 : 1, right = 1 - left;
+    list.push_back({.name = "track",
+                    .main = false,
+                    .reads = Track{left, right},
+                    .definition = "distance across between the contact patches of the two wheels, positive "
+                                  "where the left one is to the left"});
+    if (!model.vehicle || model.vehicle->axle != Axle::front) return;
+    const Equilibrium drawn = design_state(model);
+    const auto y = [&](std::size_t w) {
+        const Wheel& wheel = model.wheels[w];
+        const double to_pivot = wheel.steering_axis ? pivot(model, drawn, w).y() : 0;
+        return position(drawn, {wheel.body, wheel.contact_local}).y() + (std::isinf(to_pivot) ? 0 : to_pivot);
+    };
+    list.push_back(
+        {.name = "ackermann",
+         .unit = Unit::percent,
+         .main = false,
+         .reads = Ackermann{left, right, model.vehicle->wheelbase / (y(left) - y(right))},
+         .definition =
+             "how nearly the perpendiculars to the two wheels meet on the line of the rear axle: "
+             "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over the "
+             "distance across between the pivots on the road, positive where the inner wheel turns "
+             "more, 100 % where they meet there; undefined unless both are turned the same way by 2 "
+             "deg or more"});
+}
+
+void add_compression(std::vector<Channel>& list, const Model& model, const std::string& name,
+                     const char* what, const Point& i, const Point& j) {
+    const Equilibrium drawn = design_state(model);
+    list.push_back({.name = name + ".compression",
+                    .main = false,
+                    .reads = Compression{i, j, (position(drawn, j) - position(drawn, i)).norm()},
+                    .definition = fmt::format("how much shorter {} '{}' is than as drawn, positive in "
+                                              "compression",
+                                              what, name)});
+}
+
 void add_wheel(std::vector<Channel>& list, const Model& model, std::size_t w) {
     const Wheel& wheel = model.wheels[w];
     const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
@@ -128,6 +268,8 @@ void add_wheel(std::vector<Channel>& list, const Model& model, std::size_t w) {
                     .reads = Coordinate{centre, 2, position(design_state(model), centre).z()},
                     .definition = "vertical displacement of the wheel centre from its design position, "
                                   "positive in jounce (up)"});
+    add_patch(list, model, w, prefix);
+    if (wheel.steering_axis) add_steering(list, w, prefix);
 }
 
 void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::string& what,
@@ -227,24 +369,38 @@ Unit unit_of(ParameterUnit unit) {
 }
 
 bool Channel::kinematic() const {
-    return joints().empty() && !std::holds_alternative<Characteristic>(reads);
+    return joints().empty() && !std::holds_alternative<OfElement>(reads) &&
+           !std::holds_alternative<Characteristic>(reads);
 }
 
 std::vector<int> Channel::joints() const {
     return std::visit(overloaded{[](const Coordinate&) { return std::vector<int>{}; },
                                  [](const Toe&) { return std::vector<int>{}; },
                                  [](const Camber&) { return std::vector<int>{}; },
+                                 [](const Steering&) { return std::vector<int>{}; },
+                                 [](const Track&) { return std::vector<int>{}; },
+                                 [](const Ackermann&) { return std::vector<int>{}; },
+                                 [](const Compression&) { return std::vector<int>{}; },
                                  [](const Effort& e) { return std::vector<int>{e.joint}; },
                                  [](const Reaction& r) { return std::vector<int>{r.joint}; },
                                  [](const Total& t) { return t.joints; },
-                                 [](const Characteristic&) { return std::vector<int>{}; }},
+                                 [](const Characteristic&) { return std::vector<int>{}; },
+                                 [](const OfElement&) { return std::vector<int>{}; },
+                                 [](const AxialForce& f) { return std::vector<int>{f.joint}; }},
                       reads);
 }
 
 std::vector<Channel> channels(const Model& model) {
     std::vector<Channel> list;
     for (std::size_t w = 0; w < model.wheels.size(); ++w) add_wheel(list, model, w);
+    add_axle(list, model);
     for (const auto& probe : model.probes) add_position(list, probe.name, "'" + probe.name + "'", probe.at);
+    for (const auto& elastic : model.elastics)
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind);
+            spring != nullptr && elastic.written_as == WrittenAs::itself)
+            add_compression(list, model, elastic.name, "spring", spring->i, spring->j);
+    for (const auto& damper : model.dampers)
+        add_compression(list, model, damper.name, "damper", damper.i, damper.j);
     for (const int k : joints_moved(model)) add_effort(list, model, k);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];

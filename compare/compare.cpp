@@ -98,6 +98,8 @@ double bound_of(Unit unit, const Bounds& bounds) {
         case Unit::deg: return bounds.angle;
         case Unit::newton: return bounds.force;
         case Unit::newton_metre: return bounds.moment;
+        case Unit::percent:
+            return 6e3 * bounds.angle;  // of two cotangents at 2 deg, of a wheelbase of two tracks
         default: return 0;  // of a characteristic: apart
     }
 }
@@ -125,6 +127,13 @@ bool is_determined(const Channel& channel, const std::vector<bool>& determined,
         const auto j = static_cast<std::size_t>(k);
         return stands[j] && (total || determined[j]);
     });
+}
+
+bool is_undefined_somewhere(const Channel& channel, std::size_t c, const std::vector<LegRun>& runs) {
+    return channel.may_be_undefined() && std::ranges::any_of(runs, [&](const LegRun& run) {
+               return std::ranges::any_of(run.curve.values,
+                                          [&](const auto& values) { return values[c] == undefined; });
+           });
 }
 
 }  // namespace
@@ -250,6 +259,8 @@ Comparison compare(const Model& model, const Options& options) {
             b.runs.push_back(
                 run(model, result.channels, branch, ways[k], {.leg = Leg::series, .every = options.every}));
         }
+        for (std::size_t c = 0; c < result.channels.size(); ++c)
+            b.determined[c] = b.determined[c] && !is_undefined_somewhere(result.channels[c], c, b.runs);
         const LegRun& truth = run_of(b, Leg::equilibrium);
         b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
         const auto pair = [&](Leg a, Leg c) {

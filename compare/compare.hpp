@@ -83,7 +83,8 @@ struct BranchComparison {
     std::string
         not_asked;  // why the energy leg was not, in words: what has no energy, or how large the scene is
     std::vector<bool> determined;  // per channel; what is not is never compared: reactions that redundant
-                                   // joints share as they like, joints that do not stand on this branch
+                                   // joints share as they like, joints that do not stand on this branch,
+                                   // what is undefined somewhere on it
     Pair deviation;                // the recursion against the equilibrium leg
     Pair cross_check;              // the recursion against the second reference
     Pair uncertainty;              // the second reference against the equilibrium leg

@@ -59,9 +59,6 @@ Reading nothing(std::string why) {
     return reading;
 }
 
-// What neither curve has a value of is no deviation; what one alone has, is one without a number.
-bool both_undefined(double a, double b) { return a == undefined && b == undefined; }
-
 // The same parameter as two divisions write it.
 bool same(double a, double b, const Curve& of) {
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(of.a.front()), std::abs(of.a.back()));
@@ -88,8 +85,7 @@ Reading at_equal_parameter(const Curve& a, const Curve& b) {
         const std::size_t i = a.start - before + k, j = b.start - before + k;
         if (!same(a.a[i], b.a[j], a)) return nothing("the curves are not at the same parameters");
         for (std::size_t c = 0; c < tallies.size(); ++c)
-            if (!(both_undefined(a.values[i][c], b.values[j][c])))
-                tallies[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
+            tallies[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
     }
     return finish(tallies, a);
 }

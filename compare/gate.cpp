@@ -221,23 +221,16 @@ Judgement Verdict::judgement() const {
 Tolerances default_tolerances(ToleranceClass kind) {
     switch (kind) {
         case ToleranceClass::same_build:  // the last digit of the file
-            return {{"mm", {2e-9, 0}},
-                    {"deg", {2e-9, 0}},
-                    {"N", {2e-9, 0}},
-                    {"N·m", {2e-9, 0}},
-                    {"count", {0, 0}}};
+            return {{"mm", {2e-9, 0}},  {"deg", {2e-9, 0}}, {"N", {2e-9, 0}},
+                    {"N·m", {2e-9, 0}}, {"%", {2e-9, 0}},   {"count", {0, 0}}};
         case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
-            return {{"mm", {5e-9, 0}},
-                    {"deg", {5e-9, 0}},
-                    {"N", {7e-8, 0}},
-                    {"N·m", {5e-9, 0}},
-                    {"count", {1, 0.012}}};
+            return {
+                {"mm", {5e-9, 0}},    {"deg", {5e-9, 0}}, {"N", {7e-8, 0}},
+                {"N·m", {5e-9, 0}},   {"%", {2e-5, 0}},  // of a cotangent at 2 deg: 5e-9 deg are 800 times as much, in percent
+                {"count", {1, 0.012}}};
         case ToleranceClass::physical:
-            return {{"mm", {0.01, 1e-3}},
-                    {"deg", {0.001, 1e-3}},
-                    {"N", {1, 1e-3}},
-                    {"N·m", {0.1, 1e-3}},
-                    {"count", {2, 0.5}}};
+            return {{"mm", {0.01, 1e-3}}, {"deg", {0.001, 1e-3}}, {"N", {1, 1e-3}},
+                    {"N·m", {0.1, 1e-3}}, {"%", {0.5, 1e-3}},     {"count", {2, 0.5}}};
     }
     return {};
 }

@@ -13,6 +13,7 @@
 
 #include "compare/characteristics.hpp"
 #include "compare/deformation.hpp"
+#include "compare/elements.hpp"
 #include "models/branch.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
@@ -163,7 +164,7 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
 
 Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
            const Equilibrium& state) {
-    Row row{state.load, state.constraint_error, evaluate(model, channels, state)};
+    Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
     std::optional<Answers> answers;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);

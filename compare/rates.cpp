@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/positions.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -36,23 +37,77 @@ Spin spin(const Model& model, const Equilibrium& state, const Rates& rates, std:
     return {e, turn(rates, wheel.body, e), static_cast<double>(wheel.side)};
 }
 
+// Of the angle of e to the x axis seen from above.
+double heading_rate(const Vector3d& e, const Vector3d& de) {
+    return (e.x() * de.y() - e.y() * de.x()) / (e.x() * e.x() + e.y() * e.y());
+}
+
+double rate(const Model& model, const Equilibrium& state, const Rates& rates, const Steering& c) {
+    if (std::isinf(evaluate(model, {{Channel{.name = {}, .reads = c}}}, state).front())) return nan;
+    const Wheel& wheel = model.wheels[c.wheel];
+    const Point patch{wheel.body, wheel.contact_local};
+    const auto [lower, upper] = *wheel.steering_axis;
+    const auto at = [&](const Point& p) { return position(state.poses, p); };
+    const Vector3d l = at(lower), dl = velocity(state, rates, lower), u = at(upper) - l,
+                   du = velocity(state, rates, upper) - dl, p = at(patch), dp = velocity(state, rates, patch);
+    const auto leaning = [&](double x, double dx) {  // atan(-x / u_z)
+        return (x * du.z() - dx * u.z()) / (x * x + u.z() * u.z());
+    };
+    const double s = (p.z() - l.z()) / u.z(), ds = (dp.z() - dl.z() - s * du.z()) / u.z();
+    const Vector3d off = l + s * u - p, doff = dl + ds * u + s * du - dp;
+    const auto [e, de, side] = spin(model, state, rates, c.wheel);
+    const Vector3d n = Vector3d(e.x(), e.y(), 0).normalized(), h = side * n.cross(Vector3d::UnitZ());
+    const Vector3d turn = heading_rate(e, de) * Vector3d::UnitZ();
+    switch (c.figure) {
+        case Steering::Figure::caster: return leaning(u.x(), du.x());
+        case Steering::Figure::kingpin_inclination: return leaning(side * u.y(), side * du.y());
+        case Steering::Figure::scrub_radius: return -n.dot(doff) - turn.cross(n).dot(off);
+        case Steering::Figure::mechanical_trail: return h.dot(doff) + turn.cross(h).dot(off);
+    }
+    return nan;
+}
+
+double rate(const Model& model, const Equilibrium& state, const Rates& rates, const Ackermann& c) {
+    if (std::isinf(evaluate(model, {{Channel{.name = {}, .reads = c}}}, state).front())) return nan;
+    const auto cot = [&](std::size_t w) {  // d cot δ = -dδ / sin² δ, e = side (-sin δ, cos δ) in the plane
+        const auto [e, de, side] = spin(model, state, rates, w);
+        const double sine = e.x() / std::hypot(e.x(), e.y());
+        return -heading_rate(e, de) / (sine * sine);
+    };
+    return (cot(c.right) - cot(c.left)) * c.wheelbase_by_pivots;
+}
+
 double rate(const Model& model, const Channel& channel, const Equilibrium& state, const Rates& rates) {
     const auto unknown = [](const auto&) { return nan; };
-    return std::visit(overloaded{[&](const Coordinate& c) { return velocity(state, rates, c.at)[c.axis]; },
-                                 [&](const Toe& c) {
-                                     const auto [e, de, side] = spin(model, state, rates, c.wheel);
-                                     return side * (e.y() * de.x() - e.x() * de.y()) /
-                                            (e.x() * e.x() + e.y() * e.y());
-                                 },
-                                 [&](const Camber& c) {
-                                     const auto [e, de, side] = spin(model, state, rates, c.wheel);
-                                     return -de.z() / std::sqrt(1 - e.z() * e.z());
-                                 },
-                                 [&](const Effort& c) { return unknown(c); },
-                                 [&](const Reaction& c) { return unknown(c); },
-                                 [&](const Total& c) { return unknown(c); },
-                                 [&](const Characteristic& c) { return unknown(c); }},
-                      channel.reads) *
+    return std::visit(
+               overloaded{
+                   [&](const Coordinate& c) { return c.sign * velocity(state, rates, c.at)[c.axis]; },
+                   [&](const Toe& c) {
+                       const auto [e, de, side] = spin(model, state, rates, c.wheel);
+                       return -side * heading_rate(e, de);
+                   },
+                   [&](const Steering& c) { return rate(model, state, rates, c); },
+                   [&](const Track& c) {
+                       const auto dy = [&](std::size_t w) {
+                           const Wheel& wheel = model.wheels[w];
+                           return velocity(state, rates, {wheel.body, wheel.contact_local}).y();
+                       };
+                       return dy(c.left) - dy(c.right);
+                   },
+                   [&](const Ackermann& c) { return rate(model, state, rates, c); },
+                   [&](const Compression& c) {
+                       const Vector3d d = position(state.poses, c.j) - position(state.poses, c.i);
+                       return -d.normalized().dot(velocity(state, rates, c.j) - velocity(state, rates, c.i));
+                   },
+                   [&](const Camber& c) {
+                       const auto [e, de, side] = spin(model, state, rates, c.wheel);
+                       return -de.z() / std::sqrt(1 - e.z() * e.z());
+                   },
+                   [&](const Effort& c) { return unknown(c); }, [&](const Reaction& c) { return unknown(c); },
+                   [&](const Total& c) { return unknown(c); }, [&](const OfElement& c) { return unknown(c); },
+                   [&](const AxialForce& c) { return unknown(c); },
+                    [&](const Characteristic& c) { return unknown(c); }},
+               channel.reads) *
            in_unit(channel.unit);
 }
 

@@ -17,6 +17,8 @@ namespace elastocheck::compare {
 // derivative of the configuration: with v = dr + ω × s for a point and ω × e for the spin axis e,
 //
 //   d toe = side (e_y de_x - e_x de_y) / (e_x² + e_y²)      d camber = -de_z / √(1 - e_z²)
+//
+// and likewise of the others; NaN where the output is undefined.
 std::vector<double> channel_rates(const Model& model, std::span<const Channel> channels, const Branch& branch,
                                   const recursive::series::Path& path, recursive::series::Place place);
 

@@ -125,6 +125,24 @@ Table agreement_table(const Comparison& comparison) {
     return table;
 }
 
+Table force_table(const std::vector<ElementValue>& values) {
+    Table table{"forces",
+                {words("branch"),
+                 {"end", "", "parameter there"},
+                 words("end unit"),
+                 words("element"),
+                 words("output"),
+                 words("unit"),
+                 {"value", "", "of the equilibrium leg"},
+                 {"error", "", "recursion less equilibrium leg, in the same unit"},
+                 {"share", "%", "of the value"}},
+                {}};
+    for (const auto& v : values)
+        table.rows.push_back({v.branch, v.a, symbol(v.a_unit), v.element, v.output, symbol(v.unit), v.value,
+                              v.off, 100 * v.share});
+    return table;
+}
+
 Table rate_table(const std::vector<RateError>& errors) {
     Table table{"wheel rate",
                 {words("branch"),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compare/compare.hpp"
+#include "compare/elements.hpp"
 #include "compare/findings.hpp"
 #include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
@@ -41,6 +42,8 @@ Table characteristic_table(const Comparison& comparison);
 // How far the wheels give, per branch, landmark, leg and point: a row each component of the answer, a column each of what acts.
 Table compliance_table(const Model& model, const Comparison& comparison);
 Table rate_table(const std::vector<RateError>& errors);  // wheel rates
+Table force_table(
+    const std::vector<ElementValue>& values);  // of elements and links at the ends of the branches
 // Per branch and main output: the spread beside what it is to be read against; of the same scene's comparison.
 Table formulation_table(const FormulationStudy& study, const Comparison& comparison);
 Table study_table(const Study& study);  // per way, method, reading and channel

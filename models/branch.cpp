@@ -78,7 +78,7 @@ Model on_branch(const Model& model, const Branch& branch) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         if (!stands.elastics[k])
             result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind), false,
-                                  model.elastics[k].written_as};
+                                  model.elastics[k].written_as, model.elastics[k].turned_round};
     return result;
 }
 

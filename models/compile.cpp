@@ -79,7 +79,10 @@ void turn_round(Model& model) {
                 preload != nullptr && is_framed_on_j(element(preload->elastic)))
                 preload->direction = (-preload->direction).eval();
     for (Elastic& elastic : model.elastics)
-        if (is_framed_on_j(elastic.kind)) elastic.kind = turned_round(std::get<Bushing>(elastic.kind));
+        if (is_framed_on_j(elastic.kind)) {
+            elastic.kind = turned_round(std::get<Bushing>(elastic.kind));
+            elastic.turned_round = true;
+        }
 }
 
 // Motions of joints that have no length, offset or angle; and what has nothing left that moves.

@@ -208,6 +208,8 @@ struct Elastic {
     ElasticKind kind;
     bool only_where_driven = false;  // a tyre: stands only on the branches that drive it
     WrittenAs written_as = WrittenAs::itself;
+    bool turned_round =
+        false;  // by compile(), as its frame is on j: deformations and forces count the other way
 };
 
 // ---- Loads. Dead ones keep their direction in ground axes while their point of application moves, followers

@@ -9,6 +9,7 @@
 
 #include "compare/channels.hpp"
 #include "compare/characteristics.hpp"
+#include "compare/elements.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
 #include "recursive/series/path.hpp"
@@ -46,6 +47,16 @@ void write_rates(const Model& model, const std::vector<Channel>& asked, const So
     csv.finish();
 }
 
+// What bushings, springs and links bear, and what costs as much as a step of a leg, is written where it is asked for by
+// name.
+std::vector<Channel> asked_for(const Model& model, const std::vector<std::string>& patterns) {
+    auto all = compare::channels(model);
+    if (patterns.empty()) return all;
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    return chosen(all, patterns);
+}
+
 }  // namespace
 
 std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
@@ -73,10 +84,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     if (!request.output.empty()) check_may_write(request.output, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     const Model model = load_scene(file, settings, request.detail).model;
-    // A characteristic costs as much as a step of a leg: only who asks for it by name gets it.
-    auto all = compare::channels(model);
-    if (!request.channels.empty()) std::ranges::move(compare::characteristics(model), std::back_inserter(all));
-    const auto channels = chosen(all, request.channels);
+    const auto channels = asked_for(model, request.channels);
     check_every(model, how.steps, every);
     check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request);

@@ -99,7 +99,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     if (!folder.empty()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
-        std::vector<NamedContent> files;
+        std::vector<NamedContent> files{{"forces.csv", csv(force_table(element_values(model, comparison)))}};
         auto reasons = reasons_of(comparison);
         if (study) {
             add_formulations(part, *study, comparison);

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <utility>
+
 #include "reports/document/field.hpp"
+#include "reports/tables/render.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -24,11 +28,27 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
                     const auto values = columns[name].numbers();
                     if (values.size() != a.size()) columns[name].fail("not as many numbers as parameters");
                     for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format("{},{:.17g},{},{},{:.17g}\n", whose, a[k], unit, what, values[k]);
+                        csv += fmt::format("{},{:.17g},{},{},{}\n", whose, a[k], unit, what,
+                                           std::isnan(values[k]) ? "" : fmt::format("{:.17g}", values[k]));
                 }
             }
     }
     return csv;
+}
+
+std::string forces_csv(const nlohmann::ordered_json& result, const std::string& file) {
+    const compare::Table one = compare::force_table({});
+    compare::Table all = one;
+    all.columns.insert(all.columns.begin(), compare::Column{.name = "scene", .words = true});
+    for (const auto& scene : Field{&result, "", &file}["scenes"].items()) {
+        const auto forces = scene.find("forces");
+        if (!forces) continue;
+        for (auto row : read_table(*forces, one).rows) {
+            row.insert(row.begin(), compare::Cell(scene["name"].text()));
+            all.rows.push_back(std::move(row));
+        }
+    }
+    return csv(all);
 }
 
 }  // namespace elastocheck::reports

@@ -274,6 +274,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         scene_document["characteristics"] = {
             {"design", table_json(compare::characteristic_table(comparison))},
             {"compliance", table_json(compare::compliance_table(model, comparison))}};
+    scene_document["forces"] = table_json(force_table(element_values(model, comparison)));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 

@@ -34,7 +34,7 @@ nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input
                                       const recursive::Diagnosis& diagnosis);
 
 // "channels" and "branches": every point of every leg, deviations, certificates; "findings", "rate_errors":
-// what they come to; "drawing": where the
+// what they come to; "forces": of elements and links at the ends of the branches; "drawing": where the
 // hardpoints are at the design position and along the branches.
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);

@@ -73,7 +73,9 @@ double number(std::string_view cell, const std::string& file, int line, const st
     return value;
 }
 
-std::string unit_suffix(compare::Unit unit) { return unit == compare::Unit::mm ? "mm" : "deg"; }
+std::string unit_suffix(compare::Unit unit) {
+    return unit == compare::Unit::mm ? "mm" : unit == compare::Unit::percent ? "percent" : "deg";
+}
 
 // The column that gives a branch's parameter.
 std::string parameter_column(compare::Unit unit) {
@@ -82,6 +84,7 @@ std::string parameter_column(compare::Unit unit) {
         case compare::Unit::newton_metre: return "load_Nm";
         case compare::Unit::mm: return "parameter_mm";
         case compare::Unit::deg: return "parameter_deg";
+        case compare::Unit::percent:
         case compare::Unit::none: return "parameter";
     }
     return {};
@@ -112,7 +115,9 @@ void check_parameter(const Points& points, const std::string& file, const compar
 }
 
 // The channels that may say where a point is: the travel of each wheel.
-bool is_travel(const compare::Channel& channel) { return channel.kinematic() && !channel.main; }
+bool is_travel(const compare::Channel& channel) {
+    return channel.name == "travel" || channel.name.ends_with(".travel");
+}
 
 Points read(std::string_view csv, const std::string& file, const compare::Comparison& all) {
     Points points;
@@ -124,7 +129,7 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
         if (is_travel(all.channels[c]))
             outputs.push_back(
                 {fmt::format("{}_{}", all.channels[c].name, unit), static_cast<int>(c), false, true, {}});
-        if (!all.channels[c].main || !all.channels[c].kinematic()) continue;
+        if (is_travel(all.channels[c]) || !all.channels[c].kinematic()) continue;
         for (const bool change : {false, true})
             outputs.push_back({fmt::format("{}{}_{}", all.channels[c].name, change ? "_change" : "", unit),
                                static_cast<int>(c),

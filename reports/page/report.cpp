@@ -292,6 +292,7 @@ std::vector<std::string> write_report(const json& result, const std::string& fil
         fill(staging.path() / "report.md", markdown);
         fill(staging.path() / "result.json", result.dump(1) + "\n");
         fill(staging.path() / "curves.csv", curves_csv(result, file));
+        fill(staging.path() / "forces.csv", forces_csv(result, file));
     }
     staging.publish();
     std::vector<std::string> answers;

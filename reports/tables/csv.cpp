@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -9,7 +11,8 @@ namespace {
 
 std::string numbers(const std::vector<double>& values) {
     std::string cells;
-    for (const double value : values) cells += fmt::format(",{:.17g}", value);
+    for (const double value : values)  // what is undefined is an empty cell
+        cells += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
     return cells;
 }
 

@@ -67,12 +67,15 @@ TEST(Channels, WheelSpinChangesNothing) {
 TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto list = channels(model);
-    EXPECT_EQ(list.size(), 6u + 6 * model.joints.size());
+    // Centre, toe, camber, travel; patch, what it moves across and along; four of the steering axis; spring and damper.
+    const std::size_t kinematic = 6 + 5 + 4 + 2;
+    EXPECT_EQ(list.size(), kinematic + 6 * model.joints.size());
     EXPECT_EQ(list[0].name, "wheel_centre_x");
     EXPECT_STREQ(symbol(list[0].unit), "mm");
-    EXPECT_EQ(list[6].name, "ball_joint.force_x");
-    EXPECT_EQ(list[6].joints(), std::vector<int>{0});
-    EXPECT_FALSE(list[6].main || list[6].kinematic());
+    EXPECT_EQ(list[kinematic].name, "ball_joint.force_x");
+    EXPECT_EQ(list[kinematic].joints(), std::vector<int>{0});
+    EXPECT_FALSE(list[kinematic].main || list[kinematic].kinematic());
+    for (std::size_t c = 5; c < kinematic; ++c) EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
 }
 
 TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
@@ -111,6 +114,179 @@ TEST(Travel, CountsFromTheDesignPositionUpwards) {
     // What it counts from turns with the design pose too.
     model.bodies[0].design.p = about(Vector3d::UnitX(), 90);
     EXPECT_NEAR(value(model, state, "travel"), 400, 1e-9);
+}
+
+// ---- The steering axis, on ground; the wheel turns under it. As drawn
+//
+//   u = (-50, -50 side, 500) mm from l = (20, 600 side, 100): it meets the road at l - u/5 = (30, 610 side, 0), in front of the
+//   patch (0, 700 side, 0) by 30 and inboard of it by 90.
+struct Steered {
+    Model model;
+    Equilibrium state;
+    explicit Steered(int side, const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
+        const auto at = [&](double x, double y, double z) { return Vector3d(x, side * y, z); };
+        model.bodies.push_back({"wheel", {at(0, 0.7, 0), Eigen::Quaterniond::Identity()}});
+        model.wheels.push_back({.name = "",
+                                .body = 0,
+                                .centre_local = at(0, 0, 0.3),
+                                .contact_local = Vector3d::Zero(),
+                                .spin_axis_local = at(0, 1, 0),
+                                .side = side});
+        model.wheels[0].steering_axis = {{ground, at(0.02, 0.6, 0.1)}, {ground, at(-0.03, 0.55, 0.6)}};
+        state = design_state(model);
+        state.poses[0].p = turn;
+    }
+    double operator[](const std::string& name) const { return value(model, state, name); }
+};
+
+TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
+    for (const int side : {+1, -1}) {
+        Steered drawn(side);
+        for (int order = 0; order < 2; ++order) {  // which end is called the upper one does not matter
+            EXPECT_NEAR(drawn["caster"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
+            EXPECT_NEAR(drawn["kingpin_inclination"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
+            EXPECT_NEAR(drawn["scrub_radius"], 90, 1e-10);
+            EXPECT_NEAR(drawn["mechanical_trail"], 30, 1e-10);
+            auto& axis = *drawn.model.wheels[0].steering_axis;
+            std::swap(axis.lower, axis.upper);
+        }
+    }
+}
+
+// Turned about the vertical through its patch, the wheel takes the directions along and across it along.
+TEST(SteeringAxis, CountsAlongAndAcrossTheWheelWhereverThatIsTurned) {
+    for (const int side : {+1, -1})
+        for (const double turn : {-35.0, -3.0, 20.0, 60.0}) {
+            const Steered turned(side, about(Vector3d::UnitZ(), side * turn));
+            const double c = std::cos(turn * std::numbers::pi / 180),
+                         s = std::sin(turn * std::numbers::pi / 180);
+            EXPECT_NEAR(turned["mechanical_trail"], 30 * c - 90 * s, 1e-10) << side << " " << turn;
+            EXPECT_NEAR(turned["scrub_radius"], 90 * c + 30 * s, 1e-10) << side << " " << turn;
+            EXPECT_NEAR(turned["caster"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
+        }
+}
+
+// The road is where the patch is: risen by 50 mm, it meets the axis 5 mm further back and inboard.
+TEST(SteeringAxis, MeetsTheRoadAtTheHeightOfThePatch) {
+    Steered risen(1);
+    risen.state.poses[0].r.z() = 0.05;
+    EXPECT_NEAR(risen["mechanical_trail"], 25, 1e-10);
+    EXPECT_NEAR(risen["scrub_radius"], 95, 1e-10);
+}
+
+TEST(SteeringAxis, ThatIsVerticalHasNoAnglesAndOneThatLiesFlatIsUndefined) {
+    const char* names[] = {"caster", "kingpin_inclination", "scrub_radius", "mechanical_trail"};
+    Steered upright(1);
+    auto& axis = *upright.model.wheels[0].steering_axis;
+    axis = {{ground, {0.01, 0.6, 0.1}}, {ground, {0.01, 0.6, 0.5}}};
+    EXPECT_EQ(upright["caster"], 0);
+    EXPECT_EQ(upright["kingpin_inclination"], 0);
+    EXPECT_NEAR(upright["scrub_radius"], 100, 1e-10);
+    EXPECT_NEAR(upright["mechanical_trail"], 10, 1e-10);
+    for (const double slope : {0.0, 0.05, 0.099}) {  // [rad] to the road, along and across
+        for (const bool along : {true, false}) {
+            const Vector3d u(along ? std::cos(slope) : 0, along ? 0 : std::cos(slope), std::sin(slope));
+            axis.upper.s_local = axis.lower.s_local + 0.5 * u;
+            for (const char* name : names) EXPECT_TRUE(std::isinf(upright[name])) << name << " " << slope;
+        }
+    }
+    axis.upper.s_local = axis.lower.s_local + 0.5 * Vector3d(std::cos(0.101), 0, std::sin(0.101));
+    for (const char* name : names) EXPECT_TRUE(std::isfinite(upright[name])) << name;
+    upright.model.wheels[0].steering_axis.reset();
+    for (const char* name : names) EXPECT_EQ(find_channel(channels(upright.model), name), -1);
+}
+
+TEST(ContactPatch, MovesOutwardsAndTheWayTheWheelbaseGrows) {
+    for (const int side : {+1, -1})
+        for (const Axle axle : {Axle::front, Axle::rear}) {
+            Steered moved(side);
+            moved.state.poses[0].r += Vector3d(0.003, 0.002 * side, 0.05);
+            EXPECT_NEAR(moved["track_change"], 2, 1e-12);
+            EXPECT_NEAR(moved["contact_patch_x"], 3, 1e-12);
+            EXPECT_NEAR(moved["contact_patch_y"], 702 * side, 1e-10);
+            EXPECT_NEAR(moved["contact_patch_z"], 50, 1e-12);
+            EXPECT_EQ(find_channel(channels(moved.model), "wheelbase_change"), -1);
+            moved.model.vehicle = Vehicle{.wheelbase = 2.7, .cg_height = 0.5, .axle = axle};
+            EXPECT_NEAR(moved["wheelbase_change"], axle == Axle::front ? 3 : -3, 1e-12);
+        }
+}
+
+// Two wheels whose axes stand upright j = 1.2 m apart and 0.1 m inboard of the patches, steered about them.
+struct TwoSteered {
+    Model model;
+    Equilibrium state;
+    explicit TwoSteered(double left, double right) {  // [deg], positive to the left
+        for (const int side : {+1, -1}) {
+            model.bodies.push_back(
+                {side > 0 ? "l" : "r", {Vector3d(0, side * 0.6, 0), Eigen::Quaterniond::Identity()}});
+            model.wheels.push_back({.name = side > 0 ? "left" : "right",
+                                    .body = side > 0 ? 0 : 1,
+                                    .centre_local = Vector3d(0, side * 0.1, 0.3),
+                                    .contact_local = Vector3d(0, side * 0.1, 0),
+                                    .spin_axis_local = Vector3d(0, side, 0),
+                                    .side = side});
+            model.wheels.back().steering_axis = {{ground, {0, side * 0.6, 0.1}},
+                                                 {ground, {0, side * 0.6, 0.5}}};
+        }
+        model.vehicle = Vehicle{.wheelbase = 2.7, .cg_height = 0.5, .axle = Axle::front};
+        state = design_state(model);
+        state.poses[0].p = about(Vector3d::UnitZ(), left);
+        state.poses[1].p = about(Vector3d::UnitZ(), right);
+    }
+    double operator[](const std::string& name) const { return value(model, state, name); }
+};
+
+// Round a point on the line of the rear axle, R to the left of the middle: tan δ = l / (R -+ j/2).
+TEST(Ackermann, IsHundredPercentWhereThePerpendicularsMeetOnTheRearAxle) {
+    const auto angle = [](double R, double y) { return std::atan(2.7 / (R - y)) * 180 / std::numbers::pi; };
+    for (const double R : {4.0, 10.0, -5.0, -30.0}) {
+        const TwoSteered round(angle(R, 0.6), angle(R, -0.6));
+        EXPECT_NEAR(round["ackermann"], 100, 1e-9) << R;
+    }
+    for (const double both : {2.5, 20.0, -7.0}) EXPECT_NEAR(TwoSteered(both, both)["ackermann"], 0, 1e-9);
+    EXPECT_LT(TwoSteered(19, 20)["ackermann"], -1);  // the outer wheel turns more
+    EXPECT_LT(TwoSteered(-20, -19)["ackermann"], -1);
+}
+
+TEST(Ackermann, IsUndefinedUnlessBothWheelsTurnTheSameWay) {
+    for (const auto& [left, right] : {std::pair{0.0, 0.0}, {1.9, 5.0}, {5.0, 1.9}, {3.0, -3.0}, {-4.0, 6.0}})
+        EXPECT_TRUE(std::isinf(TwoSteered(left, right)["ackermann"])) << left << " " << right;
+    TwoSteered rear(10, 12);
+    rear.model.vehicle->axle = Axle::rear;
+    EXPECT_EQ(find_channel(channels(rear.model), "ackermann"), -1);
+    rear.model.vehicle.reset();
+    EXPECT_EQ(find_channel(channels(rear.model), "ackermann"), -1);
+}
+
+TEST(Track, IsBetweenThePatchesOfTwoOppositeWheels) {
+    TwoSteered axle(0, 0);
+    EXPECT_NEAR(axle["track"], 1400, 1e-10);
+    axle.state.poses[0].r.y() += 0.004;
+    axle.state.poses[1].r.y() += 0.001;
+    EXPECT_NEAR(axle["track"], 1403, 1e-10);
+    EXPECT_NEAR(axle["left.track_change"], 4, 1e-10);
+    EXPECT_NEAR(axle["right.track_change"], -1, 1e-10);
+    std::swap(axle.model.wheels[0], axle.model.wheels[1]);
+    EXPECT_NEAR(axle["track"], 1403, 1e-10);
+    axle.model.wheels[0].side = axle.model.wheels[1].side;
+    EXPECT_EQ(find_channel(channels(axle.model), "track"), -1);
+}
+
+TEST(Compression, IsWhatASpringOrADamperIsShorterThanDrawn) {
+    Model model;
+    model.bodies.push_back({"arm", {}});
+    const AxialSpring coil{{0, {0.3, 0, 0}}, {ground, {0.3, 0, 0.5}}, LinearRate{1e4}, 0.6};
+    model.elastics = {
+        {"coil", coil}, {"coil.bump_stop", coil, false, WrittenAs::stop}, {"rubber", Bushing{}}};
+    model.dampers = {{"damper", {0, {0.3, 0, 0}}, {ground, {0.3, 0.4, 0}}}};
+    Equilibrium state = design_state(model);
+    EXPECT_EQ(value(model, state, "coil.compression"), 0);
+    state.poses[0].r = Vector3d(0, 0.1, 0.1);
+    EXPECT_NEAR(value(model, state, "coil.compression"), 500 - 1e3 * std::hypot(0.4, 0.1), 1e-10);
+    EXPECT_NEAR(value(model, state, "damper.compression"), 400 - 1e3 * std::hypot(0.3, 0.1), 1e-10);
+    const auto list = channels(model);
+    EXPECT_EQ(find_channel(list, "coil.bump_stop.compression"), -1);
+    EXPECT_EQ(find_channel(list, "rubber.compression"), -1);
 }
 
 // A body that a jack holds, a drive turns and a rod pulls.

@@ -52,12 +52,12 @@ class EveryLeg : public testing::TestWithParam<Stride> {
             const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
             ASSERT_EQ(run_a.outcome, Outcome::converged) << run_a.detail;
             ASSERT_EQ(run_b.outcome, Outcome::converged) << run_b.detail;
-            double largest[4] = {};  // of each unit: displacements, angles, forces, moments
+            double largest[5] = {};  // of each unit: displacements, angles, forces, moments
             for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                 for (std::size_t c = 0; c < names_a.size(); ++c) {
                     auto& size = largest[static_cast<int>(names_a[c].unit)];
                     size = std::max(size, std::abs(run_a.curve.values[p][c] -
-                                                   (names_a[c].main ? run_a.curve.values[0][c] : 0)));
+                                                   (names_a[c].kinematic() ? run_a.curve.values[0][c] : 0)));
                 }
             // A moment about a point far from where the forces act is as exact as force times distance.
             largest[3] = std::max(largest[3], largest[2]);

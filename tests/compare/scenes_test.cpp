@@ -153,7 +153,10 @@ class Told {
 };
 
 // [mm, deg] what round-off leaves at 15 N/mm; [N, N·m] the same of reactions of some 10 kN, by bushings of 1e7 N/m.
-double bound(const Channel& channel) { return channel.kinematic() ? 1e-8 : 1e-5; }
+// The cotangents of Ackermann's geometry magnify an angle some thousand times.
+double bound(const Channel& channel) {
+    return channel.unit == Unit::percent ? 1e-4 : channel.kinematic() ? 1e-8 : 1e-5;
+}
 
 // `limit` times the bound; a link that became a distance has as its first end what the order of its joints says.
 void expect_same(const Told& drawn, const Told& told, double limit, const char* how) {
@@ -167,6 +170,7 @@ void expect_same(const Told& drawn, const Told& told, double limit, const char* 
             for (std::size_t p = 0; p < drawn.runs()[b].curve.values.size(); ++p) {
                 const double x = drawn.runs()[b].curve.values[p][c],
                              y = told.runs()[b].curve.values.at(p).at(other);
+                if (channel.may_be_undefined() && x == undefined && y == undefined) continue;
                 const double off = is_link ? std::abs(std::abs(x) - std::abs(y)) : std::abs(x - y);
                 if (!(off <= worst)) worst = off;
             }
@@ -280,7 +284,7 @@ TEST(Scenes, TheRightSideIsTheMirrorImageOfTheLeft) {
             const Walk a = walk(left, branch.name, Leg::equilibrium, 4),
                        b = walk(right, branch.name, Leg::equilibrium, 4);
             for (const auto& channel : a.channels)
-                if (channel.kinematic()) {
+                if (channel.kinematic() && channel.unit != Unit::percent) {
                     EXPECT_LE(apart(a[channel.name], b[channel.name], channel.name.ends_with("_y") ? -1 : 1),
                               1e-9)
                         << name << " " << branch.name << " " << channel.name;

@@ -247,7 +247,7 @@ Apart apart(const Way& way, const std::vector<Channel>& channels, const std::vec
     for (std::size_t k = 0; k < x.size(); ++k) {
         const auto of_x = evaluate(way.model, channels, x[k]), of_y = evaluate(way.model, channels, y[k]);
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].kinematic()) continue;
+            if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;  // magnified
             const bool angle = channels[c].unit == Unit::deg;
             const double off = std::abs(of_x[c] - of_y[c]);
             double& most = angle ? worst.deg : worst.mm;

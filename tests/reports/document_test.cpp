@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "models/compile.hpp"
+#include "reports/document/curves.hpp"
 #include "reports/tables/csv.hpp"
+#include "reports/tables/render.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -84,6 +86,24 @@ TEST(Document, EveryChannelSaysWhatItIs) {
         EXPECT_EQ(channel["kinematic"], channel["unit"] == "mm" || channel["unit"] == "deg") << channel;
         EXPECT_FALSE(channel.contains("unique")) << channel;
     }
+}
+
+TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
+    const Made made;
+    const json whole = json::parse(made.document().dump());
+    const compare::Table told = compare::force_table(compare::element_values(made.model, made.comparison));
+    EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
+    const std::string rows = forces_csv(whole, "result.json");
+    EXPECT_TRUE(rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))
+        << rows;
+    EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + static_cast<long>(told.rows.size()));
+    EXPECT_NE(rows.find(",rebound,-3000,N,K1_coil,K1_coil.force,N,"), std::string::npos) << rows;
+}
+
+TEST(Csv, WhatIsUndefinedIsAnEmptyCell) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(curves_row("b", compare::Leg::equilibrium, compare::Unit::newton, {2, 0, {1.5, nan, 3}}),
+              "b,equilibrium,2,N,1.5,,3\n");
 }
 
 TEST(Document, NumbersThatAreNotFiniteAreNull) {

@@ -97,6 +97,26 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     EXPECT_TRUE(fourth);
 }
 
+// Whatever is a position or an angle can be measured.
+TEST(Measurement, MayBeOfAnyOutputThatIsAFunctionOfTheState) {
+    const auto& all = solved().comparison.channels;
+    const auto& curve = solved().comparison.branches[0].runs[1].curve;
+    const auto value = [&](const char* name, std::size_t k) {
+        return curve.values[k][static_cast<std::size_t>(find_channel(all, name))];
+    };
+    std::string csv = "load_N,caster_deg,scrub_radius_change_mm,track_change_mm,strut.compression_mm\n";
+    for (const std::size_t k : {10u, 20u, 40u})
+        csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", curve.a[k], value("caster", k),
+                           value("scrub_radius", k) - value("scrub_radius", 0), value("track_change", k),
+                           value("strut.compression", k));
+    const json m = measured(csv);
+    ASSERT_EQ(m["readings"][0]["channels"].size(), 4u);
+    for (const auto& row : m["readings"][0]["channels"]) {
+        EXPECT_EQ(row["compared"], 3);
+        EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 2e-6) << row;
+    }
+}
+
 TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
     struct Case {
         const char *csv, *why;

@@ -40,7 +40,7 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
     EXPECT_EQ(ids,
-              (std::vector<std::string>{"verdict", "deviation", "price", "drawing", "curves", "convergence",
+              (std::vector<std::string>{"verdict", "deviation", "price", "drawing", "curves", "forces", "convergence",
                                         "attribution", "orders", "arithmetic", "references", "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {

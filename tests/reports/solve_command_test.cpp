@@ -79,6 +79,30 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
            {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]", "ball_joint.force_z [N]"});
 }
 
+// What elements bear is no column unless it is asked for; the closed form of the scene says how much.
+TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
+    const std::string command = "solve " + scenes + "/tyre_on_road.yaml --steps 10 --method equilibrium";
+    EXPECT_FALSE(contains(elastocheck_says(command).out, "suspension.force"));
+    const auto rows =
+        cells_of(elastocheck_says(command + " --channels 'suspension.*','tyre.force',wheel_centre_z").out);
+    ASSERT_GT(rows.size(), 20u);
+    EXPECT_EQ(rows[0],
+              (std::vector<std::string>{"branch", "leg", "parameter", "unit", "suspension.compression [mm]",
+                                        "suspension.deflection [mm]", "suspension.force [N]",
+                                        "tyre.force [N]", "wheel_centre_z [mm]"}));
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+        const double z = std::stod(rows[r][8]), h = std::stod(rows[r][2]);
+        EXPECT_NEAR(std::stod(rows[r][4]), z, 1e-6);
+        EXPECT_NEAR(std::stod(rows[r][6]), 3500 + 30 * z, 1e-5);
+        if (rows[r][0] == "road") {
+            EXPECT_NEAR(std::stod(rows[r][7]), 3892.4 + 200 * (h - z), 1e-5);
+        }
+        if (rows[r][0] == "wheel") {
+            EXPECT_EQ(rows[r][7], "") << "no tyre stands there";
+        }
+    }
+}
+
 TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
     const Folder folder;
     const std::string file = (folder.path / "c.csv").string();

@@ -50,7 +50,8 @@ std::optional<Section> model_section(const Field& scene) {
         Table outputs{.caption = "Outputs, and what they mean",
                       .columns = {{"output", true}, {"unit", true}, {"definition", true}}};
         for (const auto& channel : scene["channels"].items())
-            if (const auto text = channel.find("definition"); text && channel["main"].truth())
+            if (const auto text = channel.find("definition");
+                text && (channel["main"].truth() || channel["kinematic"].truth()))
                 outputs.rows.push_back({channel["name"].text(), channel["unit"].text(), text->text()});
         if (!outputs.rows.empty()) section.tables.push_back(std::move(outputs));
     }

@@ -18,6 +18,7 @@ std::optional<Section> price_section(const Field& scene);
 std::optional<Section> drawing_section(const Field& scene);
 std::optional<Section> characteristics_section(const Field& scene);
 std::optional<Section> curves_section(const Field& scene);
+std::optional<Section> forces_section(const Field& scene);
 std::optional<Section> measured_section(const Field& scene);
 std::optional<Section> convergence_section(const Field& scene);
 std::optional<Section> attribution_section(const Field& scene);
