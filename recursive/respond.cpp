@@ -147,7 +147,7 @@ Response respond(const Model& model, const Branch& branch, const Equilibrium& st
     for (const Disturbance& disturbance : disturbances) {
         disturb(s, disturbance);
         back_substitute(s);
-        const Outcome outcome = s.x.allFinite() ? judge_border(s) : Outcome::not_finite;
+        const Outcome outcome = s.x.allFinite() ? judge_border(s, disturbance) : Outcome::not_finite;
         if (outcome != Outcome::converged)
             return fail(outcome, words(outcome, disturbance, model, analysis.diagnosis));
         leave_out_idle_motion(s);
