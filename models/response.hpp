@@ -29,7 +29,14 @@ struct Increment {
 };
 
 // One answer a disturbance, in their order, each with one increment per Model::bodies; none unless converged. Idle modes
-// are held (minimum norm), unless a disturbance pushes one: loaded_idle_mode.
+// are held (minimum norm √(|dr|² + L²|dπ|²) over all bodies, L a length of the leg's own), unless a disturbance pushes one:
+// loaded_idle_mode. An offset that redundant joints hold: inconsistent_constraints. A state that has lost its stiffness:
+// singular.
+//
+// With dead wrenches as disturbances and the displacements they work on, force with dp of its point, moment with dπ, the
+// answers of an equilibrium are reciprocal, C = Cᵀ, where everything that acts has a potential: no follower, no
+// formulation without energy, and no dead moment on a body. One m of these on a body makes C - Cᵀ = C_π m̃ C_πᵀ, C_π the
+// answers to moments on that body.
 struct Response {
     Outcome outcome = Outcome::converged;
     std::string detail;  // what failed, in words; empty when converged

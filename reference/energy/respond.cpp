@@ -157,6 +157,7 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
     b = at.S.cwiseProduct(b) / at.path.scales.energy();
 
     VectorXd left = b + times(at, t);
+    const double size = largest(b) + largest(left - b);
     if (at.Z.cols() > 0)
         for (int k = 0; k <= corrections; ++k) {
             t -= at.Z * at.W.solve(at.Z.transpose() * left);
@@ -164,9 +165,9 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
         }
     if (!t.allFinite()) return {Outcome::not_finite, "the answer is not finite", {}};
     // Where the Hessian that steers sees no stiffness but its own error, what it leads to does not answer.
-    if (!(largest(at.Z.transpose() * left) <= unanswered * (largest(b) + largest(left - b))))
+    if (!(largest(at.Z.transpose() * left) <= unanswered * size))
         return {Outcome::singular, "what resists a motion is spent", {}};
-    if (!(largest(at.idle.transpose() * left) <= idle_push * (largest(b) + largest(left - b))))
+    if (!(largest(at.idle.transpose() * left) <= idle_push * size))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is pushed", {}};
     return {Outcome::converged, "", t};
 }
