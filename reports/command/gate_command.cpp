@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "compare/changes.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reports/command/arguments.hpp"
@@ -86,7 +87,8 @@ std::vector<Task> tasks(const GateOptions& options) {
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
-    const Model model = load_scene(task.scene, options.settings).model;
+    const LoadedScene loaded = load_scene(task.scene, options.settings);
+    const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
     compare::Options how;
     if (options.progress)
@@ -100,6 +102,7 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
         fs::relative(task.scene, task.baseline.parent_path().empty() ? "." : task.baseline.parent_path())
             .generic_string();
     file.input_hash = input_hash(read_whole(task.scene));
+    file.numbers = loaded.scene.numbers;
     file.provenance = provenance();
     for (const auto kind : compare::tolerance_classes)
         file.baseline.tolerances[kind] = compare::default_tolerances(kind);
@@ -145,9 +148,15 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
-    if (was.input_hash != is.input_hash)
-        scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {})",
-                                          was.input_hash, is.input_hash));
+    if (was.numbers && is.numbers) scene.changed = compare::changes(*was.numbers, *is.numbers);
+    if (was.input_hash == is.input_hash) return;
+    const char* what =
+        !was.numbers || !is.numbers
+            ? "; which of its numbers changed is not known, they are kept from the next --accept on"
+        : scene.changed.empty() ? "; none of its numbers changed"
+                                : "";
+    scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
+                                      was.input_hash, is.input_hash, what));
 }
 
 GatedScene gate_scene(const Task& task, const GateOptions& options) {
