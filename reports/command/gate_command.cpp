@@ -13,6 +13,7 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
@@ -32,7 +33,7 @@ struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
     std::string folder, junit, summary, kind, from, reason;
-    bool accept = false;
+    bool accept = false, as_json = false;
     std::function<void(std::string_view)> progress;
 };
 
@@ -256,6 +257,8 @@ int accept(const GateOptions& options) {
         throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
     if (!options.from.empty())
         throw std::invalid_argument("--accept: only what was measured here, not --from");
+    if (options.as_json)
+        throw std::invalid_argument("--accept: not with --json: what changes is for a person");
     if (!options.settings.empty())
         throw std::invalid_argument("--accept: only the scene as its file says, not with --set");
     int code = fine;
@@ -269,6 +272,7 @@ int accept(const GateOptions& options) {
 
 int gate(const GateOptions& options) {
     if (options.accept) return accept(options);
+    const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
     if (!options.from.empty() && options.scenes.size() != 1)
         throw std::invalid_argument("--from: needs exactly one SCENE");
@@ -280,10 +284,13 @@ int gate(const GateOptions& options) {
     std::vector<GatedScene> scenes;
     for (const auto& task : tasks(options)) {
         scenes.push_back(gate_scene(task, options));
-        print(gate_table(scenes.back()));
+        delivery.say(gate_table(scenes.back()));
     }
-    print("{}\n", gate_conclusion(scenes));
-    if (says_yes("GITHUB_ACTIONS")) print(annotations(scenes));
+    delivery.say(gate_conclusion(scenes) + "\n");
+    if (options.as_json) print_document(gate_document(scenes, provenance()));
+    // GitHub reads them from either stream.
+    if (says_yes("GITHUB_ACTIONS"))
+        options.as_json ? complain(annotations(scenes)) : print(annotations(scenes));
     if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
     if (to_append)
         append(options.summary, step_summary(scenes));
@@ -299,28 +306,29 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
     options->progress = std::move(progress);
     auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
     command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
-        ->check(a_name());
+        ->check(a_file("*.yaml"));
     add_settings(*command, options->settings);
     command
         ->add_option("--baseline", options->folder,
                      "folder of the baselines (default: baselines/ beside each SCENE, or here)")
-        ->check(a_name());
-    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_name());
+        ->check(a_folder());
+    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_file("*.xml"));
     command
         ->add_option("--summary", options->summary,
                      "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY")
-        ->check(a_name());
+        ->check(a_file("*.md"));
     std::vector<std::string> kinds;
     kinds.reserve(std::size(compare::tolerance_classes));
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
     command
         ->add_option("--class", options->kind,
                      "tolerances: same-build, cross-build or physical (default: by how the builds differ)")
-        ->check(CLI::IsMember(kinds).description(""));
+        ->check(one_of(kinds));
     command
         ->add_option("--from", options->from,
                      "judge this measurement (a file like a baseline); nothing is solved")
-        ->check(a_name());
+        ->check(a_file("*.json"));
+    add_json(*command, options->as_json);
     command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
     command->add_option("--reason", options->reason, "why, in words; with --accept");
     return {command, [options] { return gate(*options); }};

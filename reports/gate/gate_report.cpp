@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "reports/document/document.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
 
@@ -319,6 +320,45 @@ std::string gate_conclusion(const std::vector<GatedScene>& scenes) {
     return fmt::format(
         "{}: {} of {} numbers out of tolerance, in {} of {} scenes; {} could not be judged wholly.",
         verdict_of(scenes), offences, compared, failed, scenes.size(), unjudged);
+}
+
+json gate_document(const std::vector<GatedScene>& scenes, const Provenance& provenance) {
+    const auto number = [](const std::optional<Number>& n) {
+        return n ? json{{"value", n->value}, {"unit", n->unit}} : json(nullptr);
+    };
+    json list = json::array();
+    int compared = 0;
+    for (const auto& scene : scenes) {
+        json changed = json::array(), offences = json::array();
+        for (const auto& change : scene.changed)
+            changed.push_back({{"path", (change.is ? change.is : change.was)->path},
+                               {"was", number(change.was)},
+                               {"is", number(change.is)}});
+        for (const auto& o : scene.verdict.offences) {
+            json one = {
+                {"branch", o.branch}, {"of", name(o.quantity)}, {"channel", o.channel}, {"unit", o.unit}};
+            if (o.a) one["at"] = {{"value", *o.a}, {"unit", o.a_unit}};
+            one["measured"] = o.is;
+            one[o.of_limit ? "limit" : "accepted"] = o.was;
+            if (!o.of_limit) one["tolerance"] = o.tolerance, one["noticeable"] = o.noticeable;
+            offences.push_back(std::move(one));
+        }
+        compared += scene.verdict.compared;
+        list.push_back({{"scene", scene.file},
+                        {"baseline", scene.baseline_file},
+                        {"verdict", verdict_of(scene)},
+                        {"tolerance_class", name(scene.verdict.kind)},
+                        {"because", scene.differs},
+                        {"last_acceptance", scene.reason},
+                        {"compared", scene.verdict.compared},
+                        {"changed", changed},
+                        {"offences", offences},
+                        {"could_not_judge", scene.verdict.reasons},
+                        {"notes", scene.notes}});
+    }
+    return {{"schema", gate_schema},         {"provenance", provenance_json(provenance)},
+            {"verdict", verdict_of(scenes)}, {"exit_code", exit_code(scenes)},
+            {"compared", compared},          {"scenes", list}};
 }
 
 std::string junit(const std::vector<GatedScene>& scenes) {

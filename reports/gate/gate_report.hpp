@@ -2,11 +2,13 @@
 // number of each channel, JUnit a test a branch with the worst of its numbers; `gate --json` holds them all.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "compare/changes.hpp"
 #include "compare/gate.hpp"
+#include "reports/document/provenance.hpp"
 
 namespace elastocheck::reports {
 
@@ -31,6 +33,10 @@ std::string story(const compare::Offence& offence);
 
 // "points.tie_rod_inner.z: -0.055 m, was -0.06 m"
 std::string story(const compare::Change& change);
+
+// Everything, for machines: {schema, provenance, verdict, exit_code, compared, scenes}.
+inline constexpr const char* gate_schema = "elastocheck/gate/1";
+nlohmann::ordered_json gate_document(const std::vector<GatedScene>& scenes, const Provenance& provenance);
 
 std::string gate_table(const GatedScene& scene);                     // for a terminal
 std::string gate_conclusion(const std::vector<GatedScene>& scenes);  // its last line
