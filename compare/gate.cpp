@@ -67,6 +67,24 @@ const Tolerance* tolerance_of(const Tolerances& tolerances, const Series& s) {
 }
 
 bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
+bool sane(const Tolerance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
+
+// By how much a number of the series has to move until an engineer notices: as the baseline says, else as usual.
+double noticeable(const Baseline& baseline, const Series& s) {
+    static const Tolerances usual = default_tolerances(ToleranceClass::physical);
+    const auto own = baseline.tolerances.find(ToleranceClass::physical);
+    const Tolerance* t = own == baseline.tolerances.end() ? nullptr : tolerance_of(own->second, s);
+    if (!sane(t)) t = tolerance_of(usual, s);
+    return t == nullptr ? 0 : t->atol + t->rtol * scale(baseline.accepted, s);
+}
+
+// What is within the suspension, or within the solver, and not what it does to the wheel.
+bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.unit == "count"; }
+
+int rank(const Offence& o) {
+    if (o.of_limit) return 0;
+    return (o.noticed() > 1 ? 1 : 3) + (is_inner(o) ? 1 : 0);
+}
 
 // One accepted series against what was measured of it.
 void judge_series(const Baseline& baseline, const Tolerances& tolerances, const Series& was,
@@ -87,7 +105,7 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
         return cannot("has not as many numbers as its branch has points");
     const Tolerance* tolerance = tolerance_of(tolerances, was);
-    if (tolerance == nullptr || !sane(tolerance->atol) || !sane(tolerance->rtol))
+    if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
 
     const double allowed = tolerance->atol + tolerance->rtol * scale(baseline.accepted, was);
@@ -101,7 +119,8 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .unit = was.unit,
                         .was = was.values[k],
                         .is = is->values[k],
-                        .tolerance = allowed};
+                        .tolerance = allowed,
+                        .noticeable = noticeable(baseline, was)};
         if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
         verdict.offences.push_back(offence);
     }
@@ -213,6 +232,15 @@ double Offence::share() const {
     return tolerance > 0 ? part / tolerance : std::numeric_limits<double>::infinity();
 }
 
+double Offence::noticed() const {
+    if (of_limit) return share();
+    return noticeable > 0 ? std::abs(difference()) / noticeable : std::numeric_limits<double>::infinity();
+}
+
+bool comes_before(const Offence& a, const Offence& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : a.noticed() > b.noticed();
+}
+
 Judgement Verdict::judgement() const {
     if (!offences.empty()) return Judgement::failed;
     return reasons.empty() && compared > 0 ? Judgement::passed : Judgement::could_not_judge;
@@ -311,7 +339,7 @@ Verdict judge(const Baseline& baseline, const Measurement& measurement, Toleranc
     for (const auto& limit : baseline.limits) judge_limit(limit, measurement, verdict);
     if (verdict.compared == 0) verdict.reasons.emplace_back("nothing was compared");
 
-    std::ranges::stable_sort(verdict.offences, std::ranges::greater{}, &Offence::share);
+    std::ranges::stable_sort(verdict.offences, comes_before);
     return verdict;
 }
 

@@ -101,10 +101,17 @@ struct Offence {
     bool of_limit = false;         // an absolute limit is broken; `was` is then the limit
     double was = 0, is = 0;        // accepted, measured
     double tolerance = 0;
+    double noticeable = 0;  // its tolerance in the class physical: by so much an engineer notices
 
     double difference() const { return is - was; }
-    double share() const;  // of the tolerance, or of the limit; infinite where nothing is tolerated
+    double share() const;    // of the tolerance, or of the limit; infinite where nothing is tolerated
+    double noticed() const;  // of what is noticeable, or of the limit
 };
+
+// Which of two offences a reader is told first. Round-off is judged in tolerances, but 0.18 N of a joint's reaction may
+// be 10⁸ of them and no news: a broken limit, then what an engineer would notice, then what he would not; of each, the
+// outputs before forces within the suspension and counters of work; of those, the larger share of what is noticeable.
+bool comes_before(const Offence& a, const Offence& b);
 
 enum class Judgement { passed, failed, could_not_judge };
 const char* name(Judgement judgement);  // "passed", "FAILED", "COULD NOT JUDGE"
@@ -112,7 +119,7 @@ const char* name(Judgement judgement);  // "passed", "FAILED", "COULD NOT JUDGE"
 struct Verdict {
     ToleranceClass kind = ToleranceClass::same_build;
     int compared = 0;                  // numbers compared
-    std::vector<Offence> offences;     // worst first
+    std::vector<Offence> offences;     // in the order of comes_before
     std::vector<std::string> reasons;  // why (a part) could not be judged
 
     // A broken limit is broken whatever else could not be judged; nothing compared is not a pass.

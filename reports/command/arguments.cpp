@@ -27,8 +27,30 @@ std::string command_line(int argc, char** argv) {
     return line;
 }
 
-CLI::Validator a_name() {
-    return CLI::Validator([](const std::string& word) { return word.empty() ? "'' is no name" : ""; }, "");
+namespace {
+
+std::string no_name(const std::string& word) {
+    if (word.empty()) return "'' is no name";
+    if (word == "-") return "'-' is no name; what goes to standard output goes there by itself, or by --json";
+    return {};
+}
+
+}  // namespace
+
+CLI::Validator a_file(const std::string& pattern) { return {no_name, "", "files " + pattern}; }
+
+CLI::Validator a_folder() { return {no_name, "", "folder"}; }
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    return CLI::IsMember(words).description("").name(fmt::format("words {}", fmt::join(words, " ")));
+}
+
+CLI::Validator such_as(const std::vector<std::string>& words) {
+    return {[](std::string&) { return std::string(); }, "", fmt::format("words {}", fmt::join(words, " "))};
+}
+
+void add_json(CLI::App& command, bool& wanted) {
+    command.add_flag("--json", wanted, "one JSON document on standard output, and nothing else there");
 }
 
 void add_settings(CLI::App& command, Settings& settings) {

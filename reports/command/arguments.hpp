@@ -20,7 +20,15 @@ std::string command_line(int argc, char** argv);
 using Settings = std::vector<Setting>;
 void add_settings(CLI::App& command, Settings& settings);
 
-// Of an option that names a file or a folder: it names one.
-CLI::Validator a_name();
+// What may stand for a value: what checks it says to shell completion what to offer, by its name, so that the two never
+// differ. A file or a folder is refused that has no name, or the name `-`: whoever writes that means standard output.
+CLI::Validator a_file(const std::string& pattern);             // "files *.yaml"
+CLI::Validator a_folder();                                     // "folder"
+CLI::Validator one_of(const std::vector<std::string>& words);  // "words published closed ..."
+CLI::Validator such_as(
+    const std::vector<std::string>& words);  // the same, and others: checked by whoever uses them
+
+// --json; `wanted` is set where it is given.
+void add_json(CLI::App& command, bool& wanted);
 
 }  // namespace elastocheck::reports

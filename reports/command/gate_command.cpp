@@ -9,9 +9,11 @@
 #include <memory>
 #include <optional>
 
+#include "compare/changes.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
@@ -31,7 +33,7 @@ struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
     std::string folder, junit, summary, kind, from, reason;
-    bool accept = false;
+    bool accept = false, as_json = false;
     std::function<void(std::string_view)> progress;
 };
 
@@ -86,7 +88,8 @@ std::vector<Task> tasks(const GateOptions& options) {
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
-    const Model model = load_scene(task.scene, options.settings).model;
+    const LoadedScene loaded = load_scene(task.scene, options.settings);
+    const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
     compare::Options how;
     if (options.progress)
@@ -100,6 +103,7 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
         fs::relative(task.scene, task.baseline.parent_path().empty() ? "." : task.baseline.parent_path())
             .generic_string();
     file.input_hash = input_hash(read_whole(task.scene));
+    file.numbers = loaded.scene.numbers;
     file.provenance = provenance();
     for (const auto kind : compare::tolerance_classes)
         file.baseline.tolerances[kind] = compare::default_tolerances(kind);
@@ -145,9 +149,15 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
-    if (was.input_hash != is.input_hash)
-        scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {})",
-                                          was.input_hash, is.input_hash));
+    if (was.numbers && is.numbers) scene.changed = compare::changes(*was.numbers, *is.numbers);
+    if (was.input_hash == is.input_hash) return;
+    const char* what =
+        !was.numbers || !is.numbers
+            ? "; which of its numbers changed is not known, they are kept from the next --accept on"
+        : scene.changed.empty() ? "; none of its numbers changed"
+                                : "";
+    scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
+                                      was.input_hash, is.input_hash, what));
 }
 
 GatedScene gate_scene(const Task& task, const GateOptions& options) {
@@ -247,6 +257,8 @@ int accept(const GateOptions& options) {
         throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
     if (!options.from.empty())
         throw std::invalid_argument("--accept: only what was measured here, not --from");
+    if (options.as_json)
+        throw std::invalid_argument("--accept: not with --json: what changes is for a person");
     if (!options.settings.empty())
         throw std::invalid_argument("--accept: only the scene as its file says, not with --set");
     int code = fine;
@@ -260,6 +272,7 @@ int accept(const GateOptions& options) {
 
 int gate(const GateOptions& options) {
     if (options.accept) return accept(options);
+    const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
     if (!options.from.empty() && options.scenes.size() != 1)
         throw std::invalid_argument("--from: needs exactly one SCENE");
@@ -271,10 +284,13 @@ int gate(const GateOptions& options) {
     std::vector<GatedScene> scenes;
     for (const auto& task : tasks(options)) {
         scenes.push_back(gate_scene(task, options));
-        print(gate_table(scenes.back()));
+        delivery.say(gate_table(scenes.back()));
     }
-    print("{}\n", gate_conclusion(scenes));
-    if (says_yes("GITHUB_ACTIONS")) print(annotations(scenes));
+    delivery.say(gate_conclusion(scenes) + "\n");
+    if (options.as_json) print_document(gate_document(scenes, provenance()));
+    // GitHub reads them from either stream.
+    if (says_yes("GITHUB_ACTIONS"))
+        options.as_json ? complain(annotations(scenes)) : print(annotations(scenes));
     if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
     if (to_append)
         append(options.summary, step_summary(scenes));
@@ -290,28 +306,29 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
     options->progress = std::move(progress);
     auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
     command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
-        ->check(a_name());
+        ->check(a_file("*.yaml"));
     add_settings(*command, options->settings);
     command
         ->add_option("--baseline", options->folder,
                      "folder of the baselines (default: baselines/ beside each SCENE, or here)")
-        ->check(a_name());
-    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_name());
+        ->check(a_folder());
+    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_file("*.xml"));
     command
         ->add_option("--summary", options->summary,
                      "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY")
-        ->check(a_name());
+        ->check(a_file("*.md"));
     std::vector<std::string> kinds;
     kinds.reserve(std::size(compare::tolerance_classes));
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
     command
         ->add_option("--class", options->kind,
                      "tolerances: same-build, cross-build or physical (default: by how the builds differ)")
-        ->check(CLI::IsMember(kinds).description(""));
+        ->check(one_of(kinds));
     command
         ->add_option("--from", options->from,
                      "judge this measurement (a file like a baseline); nothing is solved")
-        ->check(a_name());
+        ->check(a_file("*.json"));
+    add_json(*command, options->as_json);
     command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
     command->add_option("--reason", options->reason, "why, in words; with --accept");
     return {command, [options] { return gate(*options); }};

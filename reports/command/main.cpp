@@ -13,10 +13,15 @@
 #include "models/reader/scene_file.hpp"
 #include "models/reader/words.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/completion.hpp"
+#include "reports/command/delivery.hpp"
+#include "reports/command/documentation.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/gate_command.hpp"
+#include "reports/command/grammar.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
+#include "reports/command/manual.hpp"
 #include "reports/command/new_command.hpp"
 #include "reports/command/recursion_options.hpp"
 #include "reports/command/report_command.hpp"
@@ -34,16 +39,27 @@ namespace {
 using namespace elastocheck;
 using namespace elastocheck::reports;
 
+std::string footer(const std::function<std::string(const std::string&)>& place) {
+    return fmt::format(
+        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 internal error.\n"
+        "The scene files: {}\nWhat commands write: {}\n",
+        place("models/scenes/README.md"), place("reports/README.md"));
+}
+
+int print_text(const std::string& text) {
+    print(text);
+    return fine;
+}
+
 // Says what CLI11 says, and after a word it does not know, the nearest one it does.
-int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+int explain(CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
     std::string message = error.what();
     const CLI::App* scope = &app;
     std::vector<std::string> known;
     if (!app.get_subcommands().empty()) scope = app.get_subcommands().front();
     const bool in_command = scope != &app;
     if (!in_command)
-        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
-            known.push_back(command->get_name());
+        for (const auto& command : grammar(app).commands) known.push_back(command.name);
     for (const auto* option : scope->get_options())
         if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
@@ -70,10 +86,10 @@ int run(int argc, char** argv) {
         "minimisation.",
         "elastocheck"};
     app.require_subcommand(1);
-    app.set_version_flag("--version", provenance().version);
-    app.footer(
-        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 internal error.\n"
-        "Scene files are described in models/scenes/README.md.");
+    app.set_version_flag("--version", version_text(provenance()),
+                         "the version, the commit it was built from, and the libraries in it");
+    app.set_help_flag("-h,--help", "this text; after a command, its options");
+    app.footer(footer(documentation));
 
     std::string scene, output;
     // A leg, or a method of the recursion; its first one, the published, goes by the leg's name too.
@@ -99,13 +115,24 @@ int run(int argc, char** argv) {
     auto* new_command =
         app.add_subcommand("new", "Print a scene to start from; without a name, which there are");
     std::string template_name;
-    new_command->add_option("NAME", template_name, "of the scene to print");
+    new_command->add_option("NAME", template_name, "of the scene to print")->check(such_as(templates()));
     const GateCommand gate_command = add_gate(app, progress);
+    auto* completion_command =
+        app.add_subcommand("completion", "Print the completion of this command for a shell")->group("");
+    std::string shell;
+    completion_command->add_option("SHELL", shell, "bash, zsh or fish")
+        ->required()
+        ->check(one_of({"bash", "zsh", "fish"}));
+    auto* man_command = app.add_subcommand("man", "Print the page of the manual")->group("");
     Settings settings;
     for (auto* command : {inspect_command, solve_command, compare_command, converge_command, trade_command}) {
-        command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_name());
+        command->add_option("SCENE", scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
         add_settings(*command, settings);
     }
+    bool as_json = false;
+    for (auto* command :
+         {inspect_command, solve_command, compare_command, converge_command, trade_command, new_command})
+        add_json(*command, as_json);
     bool keep_all = false, formulations = false, verbose = false;
     int every = 1;
     inspect_command->add_flag("--verbose", verbose,
@@ -121,19 +148,19 @@ int run(int argc, char** argv) {
             "--method", method,
             "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive or "
             "series; equilibrium; energy")
-        ->check(CLI::IsMember(methods).description(""));
+        ->check(one_of(methods));
     compare_command
         ->add_option(
             "--method", method,
             "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
             "or series")
-        ->check(CLI::IsMember(rungs_of_recursion).description(""));
+        ->check(one_of(rungs_of_recursion));
     solve_command->add_flag("--arc-length", recursion_request.arc_length,
                             "series: follow the path by arc length, through limit points");
     solve_command
         ->add_option("--rates", solve_request.rates,
                      "series: write the derivatives of travel and outputs to this CSV file")
-        ->check(a_name());
+        ->check(a_file("*.csv"));
     solve_command
         ->add_option("--channels", solve_request.channels,
                      "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters")
@@ -143,9 +170,10 @@ int run(int argc, char** argv) {
             ->add_option("--every", every,
                          "only every N-th step's point of each way from the start, and the last")
             ->check(CLI::Range(1, most_steps));
-    solve_command->add_option("-o,--output", output, "write the CSV to this file instead")->check(a_name());
+    solve_command->add_option("-o,--output", output, "write the CSV to this file instead")
+        ->check(a_file("*.csv"));
     compare_command->add_option("-o,--output", output, "folder for result.json and curves.csv")
-        ->check(a_name());
+        ->check(a_folder());
 
     std::vector<std::string> rungs{"published"}, known_rungs{"all"};
     for (const auto& rung : recursive::methods)
@@ -155,7 +183,7 @@ int run(int argc, char** argv) {
         ->add_option("--method", rungs,
                      "published (default), closed, balanced, tangent, chord, midpoint, series, or all")
         ->delimiter(',')
-        ->check(CLI::IsMember(known_rungs).description(""));
+        ->check(one_of(known_rungs));
     converge_command
         ->add_option("--steps", levels,
                      "step counts per branch, at least five, increasing (default: 75,150,...,2400)")
@@ -164,24 +192,33 @@ int run(int argc, char** argv) {
     converge_command
         ->add_option("-o,--output", output,
                      "folder for result.json, convergence.csv, step_errors.csv and attribution.csv")
-        ->check(a_name());
+        ->check(a_folder());
 
     std::string tolerance = "0.01mm,0.001deg";
     trade_command->add_option("--tolerance", tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
     trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv")
-        ->check(a_name());
+        ->check(a_folder());
 
     ReportRequest request;
     const auto* report_command = add_report_command(app, request);
+
+    name_values(app);
 
     try {
         check_words(argc, argv);
         const std::string command = command_line(argc, argv);
         app.parse(argc, argv);
         if (*report_command) return report(request, command, progress);
-        if (*new_command) return new_scene(template_name);
+        if (*new_command) return new_scene(template_name, as_json);
+        if (*completion_command) return print_text(completion(grammar(app), shell));
+        if (*man_command) {  // it may be read far from where it was made
+            app.footer(
+                footer([](const std::string& name) { return "PREFIX/share/doc/elastocheck/" + name; }));
+            return print_text(manual(grammar(app), provenance().version));
+        }
+        const Delivery delivery{.folder = output, .as_json = as_json, .command = command};
         const Detail detail = keep_all ? Detail::everything : Detail::required;
-        if (*inspect_command) return inspect(scene, settings, detail, verbose);
+        if (*inspect_command) return inspect(scene, settings, detail, verbose, delivery);
         if (*solve_command || *compare_command) {
             const auto leg =
                 std::ranges::find(compare::legs, method, [](auto l) { return std::string(name(l)); });
@@ -191,16 +228,15 @@ int run(int argc, char** argv) {
             if (!solve_request.rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
-                return compare_legs(scene, settings, {how, every, detail, formulations}, output, command);
+                return compare_legs(scene, settings, {how, every, detail, formulations}, delivery);
             solve_request.gait = {
                 .leg = reference ? *leg : compare::Leg::recursive, .recursion = how, .every = every};
             solve_request.detail = detail;
-            solve_request.output = output;
-            return solve(scene, settings, solve_request);
+            return solve(scene, settings, solve_request, delivery);
         }
         if (*gate_command.parsed) return gate_command.run();
-        if (*converge_command) return converge(scene, settings, rungs, levels, output, command);
-        return trade(scene, settings, tolerance, output, command);
+        if (*converge_command) return converge(scene, settings, rungs, levels, delivery);
+        return trade(scene, settings, tolerance, delivery);
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {

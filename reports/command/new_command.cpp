@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/reader/words.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/text/terminal.hpp"
 #include "scenes_embedded.hpp"  // generated: name and text of every scene of models/scenes
@@ -26,21 +27,35 @@ std::string_view title(std::string_view scene) {
 
 }  // namespace
 
-int new_scene(const std::string& name) {
-    for (const auto& scene : embedded_scenes)
-        if (scene.name == name) {
-            print("{}", scene.text);
-            return fine;
-        }
+std::vector<std::string> templates() {
     std::vector<std::string> names;
+    for (const auto& scene : embedded_scenes) names.emplace_back(scene.name);
+    return names;
+}
+
+int new_scene(const std::string& name, bool as_json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     std::size_t longest = 0;
     for (const auto& scene : embedded_scenes) {
-        names.emplace_back(scene.name);
         longest = std::max(longest, scene.name.size());
+        list.push_back({{"template", scene.name}, {"name", title(scene.text)}});
+        if (scene.name != name) continue;
+        if (as_json)
+            print_document(
+                {{"schema", templates_schema},
+                 {"templates", {{{"template", name}, {"name", title(scene.text)}, {"text", scene.text}}}}});
+        else
+            print("{}", scene.text);
+        return fine;
     }
+    const std::vector<std::string> names = templates();
     if (!name.empty())
         throw std::invalid_argument(fmt::format("new: no template is called {}{}", reader::quote(name),
                                                 reader::did_you_mean(name, names, "there are")));
+    if (as_json) {
+        print_document({{"schema", templates_schema}, {"templates", list}});
+        return fine;
+    }
     for (const auto& scene : embedded_scenes) print("{:<{}}  {}\n", scene.name, longest, title(scene.text));
     print("\nelastocheck new NAME > my.yaml\n");
     return fine;

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace elastocheck::reports {
 
 // Prints the template called `name`; where it is empty, what there is, a line each. Throws std::invalid_argument for a
-// name that there is not, with the nearest one that there is.
-int new_scene(const std::string& name);
+// name that there is not, with the nearest one that there is. As JSON: schema, and templates, that one with its text.
+int new_scene(const std::string& name, bool as_json);
+inline constexpr const char* templates_schema = "elastocheck/templates/1";
+
+std::vector<std::string> templates();  // their names
 
 }  // namespace elastocheck::reports

@@ -17,6 +17,8 @@
 #include "models/reader/scene_file.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/browser.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
@@ -120,6 +122,32 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
+// Of each scene its answer, and whether all of it could be judged.
+json answer_document(const json& result, const std::vector<std::string>& answers, const std::string& page) {
+    json scenes = json::array();
+    for (std::size_t k = 0; k < answers.size(); ++k) {
+        const json& scene = result["scenes"][k];
+        scenes.push_back({{"name", scene["name"]},
+                          {"source", scene["source"]},
+                          {"answer", answers[k]},
+                          {"verdict", scene["verdict"]}});
+    }
+    return {
+        {"schema", report_schema}, {"provenance", result["provenance"]}, {"page", page}, {"scenes", scenes}};
+}
+
+std::string answer_text(const json& result, const std::vector<std::string>& answers, const std::string& page,
+                        double seconds) {
+    std::string text;
+    for (std::size_t k = 0; k < answers.size(); ++k)
+        text += fmt::format("{}: {}\n\n", result["scenes"][k]["name"].get<std::string>(), answers[k]);
+    for (const auto& scene : result["scenes"])
+        text += fmt::format("{}: {}\n", scene["source"].get<std::string>(),
+                            scene["verdict"]["conclusive"].get<bool>() ? "passed" : "COULD NOT JUDGE");
+    return text + fmt::format("The page: {} ({} scene{}, {:.1f} s)\n", page, answers.size(),
+                              answers.size() == 1 ? "" : "s", seconds);
+}
+
 // What differs from run to run.
 void remove_times(json& value) {
     if (value.is_object()) {
@@ -135,28 +163,30 @@ void remove_times(json& value) {
 CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
     auto* command = app.add_subcommand(
         "report", "Everything about one or more scenes as a page: verdict, figures, tables");
-    command->add_option("SCENE", request.scenes, "scene files (YAML)")->check(a_name());
+    command->add_option("SCENE", request.scenes, "scene files (YAML)")->check(a_file("*.yaml"));
     add_settings(*command, request.settings);
     command->add_option("--from", request.from, "draw from this result.json, without solving")
-        ->check(a_name());
+        ->check(a_file("*.json"));
     command
         ->add_option("-o,--output", request.folder,
                      "folder for report.html, report.md, result.json, curves.csv, figures/")
         ->required()
-        ->check(a_name());
+        ->check(a_folder());
     command->add_option("--tolerance", request.tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
     command
         ->add_option("--alarms", request.alarms,
                      "results.json of seeded faults (./dev mutate), to show which alarms ring")
-        ->check(a_name());
+        ->check(a_file("*.json"));
     command
         ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
-        ->check(a_name());
+        ->check(a_file("*.csv"));
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
-        ->check(CLI::IsMember({"svg", "pdf"}).description(""));
+        ->check(one_of({"svg", "pdf"}));
     command->add_flag(
         "--archive", request.archive,
         "only what belongs in version control: README.md, numbers.csv, figures/*.svg, without times");
+    add_json(*command, request.as_json);
+    command->add_flag("--open", request.open, "then open the page: by $BROWSER, else by xdg-open");
     return command;
 }
 
@@ -167,6 +197,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
     const auto start = std::chrono::steady_clock::now();
     // What can be wrong is said before the work, not after it.
+    if (request.open && request.archive)
+        throw std::invalid_argument("--open: not with --archive, which has no page");
+    const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
     run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance);
@@ -203,11 +236,12 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
                          reason.get<std::string>());
         }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    for (std::size_t k = 0; k < answers.size(); ++k)
-        print("{}: {}\n\n", result["scenes"][k]["name"].get<std::string>(), answers[k]);
-    print("The page: {}/{} ({} scene{}, {:.1f} s)\n", request.folder,
-          request.archive ? "README.md" : "report.html", result["scenes"].size(),
-          result["scenes"].size() == 1 ? "" : "s", elapsed.count());
+    const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
+    if (request.as_json)
+        print_document(answer_document(result, answers, page));
+    else
+        print(answer_text(result, answers, page, elapsed.count()));
+    if (request.open) open_in(opener, page);
     return code;
 }
 

@@ -21,7 +21,11 @@ struct ReportRequest {
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";
     bool archive = false;
+    bool as_json = false;  // the answers as a document on standard output
+    bool open = false;     // the page in a browser, once it is there
 };
+
+inline constexpr const char* report_schema = "elastocheck/report/1";
 
 CLI::App* add_report_command(CLI::App& app, ReportRequest& request);
 

@@ -12,9 +12,11 @@
 #include "compare/elements.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
+#include "recursive/diagnosis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/tables/csv.hpp"
 #include "reports/text/terminal.hpp"
@@ -79,39 +81,63 @@ std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<s
     return list;
 }
 
-int solve(const std::string& file, const Settings& settings, const SolveRequest& request) {
+int solve(const std::string& file, const Settings& settings, const SolveRequest& request,
+          const Delivery& delivery) {
     const auto& [leg, how, refine, every] = request.gait;
-    if (!request.output.empty()) check_may_write(request.output, curves_file);
+    if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
-    const Model model = load_scene(file, settings, request.detail).model;
+    const LoadedScene loaded = load_scene(file, settings, request.detail);
+    const Model& model = loaded.model;
     const auto channels = asked_for(model, request.channels);
     check_every(model, how.steps, every);
-    check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
+    if (delivery.as_json)
+        check_memory(model, {.steps = how.steps, .every = every, .written = true});
+    else
+        check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request);
 
     std::optional<FileToBe> csv;
-    if (!request.output.empty()) csv.emplace(request.output, curves_file);
-    const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : print(lines); };
+    if (!delivery.folder.empty()) csv.emplace(delivery.folder, curves_file);
+    const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : delivery.say(lines); };
+    std::vector<compare::Walked> kept;  // for the document alone
     write(curves_header(channels));
     int code = fine;
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
         const auto ways = compare::ways_of(model, branch, how.steps);
+        compare::Walked whole;
+        whole.curve.unit = compare::unit_of(branch.unit);
         const EquilibriumPath path = compare::walk(
             ways, request.gait,
             [&](const Equilibrium& state) {
                 return compare::row_of(model, channels, ways.front(), request.gait, state);
             },
             [&](const compare::Row& row) {
+                if (delivery.as_json) {
+                    append(whole.curve, row.load, row.values);
+                    whole.constraint_error.push_back(row.constraint_error);
+                }
                 write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
             });
         if (csv) progress("");
+        if (delivery.as_json) {
+            whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
+            kept.push_back(std::move(whole));
+        }
         if (path.outcome == Outcome::converged) continue;
         complain("{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
                  name(path.outcome), path.detail);
         code = could_not_judge;
     }
     if (csv) csv->finish();
+    if (delivery.as_json) {
+        nlohmann::ordered_json part =
+            scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));
+        if (loaded.trim) add_trim(part, *loaded.trim);
+        add_curves(part, model, channels, leg,
+                   leg == compare::Leg::recursive ? std::string(how.method.name) : "", kept);
+        deliver({.as_json = true, .command = delivery.command}, std::move(part), {});
+    }
     return code;
 }
 

@@ -6,6 +6,7 @@
 
 #include "compare/legs.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/load_scene.hpp"
 
 namespace elastocheck::reports {
@@ -15,12 +16,13 @@ struct SolveRequest {
     Detail detail = Detail::required;
     std::vector<std::string> channels;  // names, or patterns with *; none: all
     std::string rates;                  // CSV of the derivatives, by the series; empty: none
-    std::string output;                 // CSV of the curves; empty: standard output
 };
 
 // Each row is written as its point is found, but for the way that comes reversed. What is wrong with the request is said
 // before the work. The exit code; where a branch does not converge, the rows are those that it reached.
-int solve(const std::string& scene, const Settings& settings, const SolveRequest& request);
+// The CSV goes to the file of `delivery` or to standard output; the document holds every point, so all are kept for it.
+int solve(const std::string& scene, const Settings& settings, const SolveRequest& request,
+          const Delivery& delivery);
 
 // The channels that are asked for, in that order, each once. Throws std::invalid_argument for a pattern that fits none,
 // with the nearest name.

@@ -12,10 +12,10 @@
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "recursive/diagnosis.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
-#include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/tables/comparison_tables.hpp"
@@ -31,21 +31,6 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-// result.json of one scene and the tables beside it, in one step.
-void write_results(const std::string& folder, const std::string& command, json part,
-                   std::vector<NamedContent> tables) {
-    json result = document(command, provenance());
-    result["scenes"].push_back(std::move(part));
-    std::string written;
-    if (result["scenes"][0].contains("branches"))
-        tables.insert(tables.begin(), {"curves.csv", curves_csv(result, "result.json")});
-    tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
-    write_folder(folder, tables);
-    for (const auto& file : tables)
-        written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", folder, file.name);
-    print("Written: {}\n", written);
-}
 
 json document_of(const LoadedScene& loaded, const std::string& file) {
     json part =
@@ -65,26 +50,33 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
 
 }  // namespace
 
-int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose) {
+int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose,
+            const Delivery& delivery) {
     const LoadedScene loaded = load_scene(file, settings, detail);
-    print(inspection({.scene = loaded.scene,
-                      .model = loaded.model,
-                      .trim = loaded.trim,
-                      .diagnosis = recursive::diagnose(loaded.model),
-                      .verbose = verbose}));
+    if (delivery.as_json) {
+        json part = document_of(loaded, file);
+        add_inspection(part, loaded.scene, loaded.model);
+        deliver(delivery, std::move(part), {});
+    } else {
+        print(inspection({.scene = loaded.scene,
+                          .model = loaded.model,
+                          .trim = loaded.trim,
+                          .diagnosis = recursive::diagnose(loaded.model),
+                          .verbose = verbose}));
+    }
     return fine;
 }
 
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
-                 const std::string& folder, const std::string& command) {
-    if (!folder.empty()) Staging::check(folder);
+                 const Delivery& delivery) {
+    if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
     check_every(model, request.recursion.steps, request.every);
     check_memory(model, {.steps = request.recursion.steps,
                          .every = request.every,
                          .legs = static_cast<int>(compare::legs.size()),
-                         .written = !folder.empty()});
+                         .written = delivery.wants_document()});
     compare::Options options;
     options.recursion = request.recursion;
     options.every = request.every;
@@ -94,9 +86,9 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     if (request.formulations)
         study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every, progress);
     progress("");
-    print(tables(model, comparison));
-    if (study) print(formulation_text(*study, comparison));
-    if (!folder.empty()) {
+    delivery.say(tables(model, comparison));
+    if (study) delivery.say(formulation_text(*study, comparison));
+    if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
         std::vector<NamedContent> files{{"forces.csv", csv(force_table(element_values(model, comparison)))}};
@@ -107,14 +99,14 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
             for (const auto& reason : study->inconclusive) reasons.push_back("formulations: " + reason);
         }
         add_verdict(part, comparison.compared, reasons);
-        write_results(folder, command, std::move(part), std::move(files));
+        deliver(delivery, std::move(part), std::move(files));
     }
     return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 
 int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names,
-             const std::vector<int>& steps, const std::string& folder, const std::string& command) {
-    if (!folder.empty()) Staging::check(folder);
+             const std::vector<int>& steps, const Delivery& delivery) {
+    if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
     if (!steps.empty()) check_memory(model, {.steps = *std::ranges::max_element(steps)});
@@ -132,11 +124,11 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
         orders = compare::order_study(model, {.progress = progress});
     progress("");
-    if (!options.methods.empty()) print(study_text(model, study, attribution));
-    print(order_text(order_table(orders)));
+    if (!options.methods.empty()) delivery.say(study_text(model, study, attribution));
+    delivery.say(order_text(order_table(orders)));
     const bool conclusive =
         (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
-    if (!folder.empty()) {
+    if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
@@ -152,14 +144,14 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
         auto reasons = study.inconclusive;
         if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
         add_verdict(part, 0, reasons);
-        write_results(folder, command, std::move(part), std::move(files));
+        deliver(delivery, std::move(part), std::move(files));
     }
     return conclusive ? fine : could_not_judge;
 }
 
 int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
-          const std::string& folder, const std::string& command) {
-    if (!folder.empty()) Staging::check(folder);
+          const Delivery& delivery) {
+    if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
     compare::TradeOptions options;
@@ -168,16 +160,15 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::Trade trade = compare::trade(model, options);
     const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
     progress("");
-    print("{}\n{}", trade_text(model, trade), precision_text(precision));
-    if (!folder.empty()) {
+    delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
+    if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
-        write_results(
-            folder, command, std::move(part),
-            {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
+        deliver(delivery, std::move(part),
+                {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
     }
     return trade.recommendation ? fine : could_not_judge;
 }

@@ -8,11 +8,13 @@
 #include "compare/compare.hpp"
 #include "recursive/solve.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/load_scene.hpp"
 
 namespace elastocheck::reports {
 
-int inspect(const std::string& scene, const Settings& settings, Detail detail, bool verbose);
+int inspect(const std::string& scene, const Settings& settings, Detail detail, bool verbose,
+            const Delivery& delivery);
 
 struct CompareRequest {
     recursive::Options recursion;
@@ -20,12 +22,12 @@ struct CompareRequest {
     Detail detail = Detail::required;
     bool formulations = false;  // how much the outputs depend on what a bushing is taken to measure, as well
 };
-// Where `folder` is empty nothing is written; else result.json with `command` in it, and CSV files.
+// As text, or the document; in a folder with CSV files beside it.
 int compare_legs(const std::string& scene, const Settings& settings, const CompareRequest& request,
-                 const std::string& folder, const std::string& command);
+                 const Delivery& delivery);
 int converge(const std::string& scene, const Settings& settings, const std::vector<std::string>& methods,
-             const std::vector<int>& steps, const std::string& folder, const std::string& command);
+             const std::vector<int>& steps, const Delivery& delivery);
 int trade(const std::string& scene, const Settings& settings, const std::string& tolerance,
-          const std::string& folder, const std::string& command);
+          const Delivery& delivery);
 
 }  // namespace elastocheck::reports

@@ -1,13 +1,20 @@
-# Run at every build: writes OUTPUT from what git says now, and leaves it alone when nothing changed.
+# Run at every build: writes OUTPUT from what git says now, and leaves it alone when nothing changed. In an archive that
+# git made (.gitattributes), the commit stands here; a checkout around the sources that is not theirs says nothing.
 find_package(Git QUIET)
-set(commit "unknown")
+set(commit "$Format:%H$")
+if(commit MATCHES "Format")
+  set(commit "unknown")
+endif()
 set(dirty "false")
 if(GIT_FOUND)
-  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} rev-parse HEAD
+  # In a container the checkout often belongs to another user.
+  set(git ${GIT_EXECUTABLE} -c safe.directory=* -C ${SOURCE})
+  execute_process(COMMAND ${git} rev-parse --show-prefix HEAD
                   OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
-  if(NOT failed)
+  string(STRIP "${head}" head)  # after the line with the folder within the checkout, empty at its top
+  if(NOT failed AND head MATCHES "^[0-9a-f]+$")
     set(commit ${head})
-    execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} status --porcelain --untracked-files=no
+    execute_process(COMMAND ${git} status --porcelain --untracked-files=no
                     OUTPUT_VARIABLE changes ERROR_QUIET)
     if(changes)
       set(dirty "true")
@@ -25,5 +32,7 @@ inline constexpr const char* flags = "@FLAGS@";
 struct NameVersion { const char *name, *version; };
 inline constexpr NameVersion libraries[] = {
     {"Eigen", "@EIGEN@"}, {"Ceres", "@CERES@"}, {"NLopt", "@NLOPT@"}, {"yaml-cpp", "@YAML@"}, {"fmt", "@FMT@"}};
+inline constexpr NameVersion round_nothing[] = {
+    {"CLI11", "@CLI11@"}, {"nlohmann-json", "@JSON@"}, {"pugixml", "@PUGIXML@"}};
 }
 ]])

@@ -3,6 +3,7 @@
 #include "compare/findings.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/tables/elements.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
@@ -46,27 +47,59 @@ json residuals_json(const Residuals& r) {
             {"moment_Nm", r.moment}};
 }
 
+// What moves on the branch, and what is held.
+json drivers_json(const Model& model, const Branch& branch) {
+    json moved = json::array(), held = json::array();
+    for (const auto& driver : branch.drivers)
+        (driver.rate != 0 ? moved : held).push_back(driven_name(model, driver.what));
+    return {{"moved", moved}, {"held", held}};
+}
+
+json branch_json(const Model& model, const Branch& branch) {
+    const compare::Unit unit = compare::unit_of(branch.unit);
+    return {{"name", branch.name},
+            {"from", in_unit(unit) * branch.from},
+            {"to", in_unit(unit) * branch.to},
+            {"unit", symbol(unit)},
+            {"drivers", drivers_json(model, branch)}};
+}
+
+json channels_json(const std::vector<compare::Channel>& channels) {
+    json list = json::array();
+    for (const auto& channel : channels)
+        list.push_back({{"name", channel.name},
+                        {"unit", symbol(channel.unit)},
+                        {"main", channel.main},
+                        {"kinematic", channel.kinematic()},
+                        {"definition", channel.definition}});
+    return list;
+}
+
+json counts_json(const Counts& counts) {
+    return {{"factorisations", counts.factorisations},
+            {"iterations", counts.iterations},
+            {"evaluations", counts.evaluations}};
+}
+
+json curve_json(const compare::Curve& curve, const std::vector<double>& constraint_error,
+                const std::vector<compare::Channel>& channels) {
+    json values = json::object();
+    for (std::size_t c = 0; c < channels.size(); ++c) values[channels[c].name] = curve.channel(c);
+    return {{"a", curve.a}, {"constraint_error", constraint_error}, {"values", values}};
+}
+
 json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& channels) {
     json judged = json::object();
     for (const Leg by : compare::legs)
         judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
-    json values = json::object();
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        json column = json::array();
-        for (const auto& point : run.curve.values) column.push_back(point[c]);
-        values[channels[c].name] = column;
-    }
     return {{"leg", name(run.leg)},
             {"method", run.method},
             {"outcome", elastocheck::name(run.outcome)},
             {"detail", run.detail},
-            {"counts",
-             {{"factorisations", run.counts.factorisations},
-              {"iterations", run.counts.iterations},
-              {"evaluations", run.counts.evaluations}}},
+            {"counts", counts_json(run.counts)},
             {"seconds", run.seconds},
             {"residuals_by", judged},
-            {"curve", {{"a", run.curve.a}, {"constraint_error", run.constraint_error}, {"values", values}}}};
+            {"curve", curve_json(run.curve, run.constraint_error, channels)}};
 }
 
 json reading_json(const compare::Reading& reading, const compare::Comparison& all,
@@ -96,14 +129,6 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"from", name(pair.a)},
             {"at_equal_parameter", reading_json(pair.equal_parameter, all, determined)},
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
-}
-
-// What moves on the branch, and what is held.
-json drivers_json(const Model& model, const Branch& branch) {
-    json moved = json::array(), held = json::array();
-    for (const auto& driver : branch.drivers)
-        (driver.rate != 0 ? moved : held).push_back(driven_name(model, driver.what));
-    return {{"moved", moved}, {"held", held}};
 }
 
 // The worst of the main channels, point by point of the equilibrium leg.
@@ -230,28 +255,15 @@ json scene_document(const Scene& scene, std::string_view input, const Model& mod
 
 void add_comparison(json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison) {
-    json channels = json::array(), branches = json::array();
-    for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
-        const auto& channel = comparison.channels[c];
-        channels.push_back({{"name", channel.name},
-                            {"unit", symbol(channel.unit)},
-                            {"main", channel.main},
-                            {"kinematic", channel.kinematic()},
-                            {"definition", channel.definition}});
-    }
+    json branches = json::array();
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const auto& branch = comparison.branches[b];
         json legs = json::array();
         for (const auto& run : branch.runs) legs.push_back(run_json(run, comparison.channels));
-        const Branch& walked = model.branches[b];
         const auto pair = [&](const compare::Pair& p) { return pair_json(p, comparison, branch.determined); };
-        branches.push_back(
-            {{"name", branch.branch},
-             {"from", in_unit(branch.unit) * walked.from},
-             {"to", in_unit(branch.unit) * walked.to},
-             {"unit", symbol(branch.unit)},
-             {"drivers", drivers_json(model, walked)},
-             {"abscissa", branch.abscissa < 0
+        json one = branch_json(model, model.branches[b]);
+        one.update(
+            {{"abscissa", branch.abscissa < 0
                               ? json(nullptr)
                               : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
              {"legs", legs},
@@ -264,9 +276,10 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()}});
-        if (branch.every > 1) branches.back()["steps"] = branch.steps;
+        if (branch.every > 1) one["steps"] = branch.steps;
+        branches.push_back(std::move(one));
     }
-    scene_document["channels"] = channels;
+    scene_document["channels"] = channels_json(comparison.channels);
     scene_document["branches"] = branches;
     scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
@@ -276,6 +289,58 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
             {"compliance", table_json(compare::compliance_table(model, comparison))}};
     scene_document["forces"] = table_json(force_table(element_values(model, comparison)));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
+}
+
+void add_curves(json& scene_document, const Model& model, const std::vector<compare::Channel>& channels,
+                compare::Leg leg, const std::string& method, const std::vector<compare::Walked>& branches) {
+    std::vector<std::string> reasons;
+    json list = json::array();
+    int numbers = 0;
+    for (std::size_t b = 0; b < branches.size(); ++b) {
+        const compare::Walked& walked = branches[b];
+        json one = branch_json(model, model.branches[b]);
+        one["legs"] = json::array({{{"leg", name(leg)},
+                                    {"method", method},
+                                    {"outcome", elastocheck::name(walked.outcome)},
+                                    {"detail", walked.detail},
+                                    {"counts", counts_json(walked.counts)},
+                                    {"curve", curve_json(walked.curve, walked.constraint_error, channels)}}});
+        list.push_back(std::move(one));
+        numbers += static_cast<int>(walked.curve.a.size() * channels.size());
+        if (walked.outcome != Outcome::converged)
+            reasons.push_back(model.branches[b].name + ": " + elastocheck::name(walked.outcome) + ": " +
+                              walked.detail);
+    }
+    scene_document["channels"] = channels_json(channels);
+    scene_document["branches"] = list;
+    scene_document["verdict"] = {{"conclusive", reasons.empty()}, {"numbers", numbers}, {"reasons", reasons}};
+}
+
+void add_inspection(json& scene_document, const Scene& scene, const Model& model) {
+    const auto channels = compare::channels(model);
+    json bodies = json::array(), list = json::array(), branches = json::array(), numbers = json::array();
+    for (const auto& body : model.bodies) {
+        const Eigen::Vector3d mm = 1e3 * body.design.r;
+        bodies.push_back({{"name", body.name}, {"origin_mm", {mm.x(), mm.y(), mm.z()}}});
+    }
+    for (const auto& [name, between, what] : elements(scene, model))
+        list.push_back({{"name", name}, {"between", between}, {"what", what}});
+    for (const auto& branch : model.branches) {
+        const compare::Settled settled = compare::settled(model, channels, branch);
+        json one = branch_json(model, branch), moves = json::object();
+        for (std::size_t c = 0; c < settled.displacement.size(); ++c)
+            moves[channels[c].name] = settled.displacement[c];
+        one["steps"] = branch.steps;
+        one["settles"] = {{"outcome", elastocheck::name(settled.outcome)},
+                          {"detail", settled.detail},
+                          {"displacement", moves}};
+        branches.push_back(std::move(one));
+    }
+    for (const auto& n : scene.numbers)
+        numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
+    scene_document["channels"] = channels_json(channels);
+    scene_document["inspection"] = {
+        {"bodies", bodies}, {"elements", list}, {"branches", branches}, {"numbers", numbers}};
 }
 
 void add_trim(json& scene_document, const compare::TrimRecord& trim) {

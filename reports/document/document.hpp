@@ -39,6 +39,14 @@ nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);
 
+// "channels", "branches" and the "verdict" of `solve`: every point of the one leg, and no comparison.
+void add_curves(nlohmann::ordered_json& scene_document, const Model& model,
+                const std::vector<compare::Channel>& channels, compare::Leg leg, const std::string& method,
+                const std::vector<compare::Walked>& branches);
+
+// "channels" and "inspection": bodies, elements, branches and where they settle, the numbers of the file.
+void add_inspection(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model);
+
 // "trim": what was adjusted, and how well the conditions are met.
 void add_trim(nlohmann::ordered_json& scene_document, const compare::TrimRecord& trim);
 

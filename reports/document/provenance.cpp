@@ -29,6 +29,17 @@ Provenance provenance() {
     return p;
 }
 
+std::string version_text(const Provenance& p) {
+    std::string libraries;
+    const auto add = [&](const std::string& name, const std::string& version) {
+        libraries += fmt::format("{}{} {}", libraries.empty() ? "" : ", ", name, version);
+    };
+    for (const auto& library : p.libraries) add(library.name, library.version);
+    for (const auto& [name, version] : build_info::round_nothing) add(name, version);
+    return fmt::format("elastocheck {}\ncommit {}{}\ncompiler {}, {}\nlibraries {}", p.version, p.commit,
+                       p.dirty ? ", with uncommitted changes" : "", p.compiler, p.flags, libraries);
+}
+
 std::string input_hash(std::string_view content) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;

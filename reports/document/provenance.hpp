@@ -23,6 +23,9 @@ struct Provenance {
 
 Provenance provenance();
 
+// What --version says: version, commit, compiler, and all libraries, also those that round nothing.
+std::string version_text(const Provenance& provenance);
+
 // FNV-1a, 64 bit, in hex: tells one input from another, not a proof against forgery.
 std::string input_hash(std::string_view content);
 

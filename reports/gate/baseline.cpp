@@ -33,13 +33,15 @@ struct Field {
     throw BaselineError(fmt::format("{}: {}", field.path.empty() ? "the file" : field.path, what));
 }
 
-// The fields of an object: exactly these.
-void expect_fields(const Field& in, std::initializer_list<const char*> names) {
+// The fields of an object: exactly these, and perhaps `more`.
+void expect_fields(const Field& in, std::initializer_list<const char*> names, std::string_view more = "") {
     if (!in.value.is_object()) refuse(in, "is not an object");
     for (const char* name : names)
         if (!in.value.contains(name)) refuse(in, fmt::format("'{}' is missing", name));
-    for (const auto& [name, unused] : in.value.items())
+    for (const auto& [name, unused] : in.value.items()) {
+        if (name == more) continue;
         if (std::ranges::find(names, name) == names.end()) refuse(in, fmt::format("'{}' is not known", name));
+    }
 }
 
 Field at(const Field& in, const char* name) {
@@ -147,6 +149,13 @@ compare::Limit limit_of(const Field& field) {
     return {named(at(field, "of"), deviations), text(at(field, "channel")), number(at(field, "max"))};
 }
 
+// ["points.tie_rod_inner.z", -0.055, "m"]
+Number number_of(const Field& field) {
+    if (array(field).size() != 3) refuse(field, "is not [path, value, unit]");
+    const auto entry = [&](std::size_t k) { return Field{field.value[k], field.path}; };
+    return {text(entry(0)), number(entry(1)), text(entry(2))};
+}
+
 // [\n  one,\n  two\n ]
 std::string one_a_line(const std::vector<json>& entries) {
     std::string lines;
@@ -161,14 +170,20 @@ BaselineFile parse(const json& whole) {
         refuse(at(top, "schema"),
                fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew", schema,
                            baseline_schema));
-    expect_fields(
-        top, {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"});
+    expect_fields(top,
+                  {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
+                  "numbers");
     BaselineFile file;
     const Field scene = at(top, "scene");
     expect_fields(scene, {"file", "name", "input_hash"});
     file.scene_file = text(at(scene, "file"));
     file.baseline.accepted.scene = text(at(scene, "name"));
     file.input_hash = text(at(scene, "input_hash"));
+    if (whole.contains("numbers")) {
+        file.numbers.emplace();
+        for (const auto& entry : array(at(top, "numbers")))
+            file.numbers->push_back(number_of({entry, fmt::format("numbers[{}]", file.numbers->size())}));
+    }
     expect_fields(at(top, "accepted"), {"reason"});
     file.baseline.reason = paragraphs(at(at(top, "accepted"), "reason"));
     file.provenance = provenance_of(at(top, "provenance"));
@@ -208,7 +223,9 @@ std::string first_line(const std::string& command) {
 
 std::string baseline_text(const BaselineFile& file) {
     const compare::Baseline& b = file.baseline;
-    std::vector<json> limits, branches, series;
+    std::vector<json> limits, numbers, branches, series;
+    if (file.numbers)
+        for (const auto& n : *file.numbers) numbers.push_back(json::array({n.path, n.value, n.unit}));
     for (const auto& limit : b.limits)
         limits.push_back({{"of", name(limit.deviation)}, {"channel", limit.channel}, {"max", limit.max}});
     for (const auto& branch : b.accepted.branches)
@@ -232,8 +249,9 @@ std::string baseline_text(const BaselineFile& file) {
         text += fmt::format("{}  \"{}\": {}", separator, name(kind), tolerances_json(tolerances).dump());
         separator = ",\n";
     }
-    text += "\n },\n \"limits\": " + one_a_line(limits) + ",\n \"branches\": " + one_a_line(branches) +
-            ",\n \"series\": " + one_a_line(series) + "\n}\n";
+    text += "\n },\n \"limits\": " + one_a_line(limits);
+    if (file.numbers) text += ",\n \"numbers\": " + one_a_line(numbers);
+    text += ",\n \"branches\": " + one_a_line(branches) + ",\n \"series\": " + one_a_line(series) + "\n}\n";
     return text;
 }
 

@@ -5,10 +5,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "compare/gate.hpp"
+#include "models/scene.hpp"
 #include "reports/document/provenance.hpp"
 
 namespace elastocheck::reports {
@@ -17,8 +20,9 @@ namespace elastocheck::reports {
 inline constexpr const char* baseline_schema = "elastocheck/baseline/2";
 
 struct BaselineFile {
-    std::string scene_file;  // relative to the folder of the baseline
-    std::string input_hash;  // of the scene file
+    std::string scene_file;                      // relative to the folder of the baseline
+    std::string input_hash;                      // of the scene file
+    std::optional<std::vector<Number>> numbers;  // in it; none in files of before they were kept
     Provenance provenance;
     compare::Baseline baseline;
 };

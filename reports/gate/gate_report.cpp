@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "reports/document/document.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
 
@@ -28,21 +29,37 @@ struct Worst {
     std::size_t numbers = 1;  // of this channel out of tolerance in all
 };
 
-// Worst first, over all scenes.
+// Of offences in the order of comes_before.
+std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
+                                         const std::vector<const Offence*>& offences) {
+    std::vector<Worst> all;
+    std::map<std::string_view, std::size_t> place;
+    for (const auto* offence : offences) {
+        const auto [at, is_new] = place.emplace(offence->channel, all.size());
+        if (is_new)
+            all.push_back({scene, offence});
+        else
+            ++all[at->second].numbers;
+    }
+    return all;
+}
+
+// In the order of comes_before, over all scenes.
 std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& scenes) {
     std::vector<Worst> all;
     for (const auto* scene : scenes) {
-        std::map<std::string, std::size_t> place;
-        for (const auto& offence : scene->verdict.offences) {  // worst first already
-            const auto [at, is_new] = place.emplace(offence.channel, all.size());
-            if (is_new)
-                all.push_back({scene, &offence});
-            else
-                ++all[at->second].numbers;
-        }
+        std::vector<const Offence*> offences;
+        for (const auto& offence : scene->verdict.offences) offences.push_back(&offence);
+        std::ranges::copy(worst_of_each_channel(scene, offences), std::back_inserter(all));
     }
-    std::ranges::stable_sort(all, std::ranges::greater{}, [](const Worst& w) { return w.offence->share(); });
+    std::ranges::stable_sort(
+        all, [](const Worst& a, const Worst& b) { return comes_before(*a.offence, *b.offence); });
     return all;
+}
+
+std::string told(const Worst& worst) {
+    return story(*worst.offence) +
+           (worst.numbers > 1 ? fmt::format("; {} numbers of it in all", worst.numbers) : "");
 }
 
 std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
@@ -55,6 +72,11 @@ std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
 std::string where(const Offence& o) { return o.a ? fmt::format("{:g} {}", *o.a, o.a_unit) : ""; }
 std::string what(const Offence& o) {
     return o.of_limit ? fmt::format("limit on {}", name(o.quantity)) : name(o.quantity);
+}
+
+// How often what an engineer would notice; of a limit that is no question.
+std::string times_noticeable(const Offence& o) {
+    return o.of_limit ? "limit" : fmt::format("{:.3g}", o.noticed());
 }
 
 std::string verdict_of(const std::vector<GatedScene>& scenes) {
@@ -103,58 +125,118 @@ json count_beyond(std::size_t all, std::size_t shown) {
     return all > shown ? json(std::to_string(all - shown)) : json(false);
 }
 
+// ---- JUnit: a test that says whether the scene could be judged, and one a branch that says what came of it.
+
+struct Test {
+    const GatedScene* scene;
+    std::string name;
+    std::vector<const Offence*> failed;
+    bool error = false;  // the scene could not be judged
+
+    bool passed() const { return failed.empty() && !error; }
+};
+
+std::vector<Test> tests_of(const GatedScene& scene) {
+    std::vector<Test> tests{{&scene, "can be judged", {}, !scene.verdict.reasons.empty()}};
+    const auto test = [&](const std::string& branch) -> Test& {
+        const auto found = std::find_if(tests.begin() + 1, tests.end(),
+                                        [&](const Test& t) { return t.name == "branch " + branch; });
+        return found != tests.end() ? *found : tests.emplace_back(Test{&scene, "branch " + branch, {}});
+    };
+    for (const auto& s : scene.accepted.series) (void)test(s.branch);
+    for (const auto& o : scene.verdict.offences) test(o.branch).failed.push_back(&o);
+    return tests;
+}
+
+// The beginning of a text, whole characters, where it is longer than `most` bytes.
+std::string beginning(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return std::string(text);
+    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
+    return std::string(text.substr(0, most)) + "...";
+}
+
+constexpr std::size_t line_length = 300;
+
+// Up to `most` lines, each not too long, and how many more there are.
+std::string lines(const std::vector<std::string>& all, std::size_t most) {
+    std::string text;
+    for (std::size_t k = 0; k < std::min(most, all.size()); ++k)
+        text += beginning(all[k], line_length) + "\n";
+    if (all.size() > most)
+        text += fmt::format("... and {} more: elastocheck gate --json\n", all.size() - most);
+    return text;
+}
+
 void add_message(pugi::xml_node test, const char* kind, std::string_view message, const std::string& text) {
     auto node = test.append_child(kind);
-    node.append_attribute("message") = for_xml(message).c_str();
+    node.append_attribute("message") = for_xml(beginning(message, line_length)).c_str();
     node.text() = for_xml(text).c_str();
 }
 
-pugi::xml_node add_test(pugi::xml_node suite, const GatedScene& scene, const std::string& test_name) {
-    auto test = suite.append_child("testcase");
-    test.append_attribute("classname") = for_xml(scene.file).c_str();
-    test.append_attribute("name") = for_xml(test_name).c_str();
-    return test;
+void add_test(pugi::xml_node suite, const Test& test, std::size_t most_lines) {
+    auto node = suite.append_child("testcase");
+    node.append_attribute("classname") = for_xml(beginning(test.scene->file, line_length)).c_str();
+    node.append_attribute("name") = for_xml(beginning(test.name, line_length)).c_str();
+    std::vector<std::string> all;
+    for (const auto& change : test.scene->changed) all.push_back("changed: " + story(change));
+    const std::string changed = all.empty() ? "" : lines(all, most_lines);
+    const std::vector<std::string>& reasons = test.scene->verdict.reasons;
+    if (test.error)
+        add_message(node, "error", reasons.front(),
+                    headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
+    if (test.failed.empty()) return;
+    std::vector<std::string> stories;
+    for (const auto& worst : worst_of_each_channel(test.scene, test.failed)) stories.push_back(told(worst));
+    add_message(node, "failure", stories.front(), lines(stories, most_lines) + changed);
 }
 
-// One test says whether the scene could be judged;
-// one more per branch and channel or counter what came of it.
-void add_suite(pugi::xml_node root, const GatedScene& scene) {
-    auto suite = root.append_child("testsuite");
-    suite.append_attribute("name") = for_xml(scene.file).c_str();
-    int tests = 1, failures = 0;
-    const bool error = !scene.verdict.reasons.empty();
-
-    auto judged = add_test(suite, scene, "can be judged");
-    if (error)
-        add_message(judged, "error", scene.verdict.reasons.front(),
-                    headline(scene) + "\n" + fmt::format("{}", fmt::join(scene.verdict.reasons, "\n")));
-
-    const auto title = [](const std::string& branch, compare::Quantity quantity, const std::string& channel) {
-        const bool work = quantity >= compare::Quantity::work_recursive;
-        return fmt::format("{}: {}{}", branch, work ? std::string(name(quantity)) + ": " : "", channel);
+// The first `most` of the tests, with up to `most_lines` numbers of each.
+std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size_t most_lines) {
+    pugi::xml_document document;
+    auto declaration = document.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    auto root = document.append_child("testsuites");
+    root.append_attribute("name") = "elastocheck gate";
+    struct Suite {
+        pugi::xml_node node;
+        int tests = 0, failures = 0, errors = 0;
     };
-    std::vector<std::string> titles;
-    for (const auto& s : scene.accepted.series)
-        if (const auto t = title(s.branch, s.quantity, s.channel);
-            std::ranges::find(titles, t) == titles.end())
-            titles.push_back(t);
-    for (const auto& o : scene.verdict.offences)  // a limit may be on what the baseline does not hold
-        if (const auto t = title(o.branch, o.quantity, o.channel);
-            std::ranges::find(titles, t) == titles.end())
-            titles.push_back(t);
-    for (const auto& t : titles) {
-        auto test = add_test(suite, scene, t);
-        ++tests;
-        std::vector<std::string> stories;
-        for (const auto& o : scene.verdict.offences)
-            if (title(o.branch, o.quantity, o.channel) == t) stories.push_back(story(o));
-        if (stories.empty()) continue;
-        ++failures;
-        add_message(test, "failure", stories.front(), fmt::format("{}", fmt::join(stories, "\n")));
+    std::map<const GatedScene*, Suite> suites;
+    for (std::size_t k = 0; k < std::min(most, tests.size()); ++k) {
+        const Test& test = tests[k];
+        auto [place, is_new] = suites.try_emplace(test.scene);
+        Suite& suite = place->second;
+        if (is_new) {
+            suite.node = root.append_child("testsuite");
+            suite.node.append_attribute("name") = for_xml(beginning(test.scene->file, line_length)).c_str();
+        }
+        add_test(suite.node, test, most_lines);
+        ++suite.tests;
+        suite.failures += !test.failed.empty();
+        suite.errors += test.error;
     }
-    suite.append_attribute("tests") = tests;
-    suite.append_attribute("failures") = failures;
-    suite.append_attribute("errors") = error ? 1 : 0;
+    for (auto& [scene, suite] : suites) {
+        suite.node.append_attribute("tests") = suite.tests;
+        suite.node.append_attribute("failures") = suite.failures;
+        suite.node.append_attribute("errors") = suite.errors;
+    }
+    if (tests.size() > most) {
+        const auto left = std::ranges::count_if(tests.begin() + static_cast<std::ptrdiff_t>(most),
+                                                tests.end(), [](const Test& t) { return !t.passed(); });
+        auto suite = root.append_child("testsuite");
+        suite.append_attribute("name") = "left out";
+        suite.append_attribute("tests") = 0;
+        suite.append_child("system-out").text() =
+            fmt::format(
+                "{} more tests, {} of them failed, are left out to keep this file small; elastocheck "
+                "gate --json has them all",
+                tests.size() - most, left)
+                .c_str();
+    }
+    std::ostringstream out;
+    document.save(out, " ");
+    return out.str();
 }
 
 std::string annotation(const GatedScene& scene, const std::string& title, const std::string& text) {
@@ -182,23 +264,39 @@ std::string story(const Offence& o) {
         return line + fmt::format(": {:.6g} {} is over its limit of {:g} {}", o.is, o.unit, o.was, o.unit);
     line += fmt::format(": accepted {:.10g} {}, measured {:.10g} {}, difference {:+.3g}", o.was, o.unit, o.is,
                         o.unit, o.difference());
-    return line + (o.tolerance > 0
-                       ? fmt::format(", {:.3g} times the tolerance of {:.3g}", o.share(), o.tolerance)
-                       : ", and nothing is tolerated");
+    line += o.tolerance > 0 ? fmt::format(", {:.3g} times the tolerance of {:.3g}", o.share(), o.tolerance)
+                            : ", and nothing is tolerated";
+    return line + fmt::format(", {:.3g} times what an engineer notices", o.noticed());
+}
+
+std::string story(const compare::Change& change) {
+    const auto shown = [](const Number& n) {
+        return fmt::format("{}{}{}", n.value, n.unit.empty() ? "" : " ", n.unit);
+    };
+    const std::string& path = (change.is ? change.is : change.was)->path;
+    if (!change.is) return fmt::format("{}: is gone, was {}", path, shown(*change.was));
+    if (!change.was) return fmt::format("{}: {}, is new", path, shown(*change.is));
+    return fmt::format("{}: {}, was {}", path, shown(*change.is), shown(*change.was));
 }
 
 std::string gate_table(const GatedScene& scene) {
     const auto& verdict = scene.verdict;
     std::string out = headline(scene) + "\n";
+    for (std::size_t k = 0; k < std::min(scene.changed.size(), rows_in_table); ++k)
+        out += fmt::format("  changed: {}\n", story(scene.changed[k]));
+    if (scene.changed.size() > rows_in_table)
+        out += fmt::format("  ... and {} more numbers of the scene\n", scene.changed.size() - rows_in_table);
     const auto worst = worst_of_each_channel({&scene});
     if (!worst.empty())
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>8}\n", "branch", "what",
-                           "channel", "at", "accepted", "measured", "difference", "tolerances", "numbers");
+        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>10} {:>8}\n", "branch",
+                           "what", "channel", "at", "accepted", "measured", "difference", "noticeable",
+                           "tolerances", "numbers");
     for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
         const Offence& o = *worst[k].offence;
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10.3g} {:>8}\n",
-                           o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was,
-                           o.is, o.difference(), o.share(), worst[k].numbers);
+        out +=
+            fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10} {:>10.3g} {:>8}\n",
+                        o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was, o.is,
+                        o.difference(), times_noticeable(o), o.share(), worst[k].numbers);
     }
     if (worst.size() > rows_in_table)
         out += fmt::format("  ... and {} more channels\n", worst.size() - rows_in_table);
@@ -224,17 +322,55 @@ std::string gate_conclusion(const std::vector<GatedScene>& scenes) {
         verdict_of(scenes), offences, compared, failed, scenes.size(), unjudged);
 }
 
+json gate_document(const std::vector<GatedScene>& scenes, const Provenance& provenance) {
+    const auto number = [](const std::optional<Number>& n) {
+        return n ? json{{"value", n->value}, {"unit", n->unit}} : json(nullptr);
+    };
+    json list = json::array();
+    int compared = 0;
+    for (const auto& scene : scenes) {
+        json changed = json::array(), offences = json::array();
+        for (const auto& change : scene.changed)
+            changed.push_back({{"path", (change.is ? change.is : change.was)->path},
+                               {"was", number(change.was)},
+                               {"is", number(change.is)}});
+        for (const auto& o : scene.verdict.offences) {
+            json one = {
+                {"branch", o.branch}, {"of", name(o.quantity)}, {"channel", o.channel}, {"unit", o.unit}};
+            if (o.a) one["at"] = {{"value", *o.a}, {"unit", o.a_unit}};
+            one["measured"] = o.is;
+            one[o.of_limit ? "limit" : "accepted"] = o.was;
+            if (!o.of_limit) one["tolerance"] = o.tolerance, one["noticeable"] = o.noticeable;
+            offences.push_back(std::move(one));
+        }
+        compared += scene.verdict.compared;
+        list.push_back({{"scene", scene.file},
+                        {"baseline", scene.baseline_file},
+                        {"verdict", verdict_of(scene)},
+                        {"tolerance_class", name(scene.verdict.kind)},
+                        {"because", scene.differs},
+                        {"last_acceptance", scene.reason},
+                        {"compared", scene.verdict.compared},
+                        {"changed", changed},
+                        {"offences", offences},
+                        {"could_not_judge", scene.verdict.reasons},
+                        {"notes", scene.notes}});
+    }
+    return {{"schema", gate_schema},         {"provenance", provenance_json(provenance)},
+            {"verdict", verdict_of(scenes)}, {"exit_code", exit_code(scenes)},
+            {"compared", compared},          {"scenes", list}};
+}
+
 std::string junit(const std::vector<GatedScene>& scenes) {
-    pugi::xml_document document;
-    auto declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    auto root = document.append_child("testsuites");
-    root.append_attribute("name") = "elastocheck gate";
-    for (const auto& scene : scenes) add_suite(root, scene);
-    std::ostringstream out;
-    document.save(out, " ");
-    return out.str();
+    std::vector<Test> tests;
+    for (const auto& scene : scenes)
+        for (auto& test : tests_of(scene)) tests.push_back(std::move(test));
+    for (const std::size_t most_lines : {50, 10, 3, 1})
+        if (std::string xml = junit_of(tests, tests.size(), most_lines); xml.size() < most_junit) return xml;
+    std::ranges::stable_partition(tests, [](const Test& test) { return !test.passed(); });
+    std::size_t most = tests.size();
+    for (;; most /= 2)
+        if (std::string xml = junit_of(tests, most, 1); xml.size() < most_junit) return xml;
 }
 
 std::string step_summary(const std::vector<GatedScene>& scenes) {
@@ -250,10 +386,16 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
                             {"was", fmt::format("{:.10g}", o.was)},
                             {"is", fmt::format("{:.10g}", o.is)},
                             {"difference", fmt::format("{:+.3g}", o.difference())},
+                            {"noticed", times_noticeable(o)},
                             {"share", fmt::format("{:.3g}", o.share())},
                             {"numbers", all[k].numbers}});
     }
-    std::size_t reasons_in_all = 0;
+    json changes = json::array();
+    std::size_t changes_in_all = 0, reasons_in_all = 0;
+    for (const auto& scene : scenes)
+        for (const auto& change : scene.changed)
+            if (++changes_in_all <= rows_in_summary)
+                changes.push_back({{"scene", cell(scene.file)}, {"what", cell(story(change))}});
     for (const auto& scene : scenes)
         for (const auto& why : scene.verdict.reasons) {
             if (++reasons_in_all > rows_in_summary) continue;
@@ -272,6 +414,9 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
                    {"has_offences", !all.empty()},
                    {"offences", offences},
                    {"more_offences", count_beyond(all.size(), rows_in_summary)},
+                   {"has_changes", changes_in_all > 0},
+                   {"changes", changes},
+                   {"more_changes", count_beyond(changes_in_all, rows_in_summary)},
                    {"has_reasons", reasons_in_all > 0},
                    {"reasons", reasons},
                    {"more_reasons", count_beyond(reasons_in_all, rows_in_summary)},
@@ -283,11 +428,14 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
 std::string annotations(const std::vector<GatedScene>& scenes) {
     std::string out;
     std::size_t count = 0;
-    for (const auto& [scene, offence, numbers] : worst_of_each_channel(pointers(scenes)))
+    for (const auto& worst : worst_of_each_channel(pointers(scenes))) {
+        const auto& changed = worst.scene->changed;
         if (++count <= annotations_in_all)
             out += annotation(
-                *scene, "elastocheck gate: out of tolerance",
-                story(*offence) + (numbers > 1 ? fmt::format("; {} numbers of it in all", numbers) : ""));
+                *worst.scene, "elastocheck gate: out of tolerance",
+                told(worst) + (changed.empty() ? "" : "; changed in the scene: " + story(changed.front())) +
+                    (changed.size() > 1 ? fmt::format(" and {} more", changed.size() - 1) : ""));
+    }
     for (const auto& scene : scenes)
         for (const auto& why : scene.verdict.reasons)
             if (++count <= annotations_in_all)

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "compare/changes.hpp"
 #include "models/compile.hpp"
 #include "reports/files/files.hpp"
 #include "tests/support/command.hpp"
@@ -61,6 +62,8 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     for (const auto kind : compare::tolerance_classes)
         file.baseline.tolerances[kind] = compare::default_tolerances(kind);
     file.baseline.limits = {{Quantity::deviation_at_equal_parameter, "bob_x", 0.1}};
+    EXPECT_FALSE(parse_baseline(baseline_text(file), "of before numbers were kept").numbers);
+    file.numbers = support::scene("pendulum").numbers;
     const BaselineFile again = parse_baseline(baseline_text(file), "s");
     EXPECT_EQ(baseline_text(again), baseline_text(file));
     ASSERT_EQ(again.baseline.accepted.series.size(), measurement.series.size());
@@ -72,10 +75,15 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     }
     EXPECT_EQ(again.baseline.reason, file.baseline.reason);
     EXPECT_EQ(again.baseline.limits.size(), 1u);
+    ASSERT_TRUE(again.numbers && !again.numbers->empty());
+    EXPECT_TRUE(compare::changes(*file.numbers, *again.numbers).empty());
 }
 
 TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
     const std::string good = committed("single_bushing");
+    BaselineFile without = parse_baseline(good, "");
+    without.numbers.reset();
+    const std::string older = baseline_text(without);
     struct Damage {
         std::string text, answer;
     };
@@ -94,6 +102,11 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {replaced(good, "baseline/2", "baseline/1"),
               "'elastocheck/baseline/1' cannot be read by this version"},
              {replaced(good, "\"limits\"", "\"limit\""), "'limits' is missing"},
+             {replaced(older, "\"limits\"", "\"numbers\": {}, \"limits\""), "numbers: is not a list"},
+             {replaced(older, "\"limits\"", R"("numbers": [["a", 1]], "limits")"),
+              "numbers[0]: is not [path, value, unit]"},
+             {replaced(older, "\"limits\"", R"("numbers": [["a", "1", "m"]], "limits")"), "is not a number"},
+             {replaced(older, "\"limits\"", R"("numbers": [["a", 1, 2]], "limits")"), "is not a text"},
              {replaced(good, "\"limits\": []", "\"limits\": [], \"more\": 1"), "'more' is not known"},
              {replaced(good, "\"limits\": []", R"("limits": [{"of":"recursive","channel":"x","max":1}])"),
               "limits.of: 'recursive' is not known"},

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "reports/gate/baseline.hpp"
 #include "tests/support/command.hpp"
@@ -189,10 +190,32 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     EXPECT_EQ(said.code, 1) << said.out;
     EXPECT_TRUE(contains(said.out, "FAILED")) << said.out;
     EXPECT_TRUE(contains(said.out, "not the one that was accepted")) << said.out;
+    EXPECT_TRUE(std::regex_search(
+        said.out, std::regex("\n  changed: bushings\\.[a-z_]+\\.rates\\.x: 1[0-9]+ .*, was ")))
+        << said.out;
     EXPECT_TRUE(contains(text_of(folder.path / "j.xml"), "<failure message="));
     EXPECT_TRUE(contains(text_of(folder.path / "s.md"), "# elastocheck gate: FAILED"));
     EXPECT_FALSE(contains(said.out, "::error"));
     EXPECT_TRUE(contains(gate(own, "GITHUB_ACTIONS=true CI=").out, "\n::error file="));
+
+    // By --set too, where the file is as it was; by a comment alone no number changes.
+    folder.write("own.yaml", text_of(scene));
+    const std::string path = reports::parse_baseline(text_of(baseline), "").numbers->back().path;
+    said = gate(own + " --set " + path + "=7");
+    EXPECT_TRUE(contains(said.out, "  changed: " + path + ": 7")) << said.out;
+    folder.write("own.yaml", text_of(scene) + "# a comment\n");
+    said = gate(own);
+    EXPECT_EQ(said.code, 0) << said.out;
+    EXPECT_TRUE(contains(said.out, "; none of its numbers changed")) << said.out;
+
+    // A baseline of before numbers were kept judges as ever, and says what it cannot say.
+    reports::BaselineFile older = reports::parse_baseline(text_of(baseline), "");
+    older.numbers.reset();
+    folder.write("baselines/own.json", reports::baseline_text(older));
+    said = gate(own);
+    EXPECT_EQ(said.code, 0) << said.out;
+    EXPECT_TRUE(contains(said.out, "which of its numbers changed is not known")) << said.out;
+    folder.write("own.yaml", changed);
 
     // Accepting prints the difference first, and keeps what was set by hand.
     ordered_json file = ordered_json::parse(text_of(baseline));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "compare/changes.hpp"
 #include "compare/gate.hpp"
 
 namespace elastocheck::compare {
@@ -236,16 +237,73 @@ TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
     EXPECT_EQ(verdict.offences[0].is, 0.5);
 }
 
-TEST(Gate, TheWorstOffenceComesFirst) {
+// Channels of the offences, in their order.
+std::vector<std::string> order(const Verdict& verdict) {
+    std::vector<std::string> channels;
+    for (const auto& o : verdict.offences) channels.push_back(o.channel);
+    return channels;
+}
+
+TEST(Gate, WhatAnEngineerNoticesComesFirst) {
+    Baseline b = baseline();
+    for (const char* channel : {"bush.force_z", "coil.force_z"})
+        for (const char* branch : {"in", "out"})
+            b.accepted.series.push_back({branch, Quantity::equilibrium, channel, "N", {0, 100, 200}});
+    b.tolerances[ToleranceClass::same_build] = {
+        {"deg", {1e-9, 0}}, {"mm", {1e-9, 0}}, {"N", {1e-9, 0}}, {"count", {0, 0}}};
+    b.tolerances[ToleranceClass::physical] = {
+        {"deg", {0.001, 0}}, {"mm", {0.01, 0}}, {"N", {1, 0}}, {"count", {2, 0}}};
+    Measurement m = b.accepted;
+    value(m, Quantity::equilibrium, "toe", 1) += 0.002;          // 2 times what is noticed
+    value(m, Quantity::recursive, "travel", 1) += 0.005;         // half of it
+    value(m, Quantity::equilibrium, "bush.force_z", 1) += 0.9;   // 9e8 tolerances, and not noticed
+    value(m, Quantity::equilibrium, "coil.force_z", 1) += 1000;  // noticed, within the suspension
+    value(m, Quantity::work_recursive, "steps", 0) += 1;         // nothing is tolerated, and not noticed
+    const Verdict verdict = judged(b, m);
+    EXPECT_EQ(order(verdict),
+              (std::vector<std::string>{"toe", "coil.force_z", "travel", "bush.force_z", "steps"}));
+    EXPECT_GT(verdict.offences[3].share(), 1e8);
+    EXPECT_NEAR(verdict.offences[3].noticed(), 0.9, 1e-9);
+}
+
+TEST(Gate, OfWhatIsNoticedAlikeTheLargerShareComesFirstAndABrokenLimitBeforeAll) {
+    Baseline b = baseline();
     Measurement m = measurement();
-    value(m, Quantity::recursive, "toe", 1) = 1.5;       // 4 tolerances
-    value(m, Quantity::recursive, "travel", 1) = 0;      // 2
-    value(m, Quantity::work_recursive, "steps", 0) = 0;  // 8
-    const Verdict verdict = judged(baseline(), m);
-    ASSERT_EQ(verdict.offences.size(), 3u);
-    EXPECT_EQ(verdict.offences[0].share(), 8);
-    EXPECT_EQ(verdict.offences[1].share(), 4);
-    EXPECT_EQ(verdict.offences[2].share(), 2);
+    value(m, Quantity::recursive, "travel", 1) = 0;  // twice what is noticed
+    value(m, Quantity::recursive, "toe", 1) = 1.5;   // 4 times
+    EXPECT_EQ(order(judged(b, m)), (std::vector<std::string>{"toe", "travel"}));
+    b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", 0.499});
+    const Verdict verdict = judged(b, m);
+    ASSERT_EQ(verdict.offences.size(), 4u);  // in both branches
+    EXPECT_TRUE(verdict.offences[0].of_limit && verdict.offences[1].of_limit);
+}
+
+TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {
+    Baseline b = baseline();
+    b.tolerances[ToleranceClass::physical].erase("deg");
+    b.tolerances[ToleranceClass::physical]["mm"] = {nan, 0};
+    Measurement m = measurement();
+    value(m, Quantity::equilibrium, "toe", 1) = 1.5;
+    value(m, Quantity::recursive, "travel", 1) = 0;
+    const Verdict verdict = judged(b, m);
+    ASSERT_EQ(verdict.offences.size(), 2u);
+    EXPECT_DOUBLE_EQ(verdict.offences[0].noticeable, 0.01 + 1e-3 * 32) << verdict.offences[0].channel;
+    EXPECT_DOUBLE_EQ(verdict.offences[1].noticeable, 0.001 + 1e-3 * 2) << verdict.offences[1].channel;
+}
+
+TEST(Changes, AreNamedWithOldAndNewAndWhatCameOrWent) {
+    const std::vector<Number> was{
+        {"points.a.z", -0.06, "m"}, {"springs.coil.rate", 28, "N/mm"}, {"left", 3, ""}},
+        is{{"new", 7, "N"}, {"points.a.z", -0.055, "m"}, {"springs.coil.rate", 28, "N/mm"}};
+    EXPECT_TRUE(changes(is, is).empty());
+    const auto found = changes(was, is);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_TRUE(!found[0].was && found[0].is->path == "new");
+    EXPECT_TRUE(found[1].was->value == -0.06 && found[1].is->value == -0.055);
+    EXPECT_TRUE(found[2].was->path == "left" && !found[2].is);
+    EXPECT_EQ(changes({{{"x", 1, "mm"}}}, {{{"x", 1, "m"}}}).size(), 1u) << "another unit";
+    EXPECT_EQ(changes({{{"x", nan, "m"}}}, {{{"x", nan, "m"}}}).size(), 0u);
+    EXPECT_EQ(changes({{{"x", nan, "m"}}}, {{{"x", 1, "m"}}}).size(), 1u);
 }
 
 }  // namespace

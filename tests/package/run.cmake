@@ -20,8 +20,19 @@ endfunction()
 consumer(recursion "converged at -0.01 m" WITHOUT Ceres NLopt yaml-cpp CLI11 nlohmann_json pugixml)
 consumer(consumer "converged in 100 steps" WITHOUT Ceres NLopt CLI11 nlohmann_json pugixml
          ARGUMENTS ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml)
+# The program of the README, on the scene that the README names.
+consumer(example "\n80 mm: -?[0-9.]+ deg\n$" WITHOUT CLI11 pugixml
+         ARGUMENTS ${WORK}/prefix/share/elastocheck/scenes/double_wishbone.yaml)
 execute_process(COMMAND ${WORK}/prefix/bin/elastocheck inspect ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+
+foreach(text bash-completion/completions/elastocheck zsh/vendor-completions/_elastocheck
+        fish/vendor_completions.d/elastocheck.fish man/man1/elastocheck.1 doc/elastocheck/copyright)
+  file(SIZE ${WORK}/prefix/share/${text} size)
+  if(size LESS 500)
+    message(FATAL_ERROR "${text} has ${size} bytes")
+  endif()
+endforeach()
 
 # The installed gate on a scene that lives outside the repository: accepted, passed, and caught once it is changed.
 file(REMOVE_RECURSE ${WORK}/own)

@@ -1,0 +1,31 @@
+// Where a command puts what it found: on the terminal as text, on standard output as one JSON document, in a folder.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "reports/files/folder.hpp"
+#include "reports/text/terminal.hpp"
+
+namespace elastocheck::reports {
+
+struct Delivery {
+    std::string folder = {};  // -o, or the file of `solve`; empty: none
+    bool as_json = false;
+    std::string command = {};  // as it was given, for the document
+
+    bool wants_document() const { return as_json || !folder.empty(); }
+    void say(std::string_view text) const {
+        if (!as_json) print(text);
+    }
+};
+
+// One document, and nothing else, on standard output.
+void print_document(const nlohmann::ordered_json& document);
+
+// The result document of one scene: in the folder, with curves.csv and `tables` beside it, in one step; on standard
+// output; or both.
+void deliver(const Delivery& delivery, nlohmann::ordered_json scene, std::vector<NamedContent> tables);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,350 @@
+// The command line for programs, shells and readers of manuals: --json, --version, completion, the manual, --open.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/reports/command.hpp"
+
+namespace {
+
+namespace support = elastocheck::support;
+using elastocheck::elastocheck_says;
+using elastocheck::parts_of;
+using elastocheck::scenes;
+using nlohmann::json;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+
+const std::string scene = scenes + "/single_bushing.yaml";
+
+// ---- --json
+
+// The one document on standard output.
+json document(const std::string& arguments, int code = 0) {
+    const Said said = elastocheck_says(arguments + " --json");
+    EXPECT_EQ(said.code, code) << arguments << ": " << said.err;
+    json parsed = json::parse(said.out, nullptr, false);
+    EXPECT_FALSE(parsed.is_discarded()) << arguments << ": " << said.out.substr(0, 300);
+    return parsed;
+}
+
+TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
+    for (const char* command :
+         {"inspect", "solve --steps=4", "compare --steps=4", "converge --steps=4,8,16,32,64", "trade"}) {
+        const json said = document(std::regex_replace(command, std::regex("^[a-z]+"), "$& " + scene));
+        EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
+        EXPECT_EQ(said["scenes"].size(), 1u) << command;
+        EXPECT_EQ(said["scenes"][0]["name"], "Body on one bushing") << command;
+        EXPECT_TRUE(said["reproduce"].get<std::string>().starts_with("elastocheck ")) << command;
+    }
+    EXPECT_EQ(document("gate " + scene)["verdict"], "passed");
+    const json templates = document("new");
+    EXPECT_EQ(templates["schema"], "elastocheck/templates/1");
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes))
+        files += entry.path().extension() == ".yaml";
+    EXPECT_EQ(templates["templates"].size(), files);
+    EXPECT_EQ(document("new pendulum")["templates"][0]["text"], text_of(scenes + "/pendulum.yaml"));
+}
+
+TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const Said said = elastocheck_says("compare " + scene + " --steps 4 --json -o " + out);
+    EXPECT_EQ(said.code, 0);
+    EXPECT_EQ(said.out, text_of(out + "/result.json"));
+    EXPECT_TRUE(contains(said.err, "Written: ")) << said.err;
+    const std::string csv = (folder.path / "c.csv").string();
+    EXPECT_EQ(document("solve " + scene + " --steps 4 -o " + csv)["scenes"][0]["branches"].size(), 2u);
+    EXPECT_EQ(text_of(csv), elastocheck_says("solve " + scene + " --steps 4").out);
+}
+
+TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
+    const json part =
+        document("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
+    const auto cells = elastocheck::cells_of(
+        elastocheck_says("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'").out);
+    std::size_t row = 1;
+    for (const auto& branch : part["branches"]) {
+        const auto& leg = branch["legs"][0];
+        EXPECT_EQ(leg["leg"], "equilibrium");
+        EXPECT_EQ(leg["outcome"], "converged");
+        for (std::size_t k = 0; k < leg["curve"]["a"].size(); ++k, ++row) {
+            EXPECT_EQ(leg["curve"]["a"][k].get<double>(), std::stod(cells[row][2]));
+            EXPECT_EQ(leg["curve"]["values"]["centre_z"][k].get<double>(), std::stod(cells[row].back()));
+        }
+    }
+    EXPECT_EQ(row, cells.size());
+    EXPECT_EQ(part["channels"].size(), 3u);
+    EXPECT_EQ(part["verdict"]["conclusive"], true);
+}
+
+TEST(Json, OfInspectSaysWhatTheTextSays) {
+    const json part =
+        document("inspect " + scenes + "/mcpherson.yaml --set points.strut_top.z=0.58")["scenes"][0];
+    EXPECT_EQ(part["model"]["unknowns"], 27);
+    EXPECT_EQ(part["model"]["idle_modes"].size(), 1u);
+    const json& inspection = part["inspection"];
+    EXPECT_EQ(inspection["bodies"].size(), part["model"]["bodies"].size());
+    EXPECT_EQ(inspection["branches"][0]["settles"]["outcome"], "converged");
+    bool found = false;
+    for (const auto& number : inspection["numbers"])
+        found = found ||
+                (number["path"] == "points.strut_top.z" && number["value"] == 0.58 && number["unit"] == "m");
+    EXPECT_TRUE(found);
+    for (const auto& channel : part["channels"]) EXPECT_NE(channel["definition"], "");
+}
+
+TEST(Json, KeepsTheExitCodeAndSaysErrorsAsEver) {
+    const Folder folder;
+    const Said bad = elastocheck_says("inspect " + folder.write("bad.yaml", "elastocheck: 1\n") + " --json");
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_EQ(bad.out, "");
+    EXPECT_TRUE(contains(bad.err, "bad.yaml")) << bad.err;
+
+    std::string arch = text_of(scenes + "/two_spring_arch.yaml");
+    arch.replace(arch.find("to: -200"), 8, "to: -300");
+    const std::string lost = folder.write("arch.yaml", arch);
+    for (const char* command : {"compare ", "solve --method series "}) {
+        const json verdict = document(command + lost, 3)["scenes"][0]["verdict"];
+        EXPECT_EQ(verdict["conclusive"], false) << command;
+        EXPECT_FALSE(verdict["reasons"].empty()) << command;
+    }
+}
+
+TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
+    const Folder folder;
+    const std::string own = folder.write("own.yaml", text_of(scene));
+    ASSERT_EQ(elastocheck_says("gate " + own + " --accept --reason first").code, 0);
+    const Said text = elastocheck_says("gate " + own + " --set bushings.mount.rates.x=3e5");
+    const json said = document("gate " + own + " --set bushings.mount.rates.x=3e5", 1);
+    EXPECT_EQ(said["schema"], "elastocheck/gate/1");
+    EXPECT_EQ(said["verdict"], "FAILED");
+    EXPECT_EQ(said["exit_code"], 1);
+    const json& judged = said["scenes"][0];
+    EXPECT_TRUE(contains(text.out, std::to_string(judged["offences"].size()) + " of " +
+                                       std::to_string(judged["compared"].get<int>()) + " numbers"));
+    EXPECT_EQ(judged["changed"],
+              json::parse(R"([{"path": "bushings.mount.rates.x", "was": {"value": 2e5, "unit": "N/m"},
+                                                  "is": {"value": 3e5, "unit": "N/m"}}])"));
+    const json& first = judged["offences"][0];
+    EXPECT_EQ(first["channel"], "centre_x");
+    EXPECT_EQ(first["at"]["unit"], "N");
+    EXPECT_GT(std::abs(first["measured"].get<double>() - first["accepted"].get<double>()),
+              first["noticeable"]);
+    EXPECT_EQ(elastocheck_says("gate " + own + " --accept --reason x --json").code, 2);
+    // Its annotations are no part of the document.
+    const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " + own +
+                                   " --set bushings.mount.rates.x=3e5 --json");
+    EXPECT_FALSE(json::parse(hub.out, nullptr, false).is_discarded());
+    EXPECT_TRUE(contains(hub.err, "::error file=")) << hub.err;
+}
+
+// ---- what is written where
+
+TEST(Names, AHyphenIsNoFileAndNoFolder) {
+    const Folder folder;
+    for (const std::string arguments :
+         {"compare S -o -", "solve S -o -", "solve S -o-", "solve S --method series --rates -",
+          "converge S --output=-", "trade S -o -", "report S -o -", "report --from - -o out",
+          "gate S --junit -", "gate S --summary=-", "gate S --baseline -", "inspect -"}) {
+        const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), scene);
+        const Said said =
+            support::says("cd " + folder.path.string() + " && env -u CI " ELASTOCHECK_COMMAND " " + given);
+        EXPECT_EQ(said.code, 2) << given;
+        EXPECT_EQ(said.out, "") << given;
+        EXPECT_TRUE(contains(said.err, "'-' is no name")) << given << ": " << said.err;
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+}
+
+// ---- --version, --help
+
+TEST(Version, NamesTheCommitAndEveryLibrary) {
+    const std::string said = elastocheck_says("--version").out;
+    EXPECT_TRUE(std::regex_search(
+        said, std::regex("^elastocheck [0-9]+\\.[0-9]+\\.[0-9]+\ncommit (unknown|[0-9a-f]{40})")))
+        << said;
+    for (const char* library :
+         {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt", "CLI11", "nlohmann-json", "pugixml"})
+        EXPECT_TRUE(std::regex_search(said, std::regex(std::string(library) + " [0-9]+\\.[0-9]")))
+            << library << said;
+}
+
+TEST(Help, PointsToFilesThatAreThere) {
+    for (const char* arguments : {"--help", "gate --help"}) {
+        const std::string said = elastocheck_says(arguments).out;
+        int files = 0;
+        for (const auto& line : parts_of(said, '\n'))
+            if (const auto at = line.find(": /"); at != line.npos) {
+                ++files;
+                EXPECT_TRUE(std::filesystem::is_regular_file(line.substr(at + 2))) << line;
+            }
+        EXPECT_EQ(files, 2) << said;
+    }
+}
+
+// ---- completion
+
+// What bash offers after `line`, its last word begun: one a line. The name of the command in it is a function's, no matter.
+std::vector<std::string> offered(const std::string& line, const std::string& folder = "/") {
+    const Folder own;
+    const std::string script = own.write("script", elastocheck_says("completion bash").out + R"(
+cd "$1"; shift
+COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+compopt() { :; }
+_elastocheck
+printf '%s\n' "${COMPREPLY[@]}"
+)");
+    const Said said = support::says("bash " + script + " " + folder + " " + line);
+    EXPECT_EQ(said.err, "") << line;
+    std::vector<std::string> words;
+    for (const auto& word : parts_of(said.out, '\n'))
+        if (!word.empty()) words.push_back(word);
+    return words;
+}
+
+using Words = std::vector<std::string>;
+
+TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
+    if (support::says("bash --version").code != 0) GTEST_SKIP() << "bash is not installed";
+    EXPECT_EQ(offered("elastocheck co"), (Words{"compare", "converge"}));
+    EXPECT_EQ(offered("elastocheck --v"), (Words{"--version"}));
+    EXPECT_EQ(offered("elastocheck compare --fo"), (Words{"--formulations"}));
+    EXPECT_EQ(offered("elastocheck solve x.yaml --me"), (Words{"--method"}));
+    EXPECT_EQ(offered("elastocheck solve --method p"), (Words{"published"}));
+    EXPECT_EQ(offered("elastocheck solve --method = en"), (Words{"energy"})) << "as bash splits --method=en";
+    EXPECT_EQ(offered("elastocheck gate --class = ''").size(), 3u);
+    EXPECT_EQ(offered("elastocheck new mcpherson_"), (Words{"mcpherson_rigid", "mcpherson_strut"}));
+    EXPECT_EQ(offered("elastocheck solve --steps ''"), Words{});
+
+    const Folder folder;
+    std::filesystem::create_directory(folder.path / "cars");
+    for (const char* name : {"car.yaml", "car.csv", "result.json", "cars/a.yaml"}) folder.write(name, "");
+    const std::string here = folder.path.string();
+    EXPECT_EQ(offered("elastocheck inspect ca", here), (Words{"cars", "car.yaml"}));
+    EXPECT_EQ(offered("elastocheck gate car.yaml ca", here), (Words{"cars", "car.yaml"}))
+        << "any number of scenes";
+    EXPECT_EQ(offered("elastocheck report --measured ca", here), (Words{"cars", "car.csv"}));
+    EXPECT_EQ(offered("elastocheck report --from re", here), (Words{"result.json"}));
+    EXPECT_EQ(offered("elastocheck compare car.yaml -o ca", here), (Words{"cars"}));
+}
+
+// What --help offers, each shell knows, and each can read its text.
+TEST(Completion, OfEveryShellHasEveryCommandAndOption) {
+    const Folder folder;
+    const std::string help = elastocheck_says("--help").out;
+    for (const std::string shell : {"bash", "zsh", "fish"}) {
+        const std::string text = elastocheck_says("completion " + shell).out;
+        for (const std::string command :
+             {"inspect", "solve", "compare", "converge", "trade", "new", "gate", "report"}) {
+            EXPECT_TRUE(contains(help, "\n  " + command + " ")) << command;
+            EXPECT_TRUE(contains(text, command)) << shell << " " << command;
+            const std::string of_command = elastocheck_says(command + " --help").out;
+            static const std::regex option("\n  (-.,)?--([a-z-]+)");
+            for (std::sregex_iterator at(of_command.begin(), of_command.end(), option), end; at != end; ++at)
+                EXPECT_TRUE(std::regex_search(
+                    text, std::regex((shell == "fish" ? " -l " : "--") + (*at)[2].str() + "\\b")))
+                    << shell << " " << command << " " << (*at)[2];
+        }
+        EXPECT_FALSE(std::regex_search(text, std::regex("completion['(): ]*Print"))) << shell;
+        if (support::says(shell + " --version").code != 0) continue;
+        const Said said = support::says(shell + " -n " + folder.write(shell, text));
+        EXPECT_EQ(said.code, 0) << shell << ": " << said.err;
+    }
+    EXPECT_EQ(elastocheck_says("completion csh").code, 2);
+    EXPECT_FALSE(contains(help, "completion"));
+}
+
+// ---- the manual
+
+TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
+    const std::string page = elastocheck_says("man").out;
+    EXPECT_TRUE(page.starts_with(".TH ELASTOCHECK 1 ")) << page.substr(0, 80);
+    for (const std::string part :
+         {"\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFOLDER\\fR\n", ".SS elastocheck gate\n",
+          "\\fB\\-\\-set\\fR \\fIPATH=VALUE\\fR\n", "Exit codes: 0 fine",
+          "PREFIX/share/doc/elastocheck/models/scenes/README.md"})
+        EXPECT_TRUE(contains(page, part)) << part;
+    EXPECT_FALSE(contains(page, std::filesystem::current_path().string()));
+    for (const auto& line : parts_of(page, '\n'))
+        if (line.starts_with(".")) {
+            EXPECT_TRUE(std::regex_search(line, std::regex("^\\.(TH|SH|SS|TP|B|br)( |$)"))) << line;
+        }
+    if (support::says("man --version").code != 0) GTEST_SKIP() << "man is not installed";
+    const Folder folder;
+    const Said said =
+        support::says("env LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l " + folder.write("e.1", page));
+    EXPECT_EQ(said.err, "");
+    EXPECT_TRUE(contains(said.out, "can I trust my suspension solver?")) << said.out.substr(0, 500);
+}
+
+// ---- report
+
+// Draws a report from a document that is there, so that nothing is solved.
+struct Report {
+    Folder folder;
+    std::string document = (folder.path / "in/result.json").string();
+    Report() {
+        EXPECT_EQ(
+            elastocheck_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string()).code, 0);
+    }
+    Said draws(const std::string& options, const std::string& environment = "") const {
+        return support::says("env -u CI -u BROWSER " + environment +
+                             " " ELASTOCHECK_COMMAND " report --from " + document + " -o " +
+                             (folder.path / "out").string() + " " + options);
+    }
+};
+
+TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
+    const Report report;
+    const Said said = report.draws("");
+    EXPECT_EQ(said.code, 0) << said.err;
+    const auto lines = parts_of(said.out, '\n');
+    ASSERT_GE(lines.size(), 2u);
+    EXPECT_TRUE(lines[lines.size() - 2].ends_with("single_bushing.yaml: passed")) << said.out;
+    EXPECT_TRUE(lines.back().starts_with("The page: " + (report.folder.path / "out/report.html").string()))
+        << said.out;
+
+    const json answer = json::parse(report.draws("--json").out);
+    EXPECT_EQ(answer["schema"], "elastocheck/report/1");
+    EXPECT_EQ(answer["page"], (report.folder.path / "out/report.html").string());
+    EXPECT_EQ(answer["scenes"][0]["verdict"]["conclusive"], true);
+    EXPECT_TRUE(contains(said.out, answer["scenes"][0]["answer"].get<std::string>()));
+}
+
+TEST(ReportCommand, OpensThePageByWhatBrowserSays) {
+    const Report report;
+    const std::string seen = (report.folder.path / "seen").string();
+    const std::string program =
+        report.folder.write("look", "#!/bin/sh\nprintf '%s|' \"$@\" > " + seen + "\necho noise\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    Said said = report.draws("--open --json", "BROWSER='/nowhere/firefox:" + program + " -x'");
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(text_of(seen), "-x|" + (report.folder.path / "out/report.html").string() + "|");
+    EXPECT_FALSE(json::parse(said.out, nullptr, false).is_discarded())
+        << "what a browser says is no part of it";
+    said = report.draws("--open", "BROWSER='" + program + " %s y'");
+    EXPECT_EQ(text_of(seen), (report.folder.path / "out/report.html").string() + "|y|");
+    EXPECT_EQ(report.draws("--open", "BROWSER=false").code, 2);
+}
+
+TEST(ReportCommand, OpenSaysBeforeTheWorkThatNobodyCanLook) {
+    const Report report;
+    const std::string nothing = (report.folder.path / "empty").string();
+    std::filesystem::create_directory(nothing);
+    Said said = report.draws("--open", "PATH=" + nothing + " BROWSER=firefox");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "there is nothing to open a page with")) << said.err;
+    said = report.draws("--open", "CI=true BROWSER=true");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "--open: not where CI is set")) << said.err;
+    EXPECT_EQ(report.draws("--open --archive", "BROWSER=true").code, 2);
+    EXPECT_FALSE(std::filesystem::exists(report.folder.path / "out"));
+}
+
+}  // namespace
