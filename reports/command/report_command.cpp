@@ -28,6 +28,7 @@
 #include "reports/files/folder.hpp"
 #include "reports/page/gnuplot.hpp"
 #include "reports/page/report.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/study_tables.hpp"
@@ -105,6 +106,10 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     document["precision"] = precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     add_verdict(document, comparison.compared, reasons);
+    auto judgement = compare::judge(model, comparison, trade_options.tolerance,
+                                    request.tolerance != ReportRequest{}.tolerance);
+    if (!reasons.empty()) judgement.verdict = compare::Verdict::not_judged, judgement.reasons = reasons;
+    document["judgement"] = judgement_json(judgement);
     return document;
 }
 

@@ -21,6 +21,7 @@
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/formulation_tables.hpp"
 #include "reports/tables/inspection.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/study_tables.hpp"
@@ -77,6 +78,7 @@ int inspect(const std::string& file, const Settings& settings, Detail detail, bo
 
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const std::string& folder, const std::string& command) {
+    (void)compare::parse_tolerance(request.within);  // what is wrong with it is said before the work
     if (!folder.empty()) Staging::check(folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
@@ -96,6 +98,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     progress("");
     print(tables(model, comparison));
     if (study) print(formulation_text(*study, comparison));
+    const auto judgement = compare::judge(model, comparison, compare::parse_tolerance(request.within),
+                                          request.within != CompareRequest{}.within);
     if (!folder.empty()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
@@ -107,8 +111,10 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
             for (const auto& reason : study->inconclusive) reasons.push_back("formulations: " + reason);
         }
         add_verdict(part, comparison.compared, reasons);
+        part["judgement"] = judgement_json(judgement);
         write_results(folder, command, std::move(part), std::move(files));
     }
+    print("{}\n", sentence(judgement));
     return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 

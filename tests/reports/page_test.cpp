@@ -116,6 +116,7 @@ TEST(Page, TheMarkdownTwinSaysTheSame) {
     const std::string html = text_of(folder.path / "r" / "report.html"),
                       md = text_of(folder.path / "r" / "report.md");
     EXPECT_EQ(all(html, "<h3[^>]*>([^<]*)</h3>"), all(md, "\n### ([^\n]*)"));
+    EXPECT_EQ(all(html, "<h4[^>]*>([^<]*)</h4>"), all(md, "\n#### ([^\n]*)"));
     // but for the summary of scenes, which Markdown does not fold
     EXPECT_EQ(parts(html, "<table>", "</table>").size(),
               1 + parts(md, "<details><summary>", "</summary>").size());
@@ -139,7 +140,7 @@ const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x
 const paper=luminance(getComputedStyle(document.body).backgroundColor);
 const contrast=e=>{const l=luminance(getComputedStyle(e)[e.closest('svg')?'fill':'color']);
   return (Math.max(l,paper)+.05)/(Math.min(l,paper)+.05)};
-const words=[...document.querySelectorAll('p,h1,h2,h3,td,th,dt,dd,figcaption,caption,summary,svg text')];
+const words=[...document.querySelectorAll('p,h1,h2,h3,h4,td,th,dt,dd,figcaption,caption,summary,svg text')];
 document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance.getEntriesByType('resource').length,
   page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
   contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';

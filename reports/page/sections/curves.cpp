@@ -1,4 +1,4 @@
-// The outputs over the travel, all legs: the paper's Figs. 8-10, and with them the load or what drives.
+// The outputs over what drives them, all legs, and over the travel the load or force that it takes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -137,7 +137,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     const auto [low, high] = std::ranges::minmax_element(
         reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
     figure.description = fmt::format(
-        "{} over {}: by the equilibrium leg from {} to {}. The energy leg's points lie on its line; the "
+        "{} over {}: by the full solution from {} to {}. The points of its check by energy lie on its line; the "
         "published recursion's line is drawn over it.",
         output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
         number(high->empty() ? 0 : (*high)[1], 3));
@@ -166,7 +166,7 @@ Table outputs(const Field& scene, const Field& branch) {
 
 std::optional<Section> curves_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "curves", .title = "Outputs, all legs"};
+    Section section{.id = "curves", .title = "Outputs over what drives them"};
     for (const auto& sweep : sweeps_of(scene))
         for (const auto& output : outputs_of(scene, sweep))
             if (auto made = group(scene, sweep, output)) section.figures.push_back(std::move(*made));
