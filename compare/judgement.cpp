@@ -28,7 +28,8 @@ Judgement judge(const Model& model, const Comparison& comparison, const Toleranc
     j.angle = worst_deviation(comparison, ReadingKind::equal_parameter, Unit::deg);
     j.position_across = worst_deviation(comparison, ReadingKind::equal_abscissa, Unit::mm);
     j.angle_across = worst_deviation(comparison, ReadingKind::equal_abscissa, Unit::deg);
-    for (const auto& rate : rate_errors(model, comparison))
+    const auto rates = comparison.branches.empty() ? std::vector<RateError>{} : rate_errors(model, comparison);
+    for (const auto& rate : rates)
         if (!j.wheel_rate || std::abs(rate.off) > std::abs(j.wheel_rate->off)) j.wheel_rate = rate;
 
     if (!j.position && !j.angle) j.reasons.emplace_back("nothing was compared");
@@ -42,7 +43,7 @@ Judgement judge(const Model& model, const Comparison& comparison, const Toleranc
         if (*worst) hold((*worst)->max, tolerance.mm);
     for (const auto* worst : {&j.angle, &j.angle_across})
         if (*worst) hold((*worst)->max, tolerance.deg);
-    for (const auto& rate : rate_errors(model, comparison)) hold(as_position(rate), tolerance.mm);
+    for (const auto& rate : rates) hold(as_position(rate), tolerance.mm);
     j.verdict = within ? Verdict::pass : Verdict::fail;
     return j;
 }

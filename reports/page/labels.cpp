@@ -13,6 +13,9 @@ constexpr double gap = 2;  // [px] between boxes
 // Whether the segment a b has a point in the box (Liang and Barsky): the part of 0 ... 1 that lies within each pair of
 // sides in turn.
 bool crosses(const Spot& a, const Spot& b, const Box& box) {
+    if (std::max(a.x, b.x) < box.left || std::min(a.x, b.x) > box.right || std::max(a.y, b.y) < box.bottom ||
+        std::min(a.y, b.y) > box.top)
+        return false;  // most are
     double from = 0, to = 1;
     const auto clip = [&](double start, double step, double low, double high) {
         if (step == 0) return start >= low && start <= high;
@@ -65,7 +68,7 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
         double best = std::numeric_limits<double>::infinity();
         std::optional<Box> found;
         std::array<Spot, 2> leader{};
-        for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0})
+        for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
                 // The box touches the circle of this reach with the side or corner that faces the point.

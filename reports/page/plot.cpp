@@ -42,6 +42,7 @@ json range_of(double low, double high) {
 
 json script_data(const Figure& figure, const std::string& name) {
     json series = json::array(), bands = json::array(), ticks = json::array();
+    const bool labelled = !figure.bands.empty();
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
         const Series& s = figure.series[k];
         const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
@@ -53,7 +54,7 @@ json script_data(const Figure& figure, const std::string& name) {
                           {"symbol", points ? json(symbols[s.mark % 10]) : json(nullptr)},
                           {"colour", palette[s.colour].light},
                           {"bars", s.style == Series::Style::bars},
-                          {"last", k + 1 == figure.series.size()}});
+                          {"last", k + 1 == figure.series.size() && !labelled}});
     }
     // Under an equal-axes plot's key there is room for as many lines as it has entries.
     const auto entries =
@@ -62,6 +63,7 @@ json script_data(const Figure& figure, const std::string& name) {
         bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
                          {"high", fmt::format("{:.9g}", band.high)},
                          {"label", band.label},
+                         {"last", &band == &figure.bands.back()},
                          {"colour", palette[band.colour].light}});
     json words = json::array(), sheet = nullptr;
     for (const auto& word : figure.words)

@@ -100,6 +100,7 @@ struct Page {
             json entry = {
                 {"caption", group.caption}, {"figures", figures}, {"table", table_json(group.table)}};
             entry["wide"] = group.figures.size() > 1;
+            entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet && group.figures.front().sheet->width > 400;
             (group.figures.size() > 1 ? several : single).push_back(entry);
         }
         for (const auto& table : section.tables) tables.push_back(table_json(table));

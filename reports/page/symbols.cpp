@@ -41,7 +41,7 @@ Strokes coil(Spot a, Spot b) {
     const double lead = 0.1 * line.length, wound = line.length - 2 * lead;
     const int turns = std::clamp(static_cast<int>(wound / 9), 3, 8);
     Stroke stroke{a, line.at(lead, 0)};
-    const int steps = 20 * turns;
+    const int steps = 12 * turns;
     for (int k = 0; k <= steps; ++k) {
         const double angle = 2 * pi * turns * k / steps;
         stroke.push_back(line.at(lead + wound * k / steps + 2.2 * (1 - std::cos(angle)) * (k < steps ? 1 : 0),

@@ -249,7 +249,12 @@ void draw_axes(Board& board, double bottom, double width) {
         const double far = length + 7;
         board.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
     }
-    const double bar = board.scale * 100 < 0.4 * width ? 100 : 10;  // [mm]
+    double bar = std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));  // [mm]: 1, 2 or 5, a third at most
+    for (const double longer : {5.0, 2.0})
+        if (longer * bar * board.scale <= 0.3 * width) {
+            bar *= longer;
+            break;
+        }
     const double px = bar * board.scale, y = bottom + 10, end = width - 10;
     board.strokes({{{end - px, y}, {end, y}}, {{end - px, y - 3}, {end - px, y + 3}}, {{end, y - 3}, {end, y + 3}}},
                   Style::thin, slate);
@@ -372,6 +377,11 @@ View axonometric_view(bool right) {
             "from the front, above and the middle of the vehicle",
             {std::cos(height) * std::cos(turn), (right ? 1 : -1) * std::cos(height) * std::sin(turn), std::sin(height)}};
 }
+
+Frame large_frame(const Suspension& s) {
+    return s.wheels.size() > 1 ? Frame{620, 470, true} : Frame{480, 400, true};
+}
+Frame small_frame(const Suspension& s) { return {s.wheels.size() > 1 ? 480 : 330, 0, false}; }
 
 std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& views, const Frame& frame) {
     const auto list = frame.legend ? entries(s) : std::vector<Entry>{};

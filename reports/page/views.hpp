@@ -60,6 +60,8 @@ struct Frame {
     int width = 0, height = 0;  // [px]
     bool legend = false;
 };
+Frame large_frame(const Suspension& suspension);  // one view; an axle is wider
+Frame small_frame(const Suspension& suspension);  // of three
 std::vector<Figure> draw_views(const Suspension& suspension, const std::vector<View>& views, const Frame& frame);
 
 }  // namespace elastocheck::reports

@@ -141,7 +141,13 @@ const paper=luminance(getComputedStyle(document.body).backgroundColor);
 const contrast=e=>{const l=luminance(getComputedStyle(e)[e.closest('svg')?'fill':'color']);
   return (Math.max(l,paper)+.05)/(Math.min(l,paper)+.05)};
 const words=[...document.querySelectorAll('p,h1,h2,h3,h4,td,th,dt,dd,figcaption,caption,summary,svg text')];
-document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance.getEntriesByType('resource').length,
+const clashes=[];
+for(const s of document.querySelectorAll('svg')){const all=s.getBoundingClientRect(),
+  t=[...s.querySelectorAll('text')].filter(e=>e.textContent.trim()).map(e=>[e.textContent.trim(),e.getBoundingClientRect()]);
+  t.forEach(([a,p],i)=>{if(p.left<all.left-1||p.right>all.right+1||p.top<all.top-1||p.bottom>all.bottom+1)clashes.push(a+' leaves '+s.querySelector('title').textContent);
+    t.slice(0,i).forEach(([b,q])=>{if(p.left<q.right-.5&&q.left<p.right-.5&&p.top<q.bottom-1.5&&q.top<p.bottom-1.5)clashes.push(s.querySelector('title').textContent+': '+a+' on '+b)})})}
+const outside=[...document.querySelectorAll('table,pre,svg,p,dl,h1,h2,h3,h4')].filter(e=>!e.closest('.scroll,pre')&&e.getBoundingClientRect().right>innerWidth+1).map(e=>e.tagName);
+document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,clashes,outside,requests:performance.getEntriesByType('resource').length,
   page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
   contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';
 </script>)");
@@ -173,6 +179,8 @@ TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
             EXPECT_GT(box[0], 100) << box;
             EXPECT_GT(box[1], 100) << box;
         }
+        EXPECT_TRUE(seen["clashes"].empty()) << "words on words at " << width << ": " << seen["clashes"];
+        EXPECT_TRUE(seen["outside"].empty()) << seen["outside"];
         EXPECT_LE(seen["page"], seen["window"]) << "it has to be scrolled sideways at " << width;
         EXPECT_EQ(seen["dark"], scheme == std::string("0"));
         EXPECT_GE(seen["contrast"], 4.5) << "of text to paper";

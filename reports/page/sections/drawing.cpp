@@ -18,7 +18,7 @@ std::optional<Section> drawing_section(const Field& scene) {
     for (const auto& position : suspension->moved) moved.push_back(position.title);
     FigureGroup group;
     const std::vector<View> views{front_view, side_view, top_view};
-    group.figures = draw_views(*suspension, views, {.width = 330});
+    group.figures = draw_views(*suspension, views, small_frame(*suspension));
     for (std::size_t k = 0; k < views.size(); ++k)
         group.figures[k].description =
             fmt::format("The {} {} at the design position, to scale{}. The coordinates are in the table.", noun,

@@ -165,7 +165,7 @@ std::optional<Section> first_section(const Field& scene) {
     for (const auto& wheel : suspension->wheels)  // all on the right, y to the left
         right = right && suspension->points[wheel.centre].at[1] < 0;
     FigureGroup group;
-    group.figures = draw_views(*suspension, {axonometric_view(right)}, {.width = 480, .height = 400, .legend = true});
+    group.figures = draw_views(*suspension, {axonometric_view(right)}, large_frame(*suspension));
     Figure& figure = group.figures.front();
     figure.title = fmt::format("The {}", noun);
     std::vector<std::string> names, moved;

@@ -70,6 +70,7 @@ std::optional<Suspension> suspension_of(const Field& scene) {
                                 place_of(wheel["spin_axis"])});
     const auto sweep = leading_sweep(scene);
     if (!sweep) return s;
+    std::vector<double> order;
     for (const auto& at : (*drawing)["positions"].items()) {
         const auto of = at.find("of");
         if (!of || at["where"].text() != "end" ||
@@ -85,7 +86,10 @@ std::optional<Suspension> suspension_of(const Field& scene) {
         if (moved.points.size() != count) at["points_mm"].fail("not as many points as in the drawing");
         if (const auto wheels = at.find("wheels_mm"))
             for (const auto& wheel : wheels->items()) moved.wheels.push_back(places_of(wheel));
-        s.moved.push_back(std::move(moved));
+        // from the lowest to the highest, however many branches it takes
+        const auto before = std::ranges::upper_bound(order, at["a"].number()) - order.begin();
+        order.insert(order.begin() + before, at["a"].number());
+        s.moved.insert(s.moved.begin() + before, std::move(moved));
     }
     return s;
 }
