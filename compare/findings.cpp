@@ -30,6 +30,17 @@ std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& re
     return worst;
 }
 
+bool readable(const Comparison& comparison, const BranchComparison& branch) {
+    if (branch.abscissa < 0) return false;
+    const auto c = static_cast<std::size_t>(branch.abscissa);
+    if (comparison.channels[c].main) return true;  // of a mechanism, which may be small; not a wheel's travel
+    const Curve& truth = run_of(branch, Leg::equilibrium).curve;
+    if (truth.values.empty()) return false;
+    const auto x = truth.channel(c);
+    const auto [low, high] = std::ranges::minmax(x);
+    return high - low >= least_travel;
+}
+
 // ---- What a branch does to a wheel.
 
 bool vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
@@ -103,8 +114,11 @@ const Reading& reading_of(const Pair& pair, ReadingKind kind) {
 }
 
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
+    static const Reading none{};
     return worst_of(comparison, unit, [&](const BranchComparison& branch) -> const Reading& {
-        return reading_of(branch.deviation, kind);
+        return kind == ReadingKind::equal_parameter || readable(comparison, branch)
+                   ? reading_of(branch.deviation, kind)
+                   : none;
     });
 }
 
@@ -142,6 +156,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
             for (const std::size_t end : {std::size_t{0}, truth.a.size() - 1}) {
                 if (end == truth.start) continue;
                 RateError error{branch.branch, wheel.name, truth.a[end], branch.unit};
+                error.over = gained(truth, travel, end);
+                if (std::abs(error.over) < least_travel) continue;
                 error.travel = fast.values[end][travel] - truth.values[end][travel];
                 const double change = (truth.a[end] - truth.a[truth.start]) / in_unit(branch.unit);
                 // [N]: of the load, of the jack, of the tyre on the road: k_t (Δh - Δz), z of the contact patch

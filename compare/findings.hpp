@@ -11,6 +11,10 @@
 
 namespace elastocheck::compare {
 
+// An abscissa that moves by less [mm] is none to read over: a longitudinal force lifts the wheel by some tenths of a
+// millimetre, and nobody asks what camber does over these.
+inline constexpr double least_travel = 1;
+
 enum class ReadingKind { equal_parameter, equal_abscissa };
 const Reading& reading_of(const Pair& pair, ReadingKind kind);
 
@@ -21,16 +25,19 @@ struct Worst {
     Unit unit = Unit::mm;
     double max = 0, end = 0, range = 0;
 };
+// At equal abscissa: of the branches on which it moves by `least_travel` or more.
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit);  // recursion
 std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit);  // references
 
 // The wheel rate, and how far the recursion's is off, at one end of a branch: force over travel from a = 0 to there.
-// Only where the branch moves nothing but a vertical load on that wheel, a jack under it, or the road under its tyre.
+// Only where the branch moves nothing but a vertical load on that wheel, a jack under it, or the road under its tyre,
+// and the wheel rises or falls by a millimetre or more: a quotient of less says nothing of a suspension.
 struct RateError {
     std::string branch, wheel;
     double to = 0;  // the end, in `unit`
     Unit unit = Unit::newton;
     double off = 0;         // rate of the recursion over that of the reference, less 1: positive is too stiff
+    double over = 0;        // travel of the reference from a = 0 to there [mm]
     double travel = 0;      // travel there, recursion less reference [mm]
     double force = 0;       // jack force there, likewise [N]
     double wheel_rate = 0;  // k_w of the reference from a = 0 to there: force over travel [N/mm]

@@ -142,6 +142,9 @@ int run(int argc, char** argv) {
     compare_command->add_flag(
         "--formulations", formulations,
         "how much the outputs depend on the formulation of the bushings, in which tools differ");
+    std::string within = CompareRequest{}.within;
+    compare_command->add_option("--within", within,
+                                "accuracy that the verdict asks for (default: 0.01mm,0.001deg)");
     for (auto* command : {solve_command, compare_command}) add_recursion_options(*command, recursion_request);
     solve_command
         ->add_option(
@@ -228,7 +231,7 @@ int run(int argc, char** argv) {
             if (!solve_request.rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
-                return compare_legs(scene, settings, {how, every, detail, formulations}, delivery);
+                return compare_legs(scene, settings, {how, every, detail, within, formulations}, delivery);
             solve_request.gait = {
                 .leg = reference ? *leg : compare::Leg::recursive, .recursion = how, .every = every};
             solve_request.detail = detail;

@@ -30,6 +30,7 @@
 #include "reports/files/folder.hpp"
 #include "reports/page/gnuplot.hpp"
 #include "reports/page/report.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/study_tables.hpp"
@@ -60,6 +61,12 @@ json recommended(const Model& model, const compare::Trade& trade) {
     return result;
 }
 
+LoadCases load_cases(const ReportRequest& request) {
+    LoadCases cases{request.branch_column, {}};
+    for (const auto& text : request.cases) cases.names.push_back(parse_load_case(text));
+    return cases;
+}
+
 json solve_scene(const std::string& file, const ReportRequest& request, const Progress& progress) {
     const LoadedScene loaded = load_scene(file, request.settings);
     const Scene& scene = loaded.scene;
@@ -76,7 +83,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
         add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
     if (!request.measured.empty()) {
-        add_measurement(document, read_whole(request.measured), request.measured, model, comparison);
+        add_measurement(document, read_whole(request.measured), request.measured, model, comparison,
+                        load_cases(request));
         if (compared_with_measurement(document) == 0)
             reasons.push_back(fmt::format("no point of {} lies where the legs could be compared with it",
                                           request.measured));
@@ -107,6 +115,10 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     document["precision"] = precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     add_verdict(document, comparison.compared, reasons);
+    auto judgement = compare::judge(model, comparison, trade_options.tolerance,
+                                    request.tolerance != ReportRequest{}.tolerance);
+    if (!reasons.empty()) judgement.verdict = compare::Verdict::not_judged, judgement.reasons = reasons;
+    document["judgement"] = judgement_json(judgement);
     return document;
 }
 
@@ -180,6 +192,12 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
     command
         ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
         ->check(a_file("*.csv"));
+    command
+        ->add_option("--branch-column", request.branch_column,
+                     "column of --measured that says which branch a point belongs to (default: branch)")
+        ->check(a_name());
+    command->add_option("--case", request.cases,
+                        "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated");
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
         ->check(one_of({"svg", "pdf"}));
     command->add_flag(
@@ -206,6 +224,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
+    (void)load_cases(request);
+    if (request.measured.empty() && (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
+        throw std::invalid_argument("report: --branch-column and --case say how to read --measured; give a file");
     if (!request.measured.empty()) (void)read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");

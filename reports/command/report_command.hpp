@@ -17,6 +17,8 @@ struct ReportRequest {
     std::string from;  // a result.json, in place of scenes
     std::string folder;
     std::string measured;  // CSV
+    std::string branch_column = "branch";  // of it
+    std::vector<std::string> cases;        // "THEIRS=OURS": names in that column, and the branches that they mean
     std::string alarms;    // JSON, what `./dev mutate` found
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";

@@ -21,6 +21,7 @@
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/formulation_tables.hpp"
 #include "reports/tables/inspection.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/order_tables.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/study_tables.hpp"
@@ -69,6 +70,7 @@ int inspect(const std::string& file, const Settings& settings, Detail detail, bo
 
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const Delivery& delivery) {
+    (void)compare::parse_tolerance(request.within);  // what is wrong with it is said before the work
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
@@ -88,6 +90,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     progress("");
     delivery.say(tables(model, comparison));
     if (study) delivery.say(formulation_text(*study, comparison));
+    const auto judgement = compare::judge(model, comparison, compare::parse_tolerance(request.within),
+                                          request.within != CompareRequest{}.within);
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
@@ -99,8 +103,10 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
             for (const auto& reason : study->inconclusive) reasons.push_back("formulations: " + reason);
         }
         add_verdict(part, comparison.compared, reasons);
+        part["judgement"] = judgement_json(judgement);
         deliver(delivery, std::move(part), std::move(files));
     }
+    delivery.say(sentence(judgement) + "\n");
     return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 

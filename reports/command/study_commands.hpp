@@ -20,6 +20,7 @@ struct CompareRequest {
     recursive::Options recursion;
     int every = 1;  // of its steps, each of which is compared
     Detail detail = Detail::required;
+    std::string within = "0.01mm,0.001deg";  // what the verdict holds the deviations against
     bool formulations = false;  // how much the outputs depend on what a bushing is taken to measure, as well
 };
 // As text, or the document; in a folder with CSV files beside it.

@@ -195,6 +195,7 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
                         {"to", rate.to},
                         {"unit", symbol(rate.unit)},
                         {"off", rate.off},
+                        {"over_mm", rate.over},
                         {"travel_mm", rate.travel},
                         {"force_N", rate.force},
                         {"wheel_rate_N_per_mm", rate.wheel_rate},

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <set>
 
 #include "models/overloaded.hpp"
 
@@ -20,6 +24,7 @@ struct Sketch {
     const Model* model;
     std::vector<Point> points;
     std::vector<std::string> names;
+    std::vector<bool> hard;  // whether the scene has a hardpoint there
     json links = json::array();
 
     Vector3d at(const Point& point, const std::vector<Pose>& poses) const {
@@ -39,11 +44,13 @@ struct Sketch {
         for (std::size_t k = 0; k < points.size(); ++k)
             if (points[k].body == point.body && (points[k].s_local - point.s_local).norm() < same) return k;
         std::string name = otherwise;
+        bool known = false;
         const Vector3d position = at(point, design());
         for (const auto& hardpoint : scene->hardpoints)
-            if ((hardpoint.position - position).norm() < same) name = hardpoint.name;
+            if ((hardpoint.position - position).norm() < same) name = hardpoint.name, known = true;
         points.push_back(point);
         names.push_back(name);
+        hard.push_back(known);
         return points.size() - 1;
     }
     void link(const char* kind, const std::string& name, std::size_t i, std::size_t j) {
@@ -51,28 +58,189 @@ struct Sketch {
     }
 };
 
-// A body of up to three points is the polygon through them; one of more is a star about the wheel's centre,
-// or about the point nearest to all others.
-void outline(Sketch& sketch, BodyId body, std::optional<std::size_t> hub) {
+// ---- Bodies. What a body carries is known, its shape is not: an arm whose points lie flat is the outline round them
+// all, everything else the shortest tree of lines that joins them, from the wheel's centre where it carries one.
+
+// In order round the outline of points that lie in a plane well enough to be drawn as a plate; empty where they do
+// not, or lie nearly on a line.
+std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
+    if (points.size() < 3) return {};
+    Vector3d middle = Vector3d::Zero();
+    for (const auto& p : points) middle += p / static_cast<double>(points.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const auto& p : points) spread += (p - middle) * (p - middle).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
+    const Vector3d extent = principal.eigenvalues().cwiseMax(0).cwiseSqrt();  // rising
+    if (!(extent[1] > 0.15 * extent[2]) || extent[0] > 0.35 * extent[1]) return {};
+    const Vector3d u = principal.eigenvectors().col(2), v = principal.eigenvectors().col(1);
+    const auto flat = [&](std::size_t k) {
+        return Eigen::Vector2d{u.dot(points[k] - middle), v.dot(points[k] - middle)};
+    };
+    // Andrew's monotone chain: sorted along u, the lower side of the hull and the upper one back.
+    std::vector<std::size_t> sorted(points.size()), hull;
+    for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = k;
+    std::ranges::sort(sorted, {}, [&](std::size_t k) { return std::pair{flat(k).x(), flat(k).y()}; });
+    const auto left_turn = [&](std::size_t a, std::size_t b, std::size_t c) {
+        const Eigen::Vector2d ab = flat(b) - flat(a), bc = flat(c) - flat(b);
+        return ab.x() * bc.y() - ab.y() * bc.x() > 0;
+    };
+    for (int side = 0; side < 2; ++side) {
+        const std::size_t first = hull.size();
+        for (const auto k : sorted) {
+            while (hull.size() >= first + 2 && !left_turn(hull[hull.size() - 2], hull.back(), k)) hull.pop_back();
+            hull.push_back(k);
+        }
+        hull.pop_back();  // where the other side begins
+        std::ranges::reverse(sorted);
+    }
+    return hull;
+}
+
+// Joins the points one after the other, each to the nearest that is joined already (Prim).
+void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine, std::size_t root) {
+    std::vector<std::size_t> joined{root};
+    std::erase(mine, root);
+    while (!mine.empty()) {
+        std::pair<std::size_t, std::size_t> nearest{mine.front(), root};
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto k : mine)
+            for (const auto l : joined)
+                if (const double d = (sketch.points[k].s_local - sketch.points[l].s_local).norm(); d < least)
+                    least = d, nearest = {k, l};
+        sketch.link("body", name, nearest.second, nearest.first);
+        joined.push_back(nearest.first);
+        std::erase(mine, nearest.first);
+    }
+}
+
+void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs,
+               const std::set<std::size_t>& patches, json& faces) {
     std::vector<std::size_t> mine;
     for (std::size_t k = 0; k < sketch.points.size(); ++k)
-        if (sketch.points[k].body == body) mine.push_back(k);
+        if (sketch.points[k].body == body && !patches.contains(k)) mine.push_back(k);
     const std::string& name = sketch.model->bodies[static_cast<std::size_t>(body)].name;
-    if (!hub && mine.size() <= 3) {
-        for (std::size_t k = 0; k < mine.size(); ++k)
-            for (std::size_t l = k + 1; l < mine.size(); ++l) sketch.link("body", name, mine[k], mine[l]);
-        return;
-    }
-    if (!hub) {
-        double least = std::numeric_limits<double>::infinity();
-        for (const auto k : mine) {
-            double sum = 0;
-            for (const auto l : mine) sum += (sketch.points[k].s_local - sketch.points[l].s_local).norm();
-            if (sum < least) least = sum, hub = k;
+    if (mine.size() < 2) return;
+    if (hubs.size() < 2) {
+        std::vector<std::size_t> plate = mine;  // a carrier without the spindle, which stands out of it
+        if (!hubs.empty()) std::erase(plate, hubs.front());
+        std::vector<Vector3d> places;
+        for (const auto k : plate) places.push_back(sketch.points[k].s_local);
+        if (const auto round = outline(places); round.size() >= 3) {
+            json corners = json::array();
+            for (std::size_t k = 0; k < round.size(); ++k) {
+                corners.push_back(plate[round[k]]);
+                sketch.link("body", name, plate[round[k]], plate[round[(k + 1) % round.size()]]);
+            }
+            faces.push_back({{"body", name}, {"points", corners}});
+            if (hubs.empty()) return;
+            const auto distance = [&](std::size_t k) {
+                return (sketch.points[k].s_local - sketch.points[hubs.front()].s_local).norm();
+            };
+            sketch.link("body", name, hubs.front(), *std::ranges::min_element(plate, {}, distance));
+            return;
         }
     }
-    for (const auto k : mine)
-        if (k != *hub) sketch.link("body", name, *hub, k);
+    tree(sketch, name, mine, hubs.empty() ? mine.front() : hubs.front());
+}
+
+// ---- Joints and bushings, where the scene has them, for their symbols.
+
+struct Symbol {
+    const char* kind;
+    Point at;
+    std::optional<Direction> axis = {};
+};
+
+std::vector<Symbol> symbols_of(const JointKind& kind) {
+    return std::visit(
+        overloaded{[](const Spherical& j) { return std::vector<Symbol>{{"spherical", j.i}}; },
+                   [](const Revolute& j) { return std::vector<Symbol>{{"revolute", j.i, j.axis_i}}; },
+                   [](const Universal& j) { return std::vector<Symbol>{{"universal", j.i}}; },
+                   [](const Cylindrical& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_i}}; },
+                   [](const Translational& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_i}}; },
+                   [](const Planar& j) { return std::vector<Symbol>{{"plane", j.i}}; },
+                   [](const Fixed& j) { return std::vector<Symbol>{{"fixed", j.i}}; },
+                   [](const Distance& j) { return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}}; },
+                   [](const InPlane& j) { return std::vector<Symbol>{{"plane", j.i}}; },
+                   [](const InLine& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_j}}; },
+                   [](const auto&) { return std::vector<Symbol>{}; }},  // directions alone have no place
+        kind);
+}
+
+bool is_segment(const Elastic& elastic) {
+    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::middle;
+}
+
+json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+json symbols_json(const Scene& scene) {
+    json list = json::array();
+    const auto pose = [&](BodyId body) {
+        return body == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(body)].design;
+    };
+    const auto put = [&](const char* kind, const std::string& name, const Vector3d& at,
+                         const std::optional<Vector3d>& axis) {
+        list.push_back({{"kind", kind},
+                        {"name", name},
+                        {"at_mm", {1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z()}},
+                        {"axis", axis ? vector_json(*axis) : json(nullptr)}});
+    };
+    const auto place = [&](const Point& p) -> Vector3d { return pose(p.body).r + pose(p.body).p * p.s_local; };
+    const auto turned = [&](const Direction& u) -> Vector3d { return pose(u.body).p * u.u_local; };
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const Joint& joint = scene.joints[k];
+        const bool moved = std::ranges::any_of(scene.branches, [&](const Branch& branch) {
+            return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
+                const auto* motion = std::get_if<Motion>(&driver.what);
+                return driver.rate != 0 && motion != nullptr && motion->joint == static_cast<int>(k);
+            });
+        });
+        // What drives a joint is a plane that one of its points is held in; a jack is one under a wheel.
+        if (const auto* plane = std::get_if<InPlane>(&joint.kind)) {
+            const bool jack = std::ranges::any_of(
+                scene.wheels, [&](const Wheel& wheel) { return wheel.body == plane->i.body; });
+            if (moved && !jack) put("drive", joint.name, place(plane->i), turned(plane->normal_j));
+            if (moved || joint.only_where_driven) continue;
+        }
+        if (joint.only_where_driven) continue;
+        for (const auto& symbol : symbols_of(joint.kind))
+            put(symbol.kind, joint.name, place(symbol.at),
+                symbol.axis ? std::optional(turned(*symbol.axis)) : std::nullopt);
+    }
+    for (const auto& elastic : scene.elastics) {
+        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr || elastic.only_where_driven || is_segment(elastic)) continue;
+        put("bushing", elastic.name, place({bushing->i.body, bushing->i.s_local}), std::nullopt);
+    }
+    return list;
+}
+
+// Segments of a beam lie one after the other: between their middles are the nodes, and beyond the first and the last
+// middle the beam goes on as far as it came from its node.
+void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const Bushing*>& segments) {
+    std::vector<Point> line;
+    const auto end = [&](const Marker& middle, const Marker& other) {
+        // the node of `other`'s body, seen from the middle, lies as far on the other side as this end on this
+        if (other.body == ground) return Point{middle.body, middle.s_local};
+        const Pose& node = sketch.model->bodies[static_cast<std::size_t>(other.body)].design;
+        const Vector3d at = 2 * sketch.at({middle.body, middle.s_local}, sketch.design()) - node.r;
+        if (middle.body == ground) return Point{ground, at};
+        const Pose& own = sketch.model->bodies[static_cast<std::size_t>(middle.body)].design;
+        return Point{middle.body, own.p.conjugate() * (at - own.r)};
+    };
+    if (segments.size() > 1) line.push_back(end(segments.front()->i, segments.front()->j));
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        line.push_back({segments[k]->i.body, segments[k]->i.s_local});
+        if (k + 1 < segments.size()) line.push_back({segments[k]->j.body, Vector3d::Zero()});
+    }
+    if (segments.size() > 1) line.push_back(end(segments.back()->j, segments.back()->i));
+    std::size_t before = sketch.add(line.front(), name);
+    for (std::size_t k = 1; k < line.size(); ++k) {
+        const std::size_t now = sketch.add(line[k], name);
+        sketch.link("beam", name, before, now);
+        before = now;
+    }
 }
 
 json millimetres(const Vector3d& v) { return {1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()}; }
@@ -100,45 +268,80 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     return result;
 }
 
+// Of models that have some.
+template <class M>
+void draw_dampers(Sketch& sketch, const M& model) {
+    if constexpr (requires { model.dampers; })
+        for (const auto& damper : model.dampers) {
+            const auto i = sketch.add(damper.i, damper.name);
+            sketch.link("damper", damper.name, i, sketch.add(damper.j, damper.name));
+        }
+}
+
 }  // namespace
 
 json drawing_json(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
-    Sketch sketch{&scene, &model, {}, {}};
-    json bushings = json::array();
+    Sketch sketch{&scene, &model, {}, {}, {}};
+    json bushings = json::array(), faces = json::array(), wheels = json::array();
     for (const auto& constraint : model.constraints) {
-        const std::string& name = model.joints[static_cast<std::size_t>(constraint.joint)].name;
+        const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
+        if (joint.only_where_driven) continue;  // a jack is no part of the suspension
         std::visit(
-            overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, name), sketch.add(c.j, name); },
-                       [&](const PointInPlane& c) { sketch.add(c.i, name); },
+            overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, joint.name), sketch.add(c.j, joint.name); },
+                       [&](const PointInPlane& c) { sketch.add(c.i, joint.name); },
                        [](const PerpendicularDirections&) {},
                        [&](const DistanceBetween& c) {
-                           const auto i = sketch.add(c.i, name);
-                           sketch.link("rod", name, i, sketch.add(c.j, name));
+                           const auto i = sketch.add(c.i, joint.name);
+                           sketch.link("rod", joint.name, i, sketch.add(c.j, joint.name));
                        },
                        [](const DirectionAtAngle&) {}},
             constraint.kind);
     }
+    std::vector<std::pair<std::string, std::vector<const Bushing*>>> beams;
+    std::set<std::pair<std::size_t, std::size_t>> sprung;
     for (const auto& elastic : model.elastics)
         std::visit(overloaded{[&](const AxialSpring& e) {
-                                  const auto i = sketch.add(e.i, elastic.name);
-                                  sketch.link("spring", elastic.name, i, sketch.add(e.j, elastic.name));
+                                  const auto i = sketch.add(e.i, elastic.name), j = sketch.add(e.j, elastic.name);
+                                  const bool first = sprung.insert({i, j}).second;  // its stops lie within it
+                                  sketch.link(first ? "spring" : "stop", elastic.name, i, j);
                               },
                               [&](const Bushing& e) {
+                                  if (elastic.only_where_driven) return;  // a tyre
+                                  if (is_segment(elastic)) {
+                                      const std::string beam = elastic.name.substr(0, elastic.name.rfind('.'));
+                                      if (beams.empty() || beams.back().first != beam) beams.push_back({beam, {}});
+                                      beams.back().second.push_back(&e);
+                                      return;
+                                  }
                                   const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
                                   const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
                                   bushings.push_back(e.i.body == ground ? j : i);
                               }},
                    elastic.kind);
+    for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
+    draw_dampers(sketch, model);
     for (const auto& probe : model.probes) sketch.add(probe.at, probe.name);
-    std::vector<std::optional<std::size_t>> hubs(model.bodies.size());
+    std::vector<std::vector<std::size_t>> hubs(model.bodies.size());
+    std::set<std::size_t> patches;
     for (const auto& wheel : model.wheels) {
         const std::string whose = wheel.name.empty() ? "" : wheel.name + " ";
-        hubs[static_cast<std::size_t>(wheel.body)] =
-            sketch.add({wheel.body, wheel.centre_local}, whose + "wheel centre");
-        sketch.add({wheel.body, wheel.contact_local}, whose + "contact patch");
+        const auto centre = sketch.add({wheel.body, wheel.centre_local}, whose + "wheel centre"),
+                   patch = sketch.add({wheel.body, wheel.contact_local}, whose + "contact patch");
+        hubs[static_cast<std::size_t>(wheel.body)].push_back(centre);
+        if (patch != centre) patches.insert(patch);
+        const Pose& pose = model.bodies[static_cast<std::size_t>(wheel.body)].design;
+        wheels.push_back({{"name", wheel.name},
+                          {"centre", centre},
+                          {"patch", patch},
+                          {"spin_axis", vector_json(pose.p * wheel.spin_axis_local)}});
     }
+    std::set<std::string> of_beams;
+    for (const auto& [name, segments] : beams)
+        for (std::size_t k = 0; k + 1 < segments.size(); ++k)
+            of_beams.insert(model.bodies[static_cast<std::size_t>(segments[k]->j.body)].name);
     for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body)
-        outline(sketch, body, hubs[static_cast<std::size_t>(body)]);
+        if (!of_beams.contains(model.bodies[static_cast<std::size_t>(body)].name))
+            draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, faces);
 
     json points = json::array(), along = json::array();
     const auto design = sketch.design();
@@ -147,6 +350,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         points.push_back(
             {{"name", sketch.names[k]},
              {"body", body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name},
+             {"hardpoint", sketch.hard[k]},
              {"design_mm", millimetres(sketch.at(sketch.points[k], design))}});
     }
     for (const auto& branch : comparison.branches) {
@@ -155,6 +359,8 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         const auto put = [&](const std::string& name, const char* where, const Equilibrium& state) {
             json entry = positions(sketch, state.poses);
             entry["branch"] = name;
+            entry["of"] = branch.branch;
+            entry["unit"] = symbol(branch.unit);
             entry["where"] = where;
             entry["a"] = in_unit(branch.unit) * state.load;
             along.push_back(entry);
@@ -166,7 +372,8 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                 "end", *front);
         if (back) put(branch.branch, "end", *back);
     }
-    json result = {{"points", points}, {"links", sketch.links}, {"bushings", bushings}};
+    json result = {{"points", points},     {"links", sketch.links}, {"faces", faces},
+                   {"symbols", symbols_json(scene)}, {"wheels", wheels},    {"bushings", bushings}};
     result["design"] = positions(sketch, design);
     result["positions"] = along;
     return result;

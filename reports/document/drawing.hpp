@@ -10,10 +10,12 @@
 namespace elastocheck::reports {
 
 //   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body, position [mm]
-//   links      pairs of points joined by a line: of one body, of a rod (distance), of a spring
+//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a stop, a beam, a damper
+//   faces      a body's points that lie flat, in order round their outline: an arm
+//   symbols    joints and bushings as the scene has them: kind, name, where [mm], its axis where it has one
+//   wheels     centre, patch and spin axis at the design position
 //   bushings   points
-//   wheel      its circle, as points
-//   positions  of all points [mm], by the equilibrium leg, at the middle and the end of every branch
+//   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every branch
 nlohmann::ordered_json drawing_json(const Scene& scene, const Model& model,
                                     const compare::Comparison& comparison);
 

@@ -34,8 +34,9 @@ struct Column {
 
 struct Points {
     std::vector<Column> columns;
-    std::vector<std::string> branch;  // per point, empty without such a column
-    std::string parameter;            // the column that gives the branch's parameter, empty without one
+    std::vector<std::string> branch;       // per point, empty without such a column
+    std::vector<int> lines;                // of the file, per point
+    std::vector<std::string> parameters;  // the columns that give a branch's parameter
 
     const std::vector<double>* find(std::string_view name) const {
         for (const auto& column : columns)
@@ -99,19 +100,30 @@ std::vector<std::string> parameter_columns(const compare::Comparison& all) {
     return names;
 }
 
+std::string column_of(const std::string& branch, const compare::Comparison& all) {
+    return parameter_column(std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit);
+}
+
 // A point in newtons says nothing of a branch that goes by millimetres.
-void check_parameter(const Points& points, const std::string& file, const compare::Comparison& all) {
-    if (points.parameter.empty()) return;
-    if (points.branch.empty() && parameter_columns(all).size() > 1)
-        fail(
-            file, 1,
-            fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
-                        points.parameter));
-    for (const auto& name : points.branch) {
-        const auto branch = std::ranges::find(all.branches, name, &compare::BranchComparison::branch);
-        if (const std::string other = parameter_column(branch->unit); other != points.parameter)
-            fail(file, 1, fmt::format("{}: branch '{}' goes by {}", points.parameter, name, other));
+void check_parameters(const Points& points, const std::string& file, const compare::Comparison& all) {
+    if (points.branch.empty()) {
+        if (points.parameters.size() > 1)
+            fail(file, 1,
+                 fmt::format("{} and {}: a column 'branch' has to say which of them places a point",
+                             points.parameters[0], points.parameters[1]));
+        if (points.parameters.size() == 1 && parameter_columns(all).size() > 1)
+            fail(file, 1,
+                 fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
+                             points.parameters[0]));
+        return;
     }
+    for (std::size_t k = 0; k < points.branch.size(); ++k)
+        for (const auto& parameter : points.parameters) {
+            const std::string own = column_of(points.branch[k], all);
+            if (own != parameter && std::isfinite((*points.find(parameter))[k]))
+                fail(file, points.lines[k],
+                     fmt::format("{}: branch '{}' goes by {}", parameter, points.branch[k], own));
+        }
 }
 
 // The channels that may say where a point is: the travel of each wheel.
@@ -119,9 +131,24 @@ bool is_travel(const compare::Channel& channel) {
     return channel.name == "travel" || channel.name.ends_with(".travel");
 }
 
-Points read(std::string_view csv, const std::string& file, const compare::Comparison& all) {
+// The branch that a cell means: a name of the file's own, or one of the scene.
+std::string branch_named(std::string_view cell, const compare::Comparison& all, const LoadCases& cases,
+                         const std::string& file, int line) {
+    const auto own = std::ranges::find(cases.names, cell, &std::pair<std::string, std::string>::first);
+    const std::string name = own == cases.names.end() ? std::string(cell) : own->second;
+    std::vector<std::string> branches;
+    for (const auto& branch : all.branches) branches.push_back(branch.branch);
+    if (std::ranges::find(branches, name) == branches.end())
+        fail(file, line,
+             fmt::format("{}: the scene has no {}{}", cases.column, reader::quote(name),
+                         reader::did_you_mean(name, branches, "allowed")));
+    return name;
+}
+
+Points read(std::string_view csv, const std::string& file, const compare::Comparison& all,
+            const LoadCases& cases) {
     Points points;
-    std::vector<std::string> known{"branch"};
+    std::vector<std::string> known{cases.column};
     std::ranges::copy(parameter_columns(all), std::back_inserter(known));
     std::vector<Column> outputs;
     for (std::size_t c = 0; c < all.channels.size(); ++c) {
@@ -163,7 +190,7 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
                 Column column{name, -1, false, false, {}};
                 for (const auto& output : outputs)
                     if (output.name == name) column = output;
-                if (name == "branch") branch_column = static_cast<int>(points.columns.size());
+                if (name == cases.column) branch_column = static_cast<int>(points.columns.size());
                 points.columns.push_back(column);
             }
             continue;
@@ -172,16 +199,10 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
             fail(file, number_of_line,
                  fmt::format("{} cells, but {} columns are named in the first line", cells.size(),
                              points.columns.size()));
+        points.lines.push_back(number_of_line);
         for (std::size_t k = 0; k < cells.size(); ++k) {
             if (static_cast<int>(k) == branch_column) {
-                const std::string name(cells[k]);
-                std::vector<std::string> branches;
-                for (const auto& branch : all.branches) branches.push_back(branch.branch);
-                if (std::ranges::find(branches, name) == branches.end())
-                    fail(file, number_of_line,
-                         fmt::format("branch: the scene has no {}{}", reader::quote(name),
-                                     reader::did_you_mean(name, branches, "allowed")));
-                points.branch.push_back(name);
+                points.branch.push_back(branch_named(cells[k], all, cases, file, number_of_line));
                 points.columns[k].values.push_back(0);
             } else {
                 points.columns[k].values.push_back(
@@ -191,21 +212,21 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
     }
     if (points.columns.empty()) fail(file, 0, "empty; the first line names the columns");
     if (points.columns.front().values.empty()) fail(file, 0, "no point in it");
-    const auto is_place = [](const Column& c) { return c.travel || (c.channel < 0 && c.name != "branch"); };
-    const auto places = std::ranges::count_if(points.columns, is_place);
-    if (places == 0) {
+    const auto is_parameter = [&](const Column& c) { return c.channel < 0 && c.name != cases.column; };
+    const auto is_place = [&](const Column& c) { return c.travel || is_parameter(c); };
+    if (branch_column < 0 && cases.column != LoadCases{}.column)
+        fail(file, 1, fmt::format("no column {}, which --branch-column names", reader::quote(cases.column)));
+    if (std::ranges::none_of(points.columns, is_place)) {
         std::vector<std::string> allowed = parameter_columns(all);
         for (const auto& output : outputs)
             if (output.travel) allowed.push_back(output.name);
         fail(file, 1, "no column says where a point is" + reader::did_you_mean("", allowed, "allowed"));
     }
-    if (std::ranges::count_if(points.columns, [](const Column& c) { return c.travel; }) > 1 ||
-        std::ranges::count_if(points.columns,
-                              [](const Column& c) { return c.channel < 0 && c.name != "branch"; }) > 1)
-        fail(file, 1, "two columns of one kind say where a point is; one parameter and one travel at most");
+    if (std::ranges::count_if(points.columns, [](const Column& c) { return c.travel; }) > 1)
+        fail(file, 1, "two columns of travel say where a point is; one at most");
     for (const auto& column : points.columns)
-        if (column.channel < 0 && column.name != "branch") points.parameter = column.name;
-    check_parameter(points, file, all);
+        if (is_parameter(column)) points.parameters.push_back(column.name);
+    check_parameters(points, file, all);
     if (std::ranges::none_of(points.columns, [](const Column& c) { return c.channel >= 0 && !c.travel; }))
         fail(file, 1, "no output among the columns; " + reader::did_you_mean("", known, "allowed").substr(2));
     return points;
@@ -214,14 +235,21 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
 }  // namespace
 
 void add_measurement(json& scene_document, std::string_view csv, const std::string& file, const Model& model,
-                     const compare::Comparison& all) {
-    const Points points = read(csv, file, all);
+                     const compare::Comparison& all, const LoadCases& cases) {
+    for (const auto& [theirs, ours] : cases.names)
+        if (std::ranges::find(all.branches, ours, &compare::BranchComparison::branch) == all.branches.end())
+            fail(file, 0, fmt::format("--case {}={}: the scene has no branch '{}'", theirs, ours, ours));
+    const Points points = read(csv, file, all, cases);
     compare::Measured measured;
     measured.branch = points.branch;
     for (const auto& column : points.columns) {
-        if (column.name == "branch") continue;
+        if (column.name == cases.column) continue;
         if (column.channel < 0) {
-            measured.a = column.values;
+            // each point by the column of its branch
+            if (measured.a.empty()) measured.a.assign(column.values.size(), nan);
+            for (std::size_t k = 0; k < column.values.size(); ++k)
+                if (points.branch.empty() || column_of(points.branch[k], all) == column.name)
+                    measured.a[k] = column.values[k];
         } else if (column.travel) {
             measured.abscissa = static_cast<std::size_t>(column.channel);
             measured.at = column.values;
@@ -239,7 +267,11 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     json columns = json::object();
     if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
     for (const auto& column : found.columns) columns[all.channels[column.channel].name] = column.values;
-    const std::string word = points.parameter.starts_with("load") ? "load" : "parameter";
+    const bool loads = std::ranges::all_of(points.parameters,
+                                           [](const std::string& name) { return name.starts_with("load"); }),
+               drives = std::ranges::none_of(points.parameters,
+                                             [](const std::string& name) { return name.starts_with("load"); });
+    const std::string word = loads ? "load" : drives ? "parameter" : "load or parameter";
     json readings = json::array();
     for (const auto& reading : found.readings) {
         json rows = json::array();
@@ -261,6 +293,15 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
         {"readings", readings}};
     if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
     if (measured.abscissa) scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
+}
+
+std::pair<std::string, std::string> parse_load_case(std::string_view text) {
+    const auto at = text.rfind('=');
+    if (at == text.npos || at == 0 || at + 1 == text.size())
+        throw std::invalid_argument(fmt::format(
+            "--case '{}': allowed: a name of the file's own, '=' and a branch of the scene, such as 'Lat Force=lateral'",
+            text));
+    return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
 }
 
 int compared_with_measurement(const json& scene_document) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,18 +26,33 @@ struct Table {
 enum Colour { ink, vermilion, blue, green, purple, ochre, slate, pink, sky, faint };
 
 struct Series {
-    enum class Style { line, wide, dashed, thin, points, rings, line_points, bars };
+    enum class Style { line, wide, dashed, thin, points, rings, line_points, bars, heavy, hair, face };
     std::string title{};  // empty: not in the key
     Style style = Style::line;
     Colour colour = ink;
     int mark = 0;                             // which symbol, for points
     std::vector<std::vector<double>> rows{};  // x, y; bars: x, y, x low, x high, y low, y high. Empty: a gap
+                                              // face: the corners of one area
 };
 
 struct Band {
     double low = 0, high = 0;  // of y
     std::string label;
     Colour colour = green;
+};
+
+// A word in a drawing, centred in height.
+struct Word {
+    double x = 0, y = 0;
+    std::string text{};
+    Colour colour = ink;
+};
+
+// What a drawing without axes shows of the plane: from x, y on, to scale.
+struct Sheet {
+    double x = 0, y = 0;
+    double scale = 1;           // [px] per unit
+    int width = 0, height = 0;  // [px]
 };
 
 struct Figure {
@@ -52,6 +68,8 @@ struct Figure {
     std::vector<Series> series{};
     std::vector<Band> bands{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
+    std::optional<Sheet> sheet{};                           // a drawing; `width` and the like say nothing then
+    std::vector<Word> words{};
 };
 
 // Figures that are read together, with what they say and their numbers.
@@ -61,9 +79,13 @@ struct FigureGroup {
     Table table{};
 };
 
+enum class Mark { none, pass, fail, open };  // what a sentence of judgement says
+
 struct Section {
     std::string id;  // also the name of its text template
     std::string title;
+    std::string part{};  // of the page, a heading above the first section of each
+    Mark mark = Mark::none;
     nlohmann::ordered_json words = nlohmann::ordered_json::object();  // what the template says it with
     std::vector<FigureGroup> figures{};
     std::vector<Table> tables{};

@@ -28,6 +28,9 @@ const char* style_of(Series::Style style) {
         case Series::Style::line_points: return "linespoints linewidth 1.4 pointsize 0.7";
         case Series::Style::rings: return "points linewidth 1.5 pointsize 1.3";
         case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
+        case Series::Style::heavy: return "lines linewidth 3.2";
+        case Series::Style::hair: return "lines linewidth 0.9";
+        case Series::Style::face: return "filledcurves closed fillstyle transparent solid 0.18 noborder";
     }
     return "lines";
 }
@@ -39,6 +42,7 @@ json range_of(double low, double high) {
 
 json script_data(const Figure& figure, const std::string& name) {
     json series = json::array(), bands = json::array(), ticks = json::array();
+    const bool labelled = !figure.bands.empty();
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
         const Series& s = figure.series[k];
         const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
@@ -50,7 +54,7 @@ json script_data(const Figure& figure, const std::string& name) {
                           {"symbol", points ? json(symbols[s.mark % 10]) : json(nullptr)},
                           {"colour", palette[s.colour].light},
                           {"bars", s.style == Series::Style::bars},
-                          {"last", k + 1 == figure.series.size()}});
+                          {"last", k + 1 == figure.series.size() && !labelled}});
     }
     // Under an equal-axes plot's key there is room for as many lines as it has entries.
     const auto entries =
@@ -59,15 +63,29 @@ json script_data(const Figure& figure, const std::string& name) {
         bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
                          {"high", fmt::format("{:.9g}", band.high)},
                          {"label", band.label},
+                         {"last", &band == &figure.bands.back()},
                          {"colour", palette[band.colour].light}});
+    json words = json::array(), sheet = nullptr;
+    for (const auto& word : figure.words)
+        words.push_back({{"x", fmt::format("{:.9g}", word.x)},
+                         {"y", fmt::format("{:.9g}", word.y)},
+                         {"text", word.text},
+                         {"colour", palette[word.colour].light}});
+    if (const auto& s = figure.sheet)
+        sheet = {{"x", range_of(s->x, s->x + s->width / s->scale)},
+                 {"y", range_of(s->y, s->y + s->height / s->scale)}};
+    const double wide = figure.sheet ? figure.sheet->width : width * figure.width,
+                 high = figure.sheet ? figure.sheet->height : height * figure.height;
     for (const auto& [at, text] : figure.y_ticks)
         ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
     return {{"name", name},
             {"title", figure.title},
-            {"width", std::lround(width * figure.width)},
-            {"height", std::lround(height * figure.height)},
-            {"width_in", fmt::format("{:.2f}", width * figure.width / 96.0)},
-            {"height_in", fmt::format("{:.2f}", height * figure.height / 96.0)},
+            {"width", std::lround(wide)},
+            {"height", std::lround(high)},
+            {"width_in", fmt::format("{:.2f}", wide / 96)},
+            {"height_in", fmt::format("{:.2f}", high / 96)},
+            {"sheet", sheet},
+            {"words", words},
             {"x", figure.x},
             {"y", figure.y},
             {"log_x", figure.log_x},

@@ -100,6 +100,7 @@ struct Page {
             json entry = {
                 {"caption", group.caption}, {"figures", figures}, {"table", table_json(group.table)}};
             entry["wide"] = group.figures.size() > 1;
+            entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet && group.figures.front().sheet->width > 400;
             (group.figures.size() > 1 ? several : single).push_back(entry);
         }
         for (const auto& table : section.tables) tables.push_back(table_json(table));
@@ -110,7 +111,10 @@ struct Page {
         return {
             {"id", unique(fmt::format("{}-{}", part.id, section.id))},
             {"title", section.title},
-            {"verdict", section.id == "verdict"},
+            {"first", section.mark != Mark::none},
+            {"mark", section.mark == Mark::pass   ? json{{"class", "pass"}, {"text", "pass"}}
+                     : section.mark == Mark::fail ? json{{"class", "fail"}, {"text", "fail"}}
+                                                  : json{{"class", "open"}, {"text", "not judged"}}},
             {"paragraphs", all},
             {"lead", all.empty() ? json("") : all[0]},
             {"rest", all.size() > 1 ? json(std::vector<json>(all.begin() + 1, all.end())) : json::array()},
@@ -124,7 +128,16 @@ struct Page {
     json scene(const ScenePart& part) {
         json sections = json::array();
         std::size_t plot = 0;
-        for (const auto& one : part.sections) sections.push_back(section(one, part, plot));
+        std::string before;
+        for (const auto& one : part.sections) {
+            sections.push_back(section(one, part, plot));
+            sections.back()["part"] = one.part != before && !one.part.empty()
+                                          ? json{{"title", one.part}, {"id", unique(part.id + "-" + slug(one.part))}}
+                                          : json(nullptr);
+            sections.back()["depth"] = one.part.empty() ? "###" : "####";
+            sections.back()["deep"] = !one.part.empty();
+            before = one.part;
+        }
         return {{"id", part.id},
                 {"name", part.scene["name"].text()},
                 {"conclusive", part.scene["verdict"]["conclusive"].truth()},
@@ -132,29 +145,35 @@ struct Page {
     }
 };
 
-// Several scenes at a glance: what each one's verdict carries.
+// Several scenes at a glance: how far each is off, and whether that passes.
 Table summary(const std::list<ScenePart>& parts) {
-    Table table{
-        .caption = "At a glance: the published recursion against the references, and what to use instead",
-        .columns = {{"scene", true},
-                    {"verdict", true},
-                    {"worst at equal abscissa"},
-                    {"worst at equal parameter"},
-                    {"wheel rate, error"},
-                    {"cheapest within the tolerance", true}}};
+    Table table{.caption = "At a glance: the largest deviations of the linear recursion as published, and whether "
+                           "they are within the tolerance",
+                .columns = {{"scene", true},
+                            {"verdict", true},
+                            {"position, at equal load or drive"},
+                            {"position, at equal travel"},
+                            {"angle, at equal load or drive"},
+                            {"angle, at equal travel"},
+                            {"wheel rate"},
+                            {"cheapest method within the tolerance", true}}};
     for (const auto& part : parts) {
-        std::vector<std::string> row{part.scene["name"].text(), part.scene["verdict"]["conclusive"].truth()
-                                                                    ? "conclusive"
-                                                                    : "inconclusive"};
-        for (const char* key : {"travel", "load", "rate", "chosen"}) {
-            std::string cell = "–";
-            for (const auto& section : part.sections)
-                if (section.id == "verdict")
-                    for (const auto& tile : section.words["tiles"])
-                        if (tile["key"] == key)
-                            cell = (cell == "–" ? "" : cell + ", ") + tile["value"].get<std::string>();
-            row.push_back(cell);
+        std::vector<std::string> row{part.scene["name"].text()};
+        const auto judgement = part.scene.find("judgement");
+        const std::string found = judgement && part.scene["verdict"]["conclusive"].truth()
+                                      ? (*judgement)["verdict"].text()
+                                      : "not judged";
+        row.push_back(found == "fail" ? "FAIL" : found);
+        for (const char* key : {"position", "position_across", "angle", "angle_across"}) {
+            const auto worst = judgement ? judgement->find(key) : std::nullopt;
+            row.push_back(!worst ? "–" : quantity((*worst)["max"].number(), (*worst)["unit"].text()));
         }
+        const auto rate = judgement ? judgement->find("wheel_rate") : std::nullopt;
+        const double off = rate ? (*rate)["off"].number() : NAN;
+        row.push_back(!rate ? "–" : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
+        const auto trade = part.scene.find("trade");
+        const auto chosen = trade ? trade->find("recommendation") : std::nullopt;
+        row.push_back(chosen ? configuration(*chosen) : "–");
         table.rows.push_back(row);
     }
     return table;
@@ -298,7 +317,7 @@ std::vector<std::string> write_report(const json& result, const std::string& fil
     std::vector<std::string> answers;
     for (const auto& scene : scenes)
         for (const auto& section : scene["sections"])
-            if (section["verdict"]) answers.push_back(section["lead"]);
+            if (section["first"]) answers.push_back(section["lead"]);
     return answers;
 }
 

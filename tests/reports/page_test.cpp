@@ -116,6 +116,7 @@ TEST(Page, TheMarkdownTwinSaysTheSame) {
     const std::string html = text_of(folder.path / "r" / "report.html"),
                       md = text_of(folder.path / "r" / "report.md");
     EXPECT_EQ(all(html, "<h3[^>]*>([^<]*)</h3>"), all(md, "\n### ([^\n]*)"));
+    EXPECT_EQ(all(html, "<h4[^>]*>([^<]*)</h4>"), all(md, "\n#### ([^\n]*)"));
     // but for the summary of scenes, which Markdown does not fold
     EXPECT_EQ(parts(html, "<table>", "</table>").size(),
               1 + parts(md, "<details><summary>", "</summary>").size());
@@ -139,8 +140,14 @@ const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x
 const paper=luminance(getComputedStyle(document.body).backgroundColor);
 const contrast=e=>{const l=luminance(getComputedStyle(e)[e.closest('svg')?'fill':'color']);
   return (Math.max(l,paper)+.05)/(Math.min(l,paper)+.05)};
-const words=[...document.querySelectorAll('p,h1,h2,h3,td,th,dt,dd,figcaption,caption,summary,svg text')];
-document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,requests:performance.getEntriesByType('resource').length,
+const words=[...document.querySelectorAll('p,h1,h2,h3,h4,td,th,dt,dd,figcaption,caption,summary,svg text')];
+const clashes=[];
+for(const s of document.querySelectorAll('svg')){const all=s.getBoundingClientRect(),
+  t=[...s.querySelectorAll('text')].filter(e=>e.textContent.trim()).map(e=>[e.textContent.trim(),e.getBoundingClientRect()]);
+  t.forEach(([a,p],i)=>{if(p.left<all.left-1||p.right>all.right+1||p.top<all.top-1||p.bottom>all.bottom+1)clashes.push(a+' leaves '+s.querySelector('title').textContent);
+    t.slice(0,i).forEach(([b,q])=>{if(p.left<q.right-.5&&q.left<p.right-.5&&p.top<q.bottom-1.5&&q.top<p.bottom-1.5)clashes.push(s.querySelector('title').textContent+': '+a+' on '+b)})})}
+const outside=[...document.querySelectorAll('table,pre,svg,p,dl,h1,h2,h3,h4')].filter(e=>!e.closest('.scroll,pre')&&e.getBoundingClientRect().right>innerWidth+1).map(e=>e.tagName);
+document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,clashes,outside,requests:performance.getEntriesByType('resource').length,
   page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
   contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';
 </script>)");
@@ -172,6 +179,8 @@ TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
             EXPECT_GT(box[0], 100) << box;
             EXPECT_GT(box[1], 100) << box;
         }
+        EXPECT_TRUE(seen["clashes"].empty()) << "words on words at " << width << ": " << seen["clashes"];
+        EXPECT_TRUE(seen["outside"].empty()) << seen["outside"];
         EXPECT_LE(seen["page"], seen["window"]) << "it has to be scrolled sideways at " << width;
         EXPECT_EQ(seen["dark"], scheme == std::string("0"));
         EXPECT_GE(seen["contrast"], 4.5) << "of text to paper";

@@ -8,6 +8,7 @@
 #include "compare/trade.hpp"
 #include "models/compile.hpp"
 #include "reports/document/document.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/study_tables.hpp"
@@ -39,6 +40,7 @@ const json& sample_result(const std::string& name) {
         compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));
+    part["judgement"] = judgement_json(compare::judge(model, comparison, compare::default_tolerance, false));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);
     return made[name] = json::parse(result.dump());

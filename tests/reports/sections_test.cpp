@@ -19,8 +19,9 @@ std::vector<Section> sections(const json& result) {
 }
 
 std::string said(const json& result) {
-    const auto all = sections(result);
-    return render("text/verdict", all.front().words, Escape::nothing);
+    for (const auto& section : sections(result))
+        if (section.id == "verdict") return render("text/verdict", section.words, Escape::nothing);
+    return {};
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
@@ -40,8 +41,9 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
     EXPECT_EQ(ids,
-              (std::vector<std::string>{"verdict", "deviation", "price", "drawing", "curves", "forces", "convergence",
-                                        "attribution", "orders", "arithmetic", "references", "model"}));
+              (std::vector<std::string>{"first", "drawing", "curves", "forces", "verdict", "deviation", "price",
+                                        "convergence", "attribution", "orders", "arithmetic", "references",
+                                        "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
@@ -63,7 +65,7 @@ TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
                     section.id != "drawing");
     const std::string text = said(result);
     EXPECT_TRUE(contains(text, " at the end of rebound.")) << text;  // no word on the gap
-    EXPECT_FALSE(contains(text, "rung")) << text;
+    EXPECT_FALSE(contains(text, "The method ‘")) << text;
 }
 
 TEST(Sections, ADamagedDocumentIsReadOrRefusedWithItsPlace) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/curve.hpp"
+#include "compare/findings.hpp"
 #include "reports/page/numbers.hpp"
 #include "reports/tables/select.hpp"
 
@@ -78,8 +79,14 @@ std::string abscissa_of(const Field& scene, const Field& branch) {
 
 namespace {
 
-// Whether every leg's curve can be drawn over it.
+// Whether every leg's curve can be drawn over it, and anybody would: a wheel that travels by less than a millimetre is
+// being loaded by something else.
 bool over_abscissa(const Field& branch) {
+    if (const auto abscissa = branch.find("abscissa"); abscissa && abscissa->text().ends_with("travel")) {
+        const auto x = curve_of(branch, "equilibrium").channel(abscissa->text());
+        const auto [low, high] = std::ranges::minmax_element(x);
+        if (low == x.end() || !(*high - *low >= compare::least_travel)) return false;
+    }
     return std::ranges::all_of(branch["legs"].items(), [&](const Field& leg) {
         const LegCurve curve = curve_of(branch, leg["leg"].text());
         return curve.a.empty() || !curve.x.empty();
@@ -110,7 +117,21 @@ std::vector<Sweep> sweeps_of(const Field& scene) {
             twin->branches.push_back(branch);
         }
     }
+    if (const auto rates = scene.find("rate_errors"))
+        for (const auto& rate : rates->items())
+            for (auto& sweep : sweeps)
+                for (const auto& branch : sweep.branches)
+                    if (branch["name"].text() == rate["branch"].text()) sweep.lifts = true;
     return sweeps;
+}
+
+std::optional<Sweep> leading_sweep(const Field& scene) {
+    if (!scene.find("branches")) return std::nullopt;
+    auto sweeps = sweeps_of(scene);
+    if (sweeps.empty()) return std::nullopt;
+    for (auto& sweep : sweeps)
+        if (sweep.lifts) return std::move(sweep);
+    return std::move(sweeps.front());
 }
 
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
@@ -183,8 +204,8 @@ std::string configuration(const Field& chosen) {
     if (const auto steps = chosen.find("steps"))
         return fmt::format("{}, {} steps", method, whole_number(steps->whole()));
     if (const auto own = chosen.find("own_tolerance_m"))
-        return fmt::format("{}, told {}", method, setting(1e3 * own->number(), "mm"));
-    return method + " leg";
+        return fmt::format("{}, tolerance {}", method, setting(1e3 * own->number(), "mm"));
+    return method + " solution";
 }
 
 std::string slug(const std::string& text) {

@@ -1,6 +1,7 @@
 // What several sections need of a scene in result.json.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Sweep {
     std::string unit;      // of the parameter, "N"
     std::string abscissa;  // what else they are drawn over, "travel [mm]"; empty where it cannot be
     std::vector<Field> branches;
+    bool lifts = false;  // a wheel, and moves nothing else: wheel rates are said of it
 
     std::string parameter() const;           // "load [N]", "parameter [mm]"
     std::string at_equal_parameter() const;  // "at equal load"
@@ -51,6 +53,9 @@ struct Sweep {
 };
 std::vector<Sweep> sweeps_of(const Field& scene);
 Sweep sweep_of(const Field& scene, const Field& branch);  // alone; its abscissa even where it turns back
+
+// The one that leads the page: the first that lifts a wheel, else the first.
+std::optional<Sweep> leading_sweep(const Field& scene);
 
 // Up to `count` positions evenly over 0 ... size - 1, both ends among them.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
@@ -63,7 +68,7 @@ Table page_table(std::string caption, const compare::Table& table, const std::ve
 // "a", "a and b", "a, b and c"
 std::string enumerated(const std::vector<std::string>& words);
 
-// "tangent, 60 steps"; "adaptive, told 0.1 mm"; "equilibrium leg". Of a point or a recommendation.
+// "tangent, 60 steps"; "adaptive, tolerance 0.1 mm"; "equilibrium solution". Of a point or a recommendation.
 std::string configuration(const Field& chosen);
 
 std::string slug(const std::string& text);  // for ids and file names: a-z, 0-9, -

@@ -1,4 +1,4 @@
-// Error over the number of steps: what the paper's Fig. 11 shows, and what it cannot see.
+// Error over the number of steps: what falls with them, and what does not.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The outputs over the travel, all legs: the paper's Figs. 8-10, and with them the load or what drives.
+// The outputs over what drives them, all legs, and over the travel the load or force that it takes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,13 +28,13 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
             return c.name == what || c.name.ends_with("." + std::string(what));
         };
         const std::string whose =
-            c.name.find('.') == std::string::npos ? "" : c.name.substr(0, c.name.find('.')) + ": ";
+            c.name.find('.') == std::string::npos ? "" : ", " + c.name.substr(0, c.name.find('.'));
         if (names("toe")) {
-            outputs.push_back({slug(c.name), whose + "Toe angle", "toe angle [deg]", c.name});
+            outputs.push_back({slug(c.name), "Toe angle" + whose, "toe angle [deg]", c.name});
         } else if (names("camber")) {
-            outputs.push_back({slug(c.name), whose + "Camber angle", "camber angle [deg]", c.name});
+            outputs.push_back({slug(c.name), "Camber angle" + whose, "camber angle [deg]", c.name});
         } else if (names("wheel_centre_y")) {
-            outputs.push_back({whose.empty() ? "lateral" : slug(c.name), whose + "Lateral movement",
+            outputs.push_back({whose.empty() ? "lateral" : slug(c.name), "Lateral movement" + whose,
                                "wheel centre, change of y [mm]", c.name, true});
         }
     }
@@ -43,7 +43,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
         outputs.push_back(
             {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
-    if (!sweep.abscissa.empty() && !measured_over_parameter(scene)) {
+    if (!sweep.abscissa.empty() && !measured_over_parameter(scene, sweep)) {
         if (compare::parameter_word(sweep.unit) == "load") {
             outputs.push_back({"load", "Load", sweep.parameter(), "", false, true});
         } else {  // the force that moves it, in the place of the load
@@ -69,15 +69,15 @@ std::vector<double> values_of(const LegCurve& curve, const Output& output) {
 }
 
 std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const Output& output) {
-    Series reference{"equilibrium", Series::Style::wide, sky},
-        energy{"energy", Series::Style::points, ink, 6},
+    Series reference{"full solution (equilibrium)", Series::Style::wide, sky},
+        energy{"its check (energy)", Series::Style::points, ink, 6},
         published{"published recursion", Series::Style::line, vermilion};
     Table table;
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
     const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
     const bool fourth = measured && !output.load;  // a column of its own
-    const bool travel = !sweep.abscissa.empty() && !measured_over_parameter(scene);
+    const bool travel = !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
     double most = 0;
     for (const auto& branch : sweep.branches) {
         for (auto* series : {&reference, &energy, &published}) {
@@ -128,7 +128,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                                               compare::parameter_word(sweep.unit), sweep.name);
 
     Figure figure{.id = fmt::format("{}-{}", output.id, slug(sweep.name)),
-                  .title = output.title,
+                  .title = fmt::format("{}, {}", output.title, sweep.name),
                   .description = {},
                   .x = travel ? sweep.abscissa : sweep.parameter(),
                   .y = output.axis};
@@ -137,7 +137,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     const auto [low, high] = std::ranges::minmax_element(
         reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
     figure.description = fmt::format(
-        "{} over {}: by the equilibrium leg from {} to {}. The energy leg's points lie on its line; the "
+        "{} over {}: by the full solution from {} to {}. The points of its check by energy lie on its line; the "
         "published recursion's line is drawn over it.",
         output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
         number(high->empty() ? 0 : (*high)[1], 3));
@@ -166,7 +166,7 @@ Table outputs(const Field& scene, const Field& branch) {
 
 std::optional<Section> curves_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "curves", .title = "Outputs, all legs"};
+    Section section{.id = "curves", .title = "Outputs over what drives them"};
     for (const auto& sweep : sweeps_of(scene))
         for (const auto& output : outputs_of(scene, sweep))
             if (auto made = group(scene, sweep, output)) section.figures.push_back(std::move(*made));

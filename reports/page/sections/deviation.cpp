@@ -103,7 +103,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     Figure figure{.id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
                   .title = fmt::format("{}: worst deviation, {}", angle ? "Angles" : "Positions", sweep.name),
                   .x = sweep.parameter(),
-                  .y = fmt::format("deviation from equilibrium [{}]", unit),
+                  .y = fmt::format("deviation from the full solution [{}]", unit),
                   .log_y = true,
                   .height = 1.12};
     std::vector<std::string> names;
@@ -137,7 +137,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
                  : "The references did not both go all the way.";
     figure.description = fmt::format(
-        "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the equilibrium leg: "
+        "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the full solution: "
         "published {} up to {}{}{}. {}",
         compare::parameter_word(sweep.unit),
         number(sweep.branches.size() > 1 ? sweep.branches.back()["to"].number()
@@ -159,7 +159,7 @@ std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); 
 // One row per channel worth it: main ones, and of each joint the force and moment component that is worst.
 Table deviations(const Field& scene, const Field& branch) {
     Table table{.caption =
-                    fmt::format("Deviation of the published recursion from the equilibrium leg, branch {}",
+                    fmt::format("Deviation of the published recursion from the full solution, branch {}",
                                 branch["name"].text())};
     const Sweep alone = sweep_of(scene, branch);
     table.columns = {

@@ -11,52 +11,83 @@
 
 namespace elastocheck::reports {
 
-bool measured_over_parameter(const Field& scene) {
-    const auto measured = scene.find("measured");
-    return measured && !measured->find("abscissa");
+namespace {
+
+bool is_of(const Sweep& sweep, const std::string& branch) {
+    return std::ranges::any_of(sweep.branches, [&](const Field& b) { return b["name"].text() == branch; });
 }
 
-std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, const std::string& channel,
-                                      bool change) {
+}  // namespace
+
+bool measured_over_parameter(const Field& scene, const Sweep& sweep) {
+    const auto measured = scene.find("measured");
+    if (!measured) return false;
+    const auto abscissa = measured->find("abscissa");
+    if (!abscissa) return true;
+    const auto x = (*measured)["columns"][abscissa->text()].numbers();
+    const auto of = (*measured)["branch"].texts();
+    bool points = false, travel = false;
+    for (std::size_t k = 0; k < of.size() && k < x.size(); ++k)
+        if (is_of(sweep, of[k])) points = true, travel = travel || std::isfinite(x[k]);
+    return points && !travel;
+}
+
+namespace {
+
+std::optional<Series> points_of(const Field& scene, const std::vector<Field>& branches, bool over_travel,
+                                const std::string& channel, bool change) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
     const Field columns = (*measured)["columns"];
     const auto abscissa = measured->find("abscissa");
-    const auto across = abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
+    const auto across = over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
     const auto column = channel.empty() ? measured->find("parameter") : columns.find(channel);
     if (!across || !column) return std::nullopt;
     const auto x = across->numbers(), y = column->numbers();
     const auto of = (*measured)["branch"].texts();
     if (x.size() != y.size() || of.size() != x.size()) column->fail("not as many numbers as points");
     Series series{"measured", Series::Style::rings, purple, 5};
-    for (const auto& branch : sweep.branches) {
+    bool any = false;
+    for (const auto& branch : branches) {
         const std::string name = branch["name"].text();
         const LegCurve curve = curve_of(branch, "equilibrium");
         double first = 0;
         if (change)
             if (const auto values = curve.channel(channel); !values.empty()) first = values[curve.start()];
         for (std::size_t k = 0; k < x.size(); ++k)
-            if (of[k] == name) series.rows.push_back({x[k], y[k] - first});
+            if (of[k] == name && std::isfinite(x[k]))
+                series.rows.push_back({x[k], y[k] - first}), any = any || std::isfinite(y[k]);
     }
-    if (series.rows.empty()) return std::nullopt;
+    if (!any) return std::nullopt;
     return series;
+}
+
+bool over_travel(const Field& scene, const Sweep& sweep) {
+    return !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
+}
+
+}  // namespace
+
+std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, const std::string& channel,
+                                      bool change) {
+    return points_of(scene, sweep.branches, over_travel(scene, sweep), channel, change);
 }
 
 std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
                                    const std::string& channel, bool change) {
     const auto measured = scene.find("measured");
-    if (!measured || !(*measured)["branch_given"].truth())
-        return measured_series(scene, sweep, channel, change);
-    return measured_series(scene, {sweep.name, sweep.unit, sweep.abscissa, {branch}}, channel, change);
+    if (!measured || !(*measured)["branch_given"].truth()) return measured_series(scene, sweep, channel, change);
+    return points_of(scene, {branch}, over_travel(scene, sweep), channel, change);
 }
 
 double value_between(const Series& measured, double x) {
     auto rows = measured.rows;
-    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]) || !std::isfinite(row[1]); });
-    std::ranges::sort(rows);
+    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
+    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row[0]; });  // NaN has no place in an order
     for (std::size_t k = 1; k < rows.size(); ++k) {
         const auto &a = rows[k - 1], &b = rows[k];
-        if (a[0] <= x && x <= b[0] && a[0] < b[0]) return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+        if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))
+            return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
     }
     return NAN;
 }
@@ -65,7 +96,11 @@ std::optional<Section> measured_section(const Field& scene) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
     Section section{.id = "measured", .title = "Against the measurement"};
-    section.words = {{"over_load", measured_over_parameter(scene)},
+    bool over_load = false;
+    if (scene.find("branches"))
+        for (const auto& sweep : sweeps_of(scene))
+            over_load = over_load || (measured_over_parameter(scene, sweep) && !sweep.abscissa.empty());
+    section.words = {{"over_load", over_load},
                      {"file", (*measured)["file"].text()},
                      {"hash", (*measured)["hash"].text()},
                      {"points", (*measured)["points"].whole()}};
@@ -75,9 +110,9 @@ std::optional<Section> measured_section(const Field& scene) {
                                 {"points"},
                                 {"published recursion, max"},
                                 {"rms"},
-                                {"equilibrium, max"},
+                                {"full solution, max"},
                                 {"rms"},
-                                {"energy, max"},
+                                {"its check by energy, max"},
                                 {"rms"}}};
         for (const auto& row : reading["channels"].items()) {
             std::vector<std::string> cells{fmt::format("{} [{}]", row["channel"].text(), row["unit"].text()),

@@ -10,8 +10,8 @@
 
 namespace elastocheck::reports {
 
-// Whether the points say their parameter and no travel: figures with them go over the parameter then.
-bool measured_over_parameter(const Field& scene);
+// Whether the points of these branches say their parameter and no travel: figures with them go over the parameter then.
+bool measured_over_parameter(const Field& scene, const Sweep& sweep);
 
 // The points of these branches, of a channel (or of the parameter where `channel` is empty), to be drawn over its
 // curves: a change counts from where those begin. Nothing where it was not measured.
@@ -22,7 +22,7 @@ std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, co
 std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
                                    const std::string& channel, bool change);
 
-// Between its points, straight; NaN outside them.
+// Between its points, straight; NaN outside them, and beside a point at which it was not measured.
 double value_between(const Series& measured, double x);
 
 }  // namespace elastocheck::reports

@@ -94,7 +94,7 @@ std::optional<Section> price_section(const Field& scene) {
         section.words["times"] = {{"rounds", (*trade)["rounds"].whole()},
                                   {"noise", percent((*trade)["time_noise"].number())}};
         group.figures.push_back(figure(*trade, points, "price-time", "time ratio", 't',
-                                       "time, as a ratio to the equilibrium leg", "Error against time"));
+                                       "time, as a ratio to the full solution", "Error against time"));
     }
     std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
     group.caption = "Worst position error over all branches, output points and outputs, at equal parameter.";

@@ -12,23 +12,23 @@ namespace elastocheck::reports {
 std::optional<Section> references_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "references", .title = "The references, certified"};
-    Table agreement{.caption = "How far the energy leg is from the equilibrium leg, worst over the branch",
+    Table agreement{.caption = "How far the solution by energy is from the one by equilibrium, worst over the branch",
                     .columns = {{"branch", true},
                                 {"positions [mm]"},
                                 {"angles [deg]"},
                                 {"forces [N]"},
                                 {"moments [N·m]"},
                                 {"numbers compared"}}};
-    Table judged{.caption = "What a leg’s states leave in another leg’s equations, worst over the points",
+    Table judged{.caption = "What each solution leaves in the equations of the others, worst over the points",
                  .columns = {{"branch", true},
                              {"states of", true},
                              {"judged by", true},
                              {"force [N]"},
                              {"moment [N·m]"},
                              {"constraint [mm]"}}};
-    Table work{.caption = "How each leg ended, and its work",
+    Table work{.caption = "How each solution ended, and its work",
                .columns = {{"branch", true},
-                           {"leg", true},
+                           {"solution", true},
                            {"outcome", true},
                            {"points"},
                            {"factorisations"},
@@ -94,7 +94,7 @@ std::optional<Section> references_section(const Field& scene) {
             section.words["reasons"].push_back(fmt::format("{}: {}", name, reason));
     }
     if (section.words.contains("no_energy") || section.words.contains("witness"))
-        agreement.caption = "How far the second reference is from the equilibrium leg, worst over the branch";
+        agreement.caption = "How far the second reference is from the one by equilibrium, worst over the branch";
     judged.folded = true;
     section.tables = {agreement, judged, work};
     return section;

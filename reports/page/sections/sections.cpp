@@ -2,13 +2,26 @@
 
 namespace elastocheck::reports {
 
+// First what a chassis engineer looks for, then how far each number can be trusted.
 std::vector<Section> sections_of(const Field& scene) {
+    struct Part {
+        const char* title;
+        std::vector<std::optional<Section> (*)(const Field&)> sections;
+    };
+    const Part parts[] = {
+        {"", {first_section, drawing_section}},
+        {"What it does", {characteristics_section, curves_section, forces_section}},
+        {"How far to trust it",
+         {measured_section, verdict_section, deviation_section, price_section, convergence_section,
+          attribution_section, orders_section, arithmetic_section, references_section, formulations_section,
+          model_section}}};
     std::vector<Section> sections;
-    for (const auto make :
-         {verdict_section, deviation_section, price_section, drawing_section, characteristics_section, curves_section, forces_section,
-          measured_section, convergence_section, attribution_section, orders_section, arithmetic_section,
-          references_section, formulations_section, model_section})
-        if (auto section = make(scene)) sections.push_back(std::move(*section));
+    for (const auto& part : parts)
+        for (const auto make : part.sections)
+            if (auto section = make(scene)) {
+                section->part = part.title;
+                sections.push_back(std::move(*section));
+            }
     return sections;
 }
 

@@ -1,4 +1,4 @@
-// The answer: sentences made of the numbers.
+// How far the recursion can be trusted, in sentences made of the numbers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -168,7 +168,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
 }  // namespace
 
 std::optional<Section> verdict_section(const Field& scene) {
-    Section section{.id = "verdict", .title = "Verdict"};
+    Section section{.id = "verdict", .title = "In short"};
     json& words = section.words;
     std::vector<json> tiles;
     const Field verdict = scene["verdict"];

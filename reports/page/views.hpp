@@ -1,0 +1,67 @@
+// A suspension, seen from the front, the side, above and between: what a reader recognises before any number.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/page/page.hpp"
+
+namespace elastocheck::reports {
+
+using Place = std::array<double, 3>;  // x forward, y left, z up [mm]
+
+struct Suspension {
+    struct Spotted {
+        std::string name, body;
+        bool hardpoint = false;  // else named after what is attached there
+        Place at{};
+    };
+    struct Link {
+        std::string kind;  // body, rod, spring, stop, beam, damper
+        std::size_t i = 0, j = 0;
+    };
+    struct Symbol {
+        std::string kind;  // spherical, revolute, universal, sliding, plane, fixed, bushing, drive
+        Place at{};
+        std::optional<Place> axis{};
+    };
+    struct Wheel {
+        std::size_t centre = 0, patch = 0;
+        Place spin_axis{};
+    };
+    struct Moved {  // another position of it
+        std::string title;
+        std::vector<Place> points{};
+        std::vector<std::vector<Place>> wheels{};  // rims
+    };
+    std::vector<Spotted> points{};
+    std::vector<Link> links{};
+    std::vector<std::vector<std::size_t>> faces{};
+    std::vector<Symbol> symbols{};
+    std::vector<Wheel> wheels{};
+    std::vector<Moved> moved{};
+};
+
+struct View {
+    const char *id, *title, *from;  // "from the front"
+    Place towards_viewer;
+};
+inline constexpr View front_view{"view-front", "Front view", "from the front", {1, 0, 0}};
+inline constexpr View side_view{"view-side", "Side view", "from the left", {0, 1, 0}};
+inline constexpr View top_view{"view-top", "Top view", "from above", {0, 0, 1}};
+// From the front, above, and the middle of the vehicle, so that the wheel does not hide what holds it: `right` for a
+// suspension of the right side alone.
+View axonometric_view(bool right);
+
+// Without a size the height is as the views of one width and one scale ask. Words that find no place are left out.
+struct Frame {
+    int width = 0, height = 0;  // [px]
+    bool legend = false;
+};
+Frame large_frame(const Suspension& suspension);  // one view; an axle is wider
+Frame small_frame(const Suspension& suspension);  // of three
+std::vector<Figure> draw_views(const Suspension& suspension, const std::vector<View>& views, const Frame& frame);
+
+}  // namespace elastocheck::reports
