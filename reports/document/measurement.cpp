@@ -85,10 +85,8 @@ std::string parameter_column(compare::Unit unit) {
         case compare::Unit::newton_metre: return "load_Nm";
         case compare::Unit::mm: return "parameter_mm";
         case compare::Unit::deg: return "parameter_deg";
-        case compare::Unit::percent:
-        case compare::Unit::none: return "parameter";
+        default: return "parameter";
     }
-    return {};
 }
 
 // Of all branches, each once.
