@@ -134,13 +134,21 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
-// Of each scene its answer, and whether all of it could be judged.
+// "pass", "fail", "not judged", where the document holds that against a tolerance; else whether it could be judged.
+std::string mark_of(const json& scene) {
+    const auto judgement = scene.find("judgement");
+    if (judgement != scene.end()) return judgement->value("verdict", "not judged");
+    return scene["verdict"]["conclusive"].get<bool>() ? "judged" : "not judged";
+}
+
+// Of each scene its answer, and whether it passes.
 json answer_document(const json& result, const std::vector<std::string>& answers, const std::string& page) {
     json scenes = json::array();
     for (std::size_t k = 0; k < answers.size(); ++k) {
         const json& scene = result["scenes"][k];
         scenes.push_back({{"name", scene["name"]},
                           {"source", scene["source"]},
+                          {"mark", mark_of(scene)},
                           {"answer", answers[k]},
                           {"verdict", scene["verdict"]}});
     }
@@ -154,8 +162,7 @@ std::string answer_text(const json& result, const std::vector<std::string>& answ
     for (std::size_t k = 0; k < answers.size(); ++k)
         text += fmt::format("{}: {}\n\n", result["scenes"][k]["name"].get<std::string>(), answers[k]);
     for (const auto& scene : result["scenes"])
-        text += fmt::format("{}: {}\n", scene["source"].get<std::string>(),
-                            scene["verdict"]["conclusive"].get<bool>() ? "passed" : "COULD NOT JUDGE");
+        text += fmt::format("{}: {}\n", scene["source"].get<std::string>(), mark_of(scene));
     return text + fmt::format("The page: {} ({} scene{}, {:.1f} s)\n", page, answers.size(),
                               answers.size() == 1 ? "" : "s", seconds);
 }

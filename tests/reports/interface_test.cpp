@@ -175,6 +175,36 @@ TEST(Version, NamesTheCommitAndEveryLibrary) {
             << library << said;
 }
 
+// What the build says of the sources in a folder.
+std::string commit_of(const std::string& folder) {
+    const Said said = support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
+                                    folder + "/reports/document/build_info.cmake");
+    EXPECT_EQ(said.code, 0) << said.err;
+    std::smatch found;
+    const std::string text = text_of(folder + "/out");
+    return std::regex_search(text, found, std::regex("commit = \"([^\"]*)\"")) ? found[1].str() : "";
+}
+
+TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
+    const std::string root = scenes + "/../..", git = "git -c safe.directory='*' -C " + root + " ";
+    const Said head = support::says(git + "rev-parse --show-prefix HEAD");
+    if (!head.out.starts_with("\n")) GTEST_SKIP() << "not a checkout of its own";
+    const std::string commit = head.out.substr(1, 40);
+    const Folder around;
+    const std::string archive = (around.path / "archive").string(), copy = (around.path / "copy").string();
+    ASSERT_EQ(
+        support::says(
+            "cd " + around.path.string() + " && mkdir -p archive copy/reports/document && git init -q && " +
+            git + "archive HEAD .gitattributes reports/document/build_info.cmake | tar x -C archive && cp " +
+            root +
+            "/reports/document/build_info.cmake copy/reports/document/ && git add copy && git -c "
+            "user.name=t -c user.email=t@example.org commit -q -m x")
+            .code,
+        0);
+    EXPECT_EQ(commit_of(archive), commit);
+    EXPECT_EQ(commit_of(copy), "unknown") << "the checkout around it is somebody else's";
+}
+
 TEST(Help, PointsToFilesThatAreThere) {
     for (const char* arguments : {"--help", "gate --help"}) {
         const std::string said = elastocheck_says(arguments).out;
@@ -185,6 +215,23 @@ TEST(Help, PointsToFilesThatAreThere) {
                 EXPECT_TRUE(std::filesystem::is_regular_file(line.substr(at + 2))) << line;
             }
         EXPECT_EQ(files, 2) << said;
+    }
+}
+
+TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
+    const Folder folder;
+    namespace fs = std::filesystem;
+    const fs::path prefix = fs::canonical(folder.path) / "prefix",
+                   documents = prefix / "share/doc/elastocheck";
+    for (const fs::path& made : {prefix / "bin", documents / "models/scenes", documents / "reports"})
+        fs::create_directories(made);
+    fs::copy_file(ELASTOCHECK_COMMAND, prefix / "bin/elastocheck");
+    const auto help = [&] { return support::says((prefix / "bin/elastocheck").string() + " --help").out; };
+    EXPECT_TRUE(contains(help(), "The scene files: models/scenes/README.md\n"))
+        << "copied away from all of them";
+    for (const char* name : {"models/scenes/README.md", "reports/README.md"}) {
+        folder.write("prefix/share/doc/elastocheck/" + std::string(name), "");
+        EXPECT_TRUE(contains(help(), ": " + (documents / name).string() + "\n")) << help();
     }
 }
 
@@ -306,7 +353,9 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     EXPECT_EQ(said.code, 0) << said.err;
     const auto lines = parts_of(said.out, '\n');
     ASSERT_GE(lines.size(), 2u);
-    EXPECT_TRUE(lines[lines.size() - 2].ends_with("single_bushing.yaml: passed")) << said.out;
+    EXPECT_TRUE(
+        std::regex_search(lines[lines.size() - 2], std::regex("single_bushing\\.yaml: (pass|fail|judged)$")))
+        << said.out;
     EXPECT_TRUE(lines.back().starts_with("The page: " + (report.folder.path / "out/report.html").string()))
         << said.out;
 
@@ -315,6 +364,19 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     EXPECT_EQ(answer["page"], (report.folder.path / "out/report.html").string());
     EXPECT_EQ(answer["scenes"][0]["verdict"]["conclusive"], true);
     EXPECT_TRUE(contains(said.out, answer["scenes"][0]["answer"].get<std::string>()));
+}
+
+TEST(ReportCommand, MarksASceneByItsJudgement) {
+    const Report report;
+    for (const char* verdict : {"pass", "fail", "not judged"}) {
+        json document = json::parse(text_of(report.document));
+        document["scenes"][0]["judgement"]["verdict"] = verdict;
+        report.folder.write("in/result.json", document.dump());
+        const Said said = report.draws("");
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_TRUE(contains(said.out, std::string("single_bushing.yaml: ") + verdict + "\nThe page: "))
+            << said.out;
+    }
 }
 
 TEST(ReportCommand, OpensThePageByWhatBrowserSays) {
