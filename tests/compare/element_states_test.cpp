@@ -77,12 +77,12 @@ std::vector<Vector6> acting(const Model& model, const Branch& branch, const Equi
     return on;
 }
 
-// The largest of what is left over, over the largest of what acts: forces, and moments by 1 m.
+// The largest of what is left over, over the largest of what acts, at least 1 N: forces, and moments by 1 m.
 double out_of_balance(const Model& model, const Branch& branch, const Equilibrium& state) {
     const auto all = element_channels(model);
     const auto values = evaluate(model, branch, all, state);
     const auto on = acting(model, branch, state);
-    double left = 0, size = 0;
+    double left = 0, size = 1;
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
         for (int k = 0; k < 6; ++k) {
             constexpr double h = 1e-5;
@@ -106,15 +106,22 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
     return left / size;
 }
 
+// Forces without an energy do other work than this.
+std::vector<std::string> scenes_of_energies() {
+    auto names = support::scene_names();
+    std::erase_if(names, [](const std::string& name) {
+        return std::ranges::any_of(support::scene(name).elastics, [](const Elastic& elastic) {
+            const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+            return bushing != nullptr && !has_energy(bushing->formulation);
+        });
+    });
+    return names;
+}
+
 class Balance : public testing::TestWithParam<std::string> {};
 
 TEST_P(Balance, ForcesOfElementsLoadsAndJointsAddUpToNothingOnEveryBody) {
-    Scene scene = trim(support::scene(GetParam())).scene;
-    const bool has_an_energy = std::ranges::all_of(scene.elastics, [](const Elastic& e) {
-        const auto* bushing = std::get_if<Bushing>(&e.kind);
-        return bushing == nullptr || has_energy(bushing->formulation);
-    });
-    if (!has_an_energy) GTEST_SKIP() << "forces without an energy do other work than this";
+    const Scene scene = trim(support::scene(GetParam())).scene;
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
         for (const Way& way : ways_of(model, branch, 4)) {
@@ -129,7 +136,7 @@ TEST_P(Balance, ForcesOfElementsLoadsAndJointsAddUpToNothingOnEveryBody) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, Balance, testing::ValuesIn(support::scene_names()),
+INSTANTIATE_TEST_SUITE_P(Elements, Balance, testing::ValuesIn(scenes_of_energies()),
                          [](const auto& scene) { return scene.param; });
 
 // ---- At the ends of the branches.
