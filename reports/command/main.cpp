@@ -194,7 +194,8 @@ int run(int argc, char** argv) {
             if (!solve_request.rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
-                return compare_legs(scene, settings, {how, every, detail, within, formulations}, output, command);
+                return compare_legs(scene, settings, {how, every, detail, within, formulations}, output,
+                                    command);
             solve_request.gait = {
                 .leg = reference ? *leg : compare::Leg::recursive, .recursion = how, .every = every};
             solve_request.detail = detail;

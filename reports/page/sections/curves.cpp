@@ -137,7 +137,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     const auto [low, high] = std::ranges::minmax_element(
         reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
     figure.description = fmt::format(
-        "{} over {}: by the full solution from {} to {}. The points of its check by energy lie on its line; the "
+        "{} over {}: by the full solution from {} to {}. The points of its check by energy lie on its line; "
+        "the "
         "published recursion's line is drawn over it.",
         output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
         number(high->empty() ? 0 : (*high)[1], 3));
