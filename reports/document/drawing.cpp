@@ -254,7 +254,9 @@ void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const 
     };
     if (segments.size() > 1) line.push_back(end(segments.front()->i, segments.front()->j));
     for (std::size_t k = 0; k < segments.size(); ++k) {
-        line.push_back({segments[k]->i.body, segments[k]->i.s_local});
+        const Marker& middle =
+            k == 0 ? segments[k]->j : segments[k]->i;  // on a node, not on the body at the end
+        line.push_back({middle.body, middle.s_local});
         if (k + 1 < segments.size()) line.push_back({segments[k]->j.body, Vector3d::Zero()});
     }
     if (segments.size() > 1) line.push_back(end(segments.back()->j, segments.back()->i));

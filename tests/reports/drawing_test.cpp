@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "models/compile.hpp"
@@ -129,6 +130,9 @@ TEST(Drawing, ABeamIsALineFromEndToEnd) {
     EXPECT_NEAR(left, 500, 1e-9);
     EXPECT_NEAR(right, -500, 1e-9);
     EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 2) << "a segment is none";
+    std::map<std::string, int> lines;  // of the arms, which are each other's image
+    for (const auto& link : d["links"]) lines[link["name"]] += link["kind"] == "body";
+    EXPECT_EQ(lines["arm_left"], lines["arm_right"]);
 }
 
 // From the side forward is to the left, from above down the page, below the front view on which left is right.
