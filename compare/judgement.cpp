@@ -22,13 +22,15 @@ Judgement judge(const Model& model, const Comparison& comparison, const Toleranc
     j.asked = asked;
     for (const auto& branch : comparison.branches) {
         j.method = branch.runs[static_cast<std::size_t>(Leg::recursive)].method;
-        for (const auto& reason : branch.inconclusive.texts()) j.reasons.push_back(branch.branch + ": " + reason);
+        for (const auto& reason : branch.inconclusive.texts())
+            j.reasons.push_back(branch.branch + ": " + reason);
     }
     j.position = worst_deviation(comparison, ReadingKind::equal_parameter, Unit::mm);
     j.angle = worst_deviation(comparison, ReadingKind::equal_parameter, Unit::deg);
     j.position_across = worst_deviation(comparison, ReadingKind::equal_abscissa, Unit::mm);
     j.angle_across = worst_deviation(comparison, ReadingKind::equal_abscissa, Unit::deg);
-    const auto rates = comparison.branches.empty() ? std::vector<RateError>{} : rate_errors(model, comparison);
+    const auto rates =
+        comparison.branches.empty() ? std::vector<RateError>{} : rate_errors(model, comparison);
     for (const auto& rate : rates)
         if (!j.wheel_rate || std::abs(rate.off) > std::abs(j.wheel_rate->off)) j.wheel_rate = rate;
 

@@ -22,9 +22,9 @@ struct Judgement {
     Tolerance tolerance = default_tolerance;
     bool asked = false;  // the tolerance was given, not the default
     // The largest deviations by reading; nothing where there is nothing to compare.
-    std::optional<Worst> position, angle;                        // at equal parameter: load, travel of a jack
-    std::optional<Worst> position_across, angle_across;          // at equal abscissa: equal travel
-    std::optional<RateError> wheel_rate;                         // of those that are off, the one off most
+    std::optional<Worst> position, angle;                // at equal parameter: load, travel of a jack
+    std::optional<Worst> position_across, angle_across;  // at equal abscissa: equal travel
+    std::optional<RateError> wheel_rate;                 // of those that are off, the one off most
 };
 
 // A wheel rate is judged as a position. Rates k (1 + off) and k give, under one force F = k z,
@@ -35,6 +35,7 @@ struct Judgement {
 // positions are exact, whatever it takes to hold them.
 double as_position(const RateError& rate);
 
-Judgement judge(const Model& model, const Comparison& comparison, const Tolerance& tolerance, bool asked = true);
+Judgement judge(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
+                bool asked = true);
 
 }  // namespace elastocheck::compare

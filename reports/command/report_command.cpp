@@ -232,8 +232,10 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
     (void)load_cases(request);
-    if (request.measured.empty() && (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
-        throw std::invalid_argument("report: --branch-column and --case say how to read --measured; give a file");
+    if (request.measured.empty() &&
+        (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
+        throw std::invalid_argument(
+            "report: --branch-column and --case say how to read --measured; give a file");
     if (!request.measured.empty()) (void)read_whole(request.measured);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");

@@ -16,10 +16,10 @@ struct ReportRequest {
     Settings settings;
     std::string from;  // a result.json, in place of scenes
     std::string folder;
-    std::string measured;  // CSV
+    std::string measured;                  // CSV
     std::string branch_column = "branch";  // of it
-    std::vector<std::string> cases;        // "THEIRS=OURS": names in that column, and the branches that they mean
-    std::string alarms;    // JSON, what `./dev mutate` found
+    std::vector<std::string> cases;  // "THEIRS=OURS": names in that column, and the branches that they mean
+    std::string alarms;              // JSON, what `./dev mutate` found
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";
     bool archive = false;

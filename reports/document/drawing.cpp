@@ -87,7 +87,8 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     for (int side = 0; side < 2; ++side) {
         const std::size_t first = hull.size();
         for (const auto k : sorted) {
-            while (hull.size() >= first + 2 && !left_turn(hull[hull.size() - 2], hull.back(), k)) hull.pop_back();
+            while (hull.size() >= first + 2 && !left_turn(hull[hull.size() - 2], hull.back(), k))
+                hull.pop_back();
             hull.push_back(k);
         }
         hull.pop_back();  // where the other side begins
@@ -153,16 +154,36 @@ struct Symbol {
 
 std::vector<Symbol> symbols_of(const JointKind& kind) {
     return std::visit(
-        overloaded{[](const Spherical& j) { return std::vector<Symbol>{{"spherical", j.i}}; },
-                   [](const Revolute& j) { return std::vector<Symbol>{{"revolute", j.i, j.axis_i}}; },
-                   [](const Universal& j) { return std::vector<Symbol>{{"universal", j.i}}; },
-                   [](const Cylindrical& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_i}}; },
-                   [](const Translational& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_i}}; },
-                   [](const Planar& j) { return std::vector<Symbol>{{"plane", j.i}}; },
-                   [](const Fixed& j) { return std::vector<Symbol>{{"fixed", j.i}}; },
-                   [](const Distance& j) { return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}}; },
-                   [](const InPlane& j) { return std::vector<Symbol>{{"plane", j.i}}; },
-                   [](const InLine& j) { return std::vector<Symbol>{{"sliding", j.i, j.axis_j}}; },
+        overloaded{[](const Spherical& j) {
+                       return std::vector<Symbol>{{"spherical", j.i}};
+                   },
+                   [](const Revolute& j) {
+                       return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
+                   },
+                   [](const Universal& j) {
+                       return std::vector<Symbol>{{"universal", j.i}};
+                   },
+                   [](const Cylindrical& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                   },
+                   [](const Translational& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                   },
+                   [](const Planar& j) {
+                       return std::vector<Symbol>{{"plane", j.i}};
+                   },
+                   [](const Fixed& j) {
+                       return std::vector<Symbol>{{"fixed", j.i}};
+                   },
+                   [](const Distance& j) {
+                       return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
+                   },
+                   [](const InPlane& j) {
+                       return std::vector<Symbol>{{"plane", j.i}};
+                   },
+                   [](const InLine& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
+                   },
                    [](const auto&) { return std::vector<Symbol>{}; }},  // directions alone have no place
         kind);
 }
@@ -186,7 +207,9 @@ json symbols_json(const Scene& scene) {
                         {"at_mm", {1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z()}},
                         {"axis", axis ? vector_json(*axis) : json(nullptr)}});
     };
-    const auto place = [&](const Point& p) -> Vector3d { return pose(p.body).r + pose(p.body).p * p.s_local; };
+    const auto place = [&](const Point& p) -> Vector3d {
+        return pose(p.body).r + pose(p.body).p * p.s_local;
+    };
     const auto turned = [&](const Direction& u) -> Vector3d { return pose(u.body).p * u.u_local; };
     for (std::size_t k = 0; k < scene.joints.size(); ++k) {
         const Joint& joint = scene.joints[k];
@@ -231,7 +254,9 @@ void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const 
     };
     if (segments.size() > 1) line.push_back(end(segments.front()->i, segments.front()->j));
     for (std::size_t k = 0; k < segments.size(); ++k) {
-        line.push_back({segments[k]->i.body, segments[k]->i.s_local});
+        const Marker& middle =
+            k == 0 ? segments[k]->j : segments[k]->i;  // on a node, not on the body at the end
+        line.push_back({middle.body, middle.s_local});
         if (k + 1 < segments.size()) line.push_back({segments[k]->j.body, Vector3d::Zero()});
     }
     if (segments.size() > 1) line.push_back(end(segments.back()->j, segments.back()->i));
@@ -268,16 +293,6 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     return result;
 }
 
-// Of models that have some.
-template <class M>
-void draw_dampers(Sketch& sketch, const M& model) {
-    if constexpr (requires { model.dampers; })
-        for (const auto& damper : model.dampers) {
-            const auto i = sketch.add(damper.i, damper.name);
-            sketch.link("damper", damper.name, i, sketch.add(damper.j, damper.name));
-        }
-}
-
 }  // namespace
 
 json drawing_json(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
@@ -286,40 +301,41 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         if (joint.only_where_driven) continue;  // a jack is no part of the suspension
-        std::visit(
-            overloaded{[&](const CoincidentPoints& c) { sketch.add(c.i, joint.name), sketch.add(c.j, joint.name); },
-                       [&](const PointInPlane& c) { sketch.add(c.i, joint.name); },
-                       [](const PerpendicularDirections&) {},
-                       [&](const DistanceBetween& c) {
-                           const auto i = sketch.add(c.i, joint.name);
-                           sketch.link("rod", joint.name, i, sketch.add(c.j, joint.name));
-                       },
-                       [](const DirectionAtAngle&) {}},
-            constraint.kind);
+        std::visit(overloaded{[&](const CoincidentPoints& c) {
+                                  sketch.add(c.i, joint.name), sketch.add(c.j, joint.name);
+                              },
+                              [&](const PointInPlane& c) { sketch.add(c.i, joint.name); },
+                              [](const PerpendicularDirections&) {},
+                              [&](const DistanceBetween& c) {
+                                  const auto i = sketch.add(c.i, joint.name);
+                                  sketch.link("rod", joint.name, i, sketch.add(c.j, joint.name));
+                              },
+                              [](const DirectionAtAngle&) {}},
+                   constraint.kind);
     }
     std::vector<std::pair<std::string, std::vector<const Bushing*>>> beams;
     std::set<std::pair<std::size_t, std::size_t>> sprung;
     for (const auto& elastic : model.elastics)
-        std::visit(overloaded{[&](const AxialSpring& e) {
-                                  const auto i = sketch.add(e.i, elastic.name), j = sketch.add(e.j, elastic.name);
-                                  const bool first = sprung.insert({i, j}).second;  // its stops lie within it
-                                  sketch.link(first ? "spring" : "stop", elastic.name, i, j);
-                              },
-                              [&](const Bushing& e) {
-                                  if (elastic.only_where_driven) return;  // a tyre
-                                  if (is_segment(elastic)) {
-                                      const std::string beam = elastic.name.substr(0, elastic.name.rfind('.'));
-                                      if (beams.empty() || beams.back().first != beam) beams.push_back({beam, {}});
-                                      beams.back().second.push_back(&e);
-                                      return;
-                                  }
-                                  const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
-                                  const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
-                                  bushings.push_back(e.i.body == ground ? j : i);
-                              }},
-                   elastic.kind);
+        std::visit(
+            overloaded{[&](const AxialSpring& e) {
+                           const auto i = sketch.add(e.i, elastic.name), j = sketch.add(e.j, elastic.name);
+                           const bool first = sprung.insert({i, j}).second;  // its stops lie within it
+                           sketch.link(first ? "spring" : "stop", elastic.name, i, j);
+                       },
+                       [&](const Bushing& e) {
+                           if (elastic.only_where_driven) return;  // a tyre
+                           if (is_segment(elastic)) {
+                               const std::string beam = elastic.name.substr(0, elastic.name.rfind('.'));
+                               if (beams.empty() || beams.back().first != beam) beams.push_back({beam, {}});
+                               beams.back().second.push_back(&e);
+                               return;
+                           }
+                           const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
+                           const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
+                           bushings.push_back(e.i.body == ground ? j : i);
+                       }},
+            elastic.kind);
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
-    draw_dampers(sketch, model);
     for (const auto& probe : model.probes) sketch.add(probe.at, probe.name);
     std::vector<std::vector<std::size_t>> hubs(model.bodies.size());
     std::set<std::size_t> patches;
@@ -372,8 +388,9 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                 "end", *front);
         if (back) put(branch.branch, "end", *back);
     }
-    json result = {{"points", points},     {"links", sketch.links}, {"faces", faces},
-                   {"symbols", symbols_json(scene)}, {"wheels", wheels},    {"bushings", bushings}};
+    json result = {{"points", points}, {"links", sketch.links},
+                   {"faces", faces},   {"symbols", symbols_json(scene)},
+                   {"wheels", wheels}, {"bushings", bushings}};
     result["design"] = positions(sketch, design);
     result["positions"] = along;
     return result;

@@ -34,8 +34,8 @@ struct Column {
 
 struct Points {
     std::vector<Column> columns;
-    std::vector<std::string> branch;       // per point, empty without such a column
-    std::vector<int> lines;                // of the file, per point
+    std::vector<std::string> branch;      // per point, empty without such a column
+    std::vector<int> lines;               // of the file, per point
     std::vector<std::string> parameters;  // the columns that give a branch's parameter
 
     const std::vector<double>* find(std::string_view name) const {
@@ -99,7 +99,8 @@ std::vector<std::string> parameter_columns(const compare::Comparison& all) {
 }
 
 std::string column_of(const std::string& branch, const compare::Comparison& all) {
-    return parameter_column(std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit);
+    return parameter_column(
+        std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit);
 }
 
 // A point in newtons says nothing of a branch that goes by millimetres.
@@ -111,8 +112,9 @@ void check_parameters(const Points& points, const std::string& file, const compa
                              points.parameters[0], points.parameters[1]));
         if (points.parameters.size() == 1 && parameter_columns(all).size() > 1)
             fail(file, 1,
-                 fmt::format("{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
-                             points.parameters[0]));
+                 fmt::format(
+                     "{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
+                     points.parameters[0]));
         return;
     }
     for (std::size_t k = 0; k < points.branch.size(); ++k)
@@ -266,9 +268,9 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
     for (const auto& column : found.columns) columns[all.channels[column.channel].name] = column.values;
     const bool loads = std::ranges::all_of(points.parameters,
-                                           [](const std::string& name) { return name.starts_with("load"); }),
+                                           [](const std::string&name) { return name.starts_with("load"); }),
                drives = std::ranges::none_of(points.parameters,
-                                             [](const std::string& name) { return name.starts_with("load"); });
+                                             [](const std::string&name) { return name.starts_with("load"); });
     const std::string word = loads ? "load" : drives ? "parameter" : "load or parameter";
     json readings = json::array();
     for (const auto& reading : found.readings) {
@@ -296,9 +298,10 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
 std::pair<std::string, std::string> parse_load_case(std::string_view text) {
     const auto at = text.rfind('=');
     if (at == text.npos || at == 0 || at + 1 == text.size())
-        throw std::invalid_argument(fmt::format(
-            "--case '{}': allowed: a name of the file's own, '=' and a branch of the scene, such as 'Lat Force=lateral'",
-            text));
+        throw std::invalid_argument(
+            fmt::format("--case '{}': allowed: a name of the file's own, '=' and a branch of the scene, such "
+                        "as 'Lat Force=lateral'",
+                        text));
     return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
 }
 

@@ -39,8 +39,7 @@ std::pair<std::string, std::string> parse_load_case(std::string_view text);
 //   branch, or the column of `cases`    its branch; needed only where several branches go the same way
 // A point is compared with the branch it was measured on, and with no other. Throws MeasurementError.
 void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv, const std::string& file,
-                     const Model& model, const compare::Comparison& comparison,
-                     const LoadCases& cases = {});
+                     const Model& model, const compare::Comparison& comparison, const LoadCases& cases = {});
 
 // How many numbers of it could be compared, over all readings and outputs.
 int compared_with_measurement(const nlohmann::ordered_json& scene_document);

@@ -43,7 +43,7 @@ double text_width(std::string_view text, double size) {
         if ((static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;  // not the first byte of a letter
         letters += std::string_view("ijlI.,:;'|!()[] ").find(c) != std::string_view::npos ? 0.4
                    : std::string_view("mwMW%@").find(c) != std::string_view::npos         ? 1.0
-                   : c >= 'A' && c <= 'Z'                                                  ? 0.72
+                   : c >= 'A' && c <= 'Z'                                                 ? 0.72
                                                                                           : 0.63;
     }
     return letters * size;
@@ -72,13 +72,16 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
                 // The box touches the circle of this reach with the side or corner that faces the point.
-                const double x = label.at.x + reach * std::cos(angle), y = label.at.y + reach * std::sin(angle);
+                const double x = label.at.x + reach * std::cos(angle),
+                             y = label.at.y + reach * std::sin(angle);
                 const double across = 0.5 * (std::cos(angle) - 1), up = 0.5 * (std::sin(angle) - 1);
                 const Box box{x + across * label.width, y + up * label.height, x + (across + 1) * label.width,
                               y + (up + 1) * label.height};
-                if (box.left < 0 || box.bottom < 0 || box.right > paper.width || box.top > paper.height) continue;
+                if (box.left < 0 || box.bottom < 0 || box.right > paper.width || box.top > paper.height)
+                    continue;
                 const Box roomy = wider(box, gap);
-                if (std::ranges::any_of(taken, [&](const Box& other) { return overlap(roomy, other); })) continue;
+                if (std::ranges::any_of(taken, [&](const Box& other) { return overlap(roomy, other); }))
+                    continue;
                 const Spot near{std::clamp(label.at.x, box.left, box.right),
                                 std::clamp(label.at.y, box.bottom, box.top)};
                 // Neither may a leader run through words, nor words lie on a leader.
@@ -87,7 +90,8 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                                !crosses(label.at, label.at, wider(other, gap));
                     }))
                     continue;
-                if (std::ranges::any_of(leaders, [&](const auto& l) { return crosses(l[0], l[1], roomy); })) continue;
+                if (std::ranges::any_of(leaders, [&](const auto& l) { return crosses(l[0], l[1], roomy); }))
+                    continue;
                 double cost = reach;
                 for (const auto& line : paper.lines)
                     if (crosses(line[0], line[1], roomy)) cost += 22;

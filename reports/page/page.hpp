@@ -68,7 +68,7 @@ struct Figure {
     std::vector<Series> series{};
     std::vector<Band> bands{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
-    std::optional<Sheet> sheet{};                           // a drawing; `width` and the like say nothing then
+    std::optional<Sheet> sheet{};  // a drawing; `width` and the like say nothing then
     std::vector<Word> words{};
 };
 

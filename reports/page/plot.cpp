@@ -40,6 +40,17 @@ json range_of(double low, double high) {
     return fmt::format("{}:{}", end(low), end(high));
 }
 
+// From tick to tick of a logarithmic axis: so many decades that seven ticks or so are left, which no two of touch.
+std::string decades(const Figure& figure, std::size_t axis, double low, double high) {
+    double least = std::isfinite(low) ? low : INFINITY, most = std::isfinite(high) ? high : 0;
+    for (const auto& series : figure.series)
+        for (const auto& row : series.rows)
+            if (row.size() > axis && row[axis] > 0 && std::isfinite(row[axis]))
+                least = std::min(least, row[axis]), most = std::max(most, row[axis]);
+    const double span = most > least ? std::ceil(std::log10(most)) - std::floor(std::log10(least)) : 1;
+    return fmt::format("{:g}", std::pow(10, std::clamp(std::ceil(span / 7), 1.0, 6.0)));
+}
+
 json script_data(const Figure& figure, const std::string& name) {
     json series = json::array(), bands = json::array(), ticks = json::array();
     const bool labelled = !figure.bands.empty();
@@ -90,6 +101,8 @@ json script_data(const Figure& figure, const std::string& name) {
             {"y", figure.y},
             {"log_x", figure.log_x},
             {"log_y", figure.log_y},
+            {"x_decades", decades(figure, 0, NAN, NAN)},
+            {"y_decades", decades(figure, 1, figure.y_low, figure.y_high)},
             {"equal_axes", figure.equal_axes},
             {"key_lines", std::max(6L, static_cast<long>(entries) + 1)},
             {"reversed_x", figure.reversed_x},

@@ -100,7 +100,8 @@ struct Page {
             json entry = {
                 {"caption", group.caption}, {"figures", figures}, {"table", table_json(group.table)}};
             entry["wide"] = group.figures.size() > 1;
-            entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet && group.figures.front().sheet->width > 400;
+            entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet &&
+                             group.figures.front().sheet->width > 400;
             (group.figures.size() > 1 ? several : single).push_back(entry);
         }
         for (const auto& table : section.tables) tables.push_back(table_json(table));
@@ -131,9 +132,10 @@ struct Page {
         std::string before;
         for (const auto& one : part.sections) {
             sections.push_back(section(one, part, plot));
-            sections.back()["part"] = one.part != before && !one.part.empty()
-                                          ? json{{"title", one.part}, {"id", unique(part.id + "-" + slug(one.part))}}
-                                          : json(nullptr);
+            sections.back()["part"] =
+                one.part != before && !one.part.empty()
+                    ? json{{"title", one.part}, {"id", unique(part.id + "-" + slug(one.part))}}
+                    : json(nullptr);
             sections.back()["depth"] = one.part.empty() ? "###" : "####";
             sections.back()["deep"] = !one.part.empty();
             before = one.part;
@@ -147,8 +149,9 @@ struct Page {
 
 // Several scenes at a glance: how far each is off, and whether that passes.
 Table summary(const std::list<ScenePart>& parts) {
-    Table table{.caption = "At a glance: the largest deviations of the linear recursion as published, and whether "
-                           "they are within the tolerance",
+    Table table{.caption =
+                    "At a glance: the largest deviations of the linear recursion as published, and whether "
+                    "they are within the tolerance",
                 .columns = {{"scene", true},
                             {"verdict", true},
                             {"position, at equal load or drive"},
@@ -170,7 +173,8 @@ Table summary(const std::list<ScenePart>& parts) {
         }
         const auto rate = judgement ? judgement->find("wheel_rate") : std::nullopt;
         const double off = rate ? (*rate)["off"].number() : NAN;
-        row.push_back(!rate ? "–" : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
+        row.push_back(!rate ? "–"
+                            : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
         const auto trade = part.scene.find("trade");
         const auto chosen = trade ? trade->find("recommendation") : std::nullopt;
         row.push_back(chosen ? configuration(*chosen) : "–");

@@ -21,7 +21,9 @@ double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + 
 Place cross(const Place& a, const Place& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Place along(const Place& p, double t, const Place& u) { return {p[0] + t * u[0], p[1] + t * u[1], p[2] + t * u[2]}; }
+Place along(const Place& p, double t, const Place& u) {
+    return {p[0] + t * u[0], p[1] + t * u[1], p[2] + t * u[2]};
+}
 Place unit(const Place& v) {
     const double length = std::sqrt(dot(v, v));
     return length > 0 ? Place{v[0] / length, v[1] / length, v[2] / length} : v;
@@ -41,7 +43,8 @@ struct Plane {
 
 // Both edges of a tyre, from the wheel's centre to its patch; how wide it is nobody says, it is drawn 0.6 of its radius.
 std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Wheel& wheel) {
-    const Place centre = s.points[wheel.centre].at, patch = s.points[wheel.patch].at, e = unit(wheel.spin_axis);
+    const Place centre = s.points[wheel.centre].at, patch = s.points[wheel.patch].at,
+                e = unit(wheel.spin_axis);
     Place arm = along(patch, -1, centre);
     arm = along(arm, -dot(arm, e), e);
     const double radius = std::sqrt(dot(arm, arm));
@@ -53,7 +56,8 @@ std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Whee
         constexpr int corners = 60;
         for (int k = 0; k <= corners; ++k) {
             const double angle = 2 * std::numbers::pi * k / corners;
-            edge.push_back(along(along(along(centre, side * radius, e), std::cos(angle), arm), std::sin(angle), other));
+            edge.push_back(
+                along(along(along(centre, side * radius, e), std::cos(angle), arm), std::sin(angle), other));
         }
         edges.push_back(edge);
     }
@@ -142,7 +146,8 @@ void draw_symbol(Board& board, const Suspension::Symbol& symbol) {
         board.strokes(diamond(at, 5), Style::line, blue);
     } else if (symbol.kind == "drive" && std::hypot(direction.x, direction.y) > 0.15) {
         // beside the point, so that the arrow does not lie on what it moves
-        const double length = std::hypot(direction.x, direction.y), nx = -direction.y / length, ny = direction.x / length;
+        const double length = std::hypot(direction.x, direction.y), nx = -direction.y / length,
+                     ny = direction.x / length;
         const double off = ny < 0 ? -13 : 13;
         const Spot beside{at.x + off * nx, at.y + off * ny};
         board.strokes(arrow({beside.x - 20 * direction.x, beside.y - 20 * direction.y},
@@ -172,9 +177,10 @@ std::vector<Entry> entries(const Suspension& s) {
     };
     const auto link = [&](const char* kind, const char* text, auto&& strokes, Style style, Colour colour) {
         if (std::ranges::any_of(s.links, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back({text, [=](Board& board, Spot at) {
-                                board.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style, colour, false);
-                            }});
+            list.push_back(
+                {text, [=](Board& board, Spot at) {
+                     board.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style, colour, false);
+                 }});
     };
     symbol("spherical", "ball joint");
     symbol("bushing", "bushing");
@@ -182,17 +188,29 @@ std::vector<Entry> entries(const Suspension& s) {
     symbol("sliding", "sliding joint");
     symbol("universal", "universal joint");
     symbol("fixed", "fixed joint");
-    link("spring", "spring", [](Spot a, Spot b) { return coil({a.x - 5, a.y}, {b.x + 3, b.y}); }, Style::line, vermilion);
-    link("damper", "damper", [](Spot a, Spot b) { return damper(a, b); }, Style::line, ochre);
-    link("beam", "elastic beam", [](Spot a, Spot b) { return Strokes{{a, b}}; }, Style::heavy, purple);
+    link(
+        "spring", "spring",
+        [](Spot a, Spot b) {
+            return coil({a.x - 5, a.y}, {b.x + 3, b.y});
+        },
+        Style::line, vermilion);
+    link(
+        "damper", "damper", [](Spot a, Spot b) { return damper(a, b); }, Style::line, ochre);
+    link(
+        "beam", "elastic beam",
+        [](Spot a, Spot b) {
+            return Strokes{{a, b}};
+        },
+        Style::heavy, purple);
     if (std::ranges::any_of(s.points, [](const auto& p) { return p.body == "ground"; }))
         list.push_back({"vehicle body", [](Board& board, Spot at) {
                             board.strokes(hatching({at.x, at.y + 6}), Style::hair, slate, false);
                         }});
     if (std::ranges::any_of(s.symbols, [](const auto& one) { return one.kind == "drive"; }))
-        list.push_back({"driven", [](Board& board, Spot at) {
-                            board.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true), Style::line, purple, false);
-                        }});
+        list.push_back(
+            {"driven", [](Board& board, Spot at) {
+                 board.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true), Style::line, purple, false);
+             }});
     for (std::size_t m = 0; m < s.moved.size(); ++m)
         list.push_back({s.moved[m].title, [m](Board& board, Spot at) {
                             board.strokes({{{at.x - 10, at.y}, {at.x + 10, at.y}}}, Style::thin,
@@ -249,15 +267,17 @@ void draw_axes(Board& board, double bottom, double width) {
         const double far = length + 7;
         board.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
     }
-    double bar = std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));  // [mm]: 1, 2 or 5, a third at most
+    double bar =
+        std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));  // [mm]: 1, 2 or 5, a third at most
     for (const double longer : {5.0, 2.0})
         if (longer * bar * board.scale <= 0.3 * width) {
             bar *= longer;
             break;
         }
     const double px = bar * board.scale, y = bottom + 10, end = width - 10;
-    board.strokes({{{end - px, y}, {end, y}}, {{end - px, y - 3}, {end - px, y + 3}}, {{end, y - 3}, {end, y + 3}}},
-                  Style::thin, slate);
+    board.strokes(
+        {{{end - px, y}, {end, y}}, {{end - px, y - 3}, {end - px, y + 3}}, {{end, y - 3}, {end, y + 3}}},
+        Style::thin, slate);
     const std::string text = fmt::format("{:g} mm", bar);
     board.word({end - text_width(text, letter), y + 11}, text, slate);
 }
@@ -287,8 +307,8 @@ void draw_suspension(Board& board, const Suspension& s) {
         }
         for (const auto& link : s.links)
             if (link.kind != "spring" && link.kind != "stop" && link.kind != "damper")
-                board.stroke({board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])}, Style::thin,
-                             colour);
+                board.stroke({board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])},
+                             Style::thin, colour);
     }
     Stroke standing;  // one hatching for points that lie on each other
     for (const auto& p : s.points) {
@@ -316,7 +336,8 @@ void draw_suspension(Board& board, const Suspension& s) {
     each("rod", [&](Spot a, Spot b) { board.stroke({a, b}, Style::heavy, ink); });
     each("beam", [&](Spot a, Spot b) { board.stroke({a, b}, Style::heavy, purple); });
     for (const auto& symbol : s.symbols) draw_symbol(board, symbol);
-    for (const auto& wheel : s.wheels) board.stroke(ring(board.on(s.points[wheel.patch].at), 2), Style::line, slate);
+    for (const auto& wheel : s.wheels)
+        board.stroke(ring(board.on(s.points[wheel.patch].at), 2), Style::line, slate);
 }
 
 // Names of the hardpoints, one for those of several bodies that share a place.
@@ -334,13 +355,14 @@ void draw_names(Board& board, const Suspension& s) {
     for (std::size_t k = 0; k < labels.size(); ++k) {
         if (!placed[k]) continue;
         const Box& box = *placed[k];
-        const Spot near{std::clamp(labels[k].at.x, box.left, box.right), std::clamp(labels[k].at.y, box.bottom, box.top)};
+        const Spot near{std::clamp(labels[k].at.x, box.left, box.right),
+                        std::clamp(labels[k].at.y, box.bottom, box.top)};
         if (std::hypot(near.x - labels[k].at.x, near.y - labels[k].at.y) > 15)
             board.stroke({labels[k].at, near}, Series::Style::hair, slate, false);
         std::string shown = names[k];
         std::ranges::replace(shown, '_', ' ');
-        board.words.push_back({board.x + box.left / board.scale, board.y + (box.bottom + box.top) / 2 / board.scale,
-                               shown, ink});
+        board.words.push_back({board.x + box.left / board.scale,
+                               board.y + (box.bottom + box.top) / 2 / board.scale, shown, ink});
     }
 }
 
@@ -375,7 +397,8 @@ View axonometric_view(bool right) {
     return {"view-axonometric",
             "The suspension",
             "from the front, above and the middle of the vehicle",
-            {std::cos(height) * std::cos(turn), (right ? 1 : -1) * std::cos(height) * std::sin(turn), std::sin(height)}};
+            {std::cos(height) * std::cos(turn), (right ? 1 : -1) * std::cos(height) * std::sin(turn),
+             std::sin(height)}};
 }
 
 Frame large_frame(const Suspension& s) {
@@ -397,8 +420,9 @@ std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& vie
     for (const auto& view : views) {
         const Plane plane(view.towards_viewer);
         const Extent e = extent(s, plane);
-        const double height =
-            frame.height > 0 ? frame.height : std::max(std::ceil(e.height() * scale + 2 * margin + legend), 170.0);
+        const double height = frame.height > 0
+                                  ? frame.height
+                                  : std::max(std::ceil(e.height() * scale + 2 * margin + legend), 170.0);
         const double x = (e.left + e.right) / 2 - frame.width / scale / 2,
                      y = (e.bottom + e.top) / 2 - (height + legend) / scale / 2;
         Board board{plane, x, y, scale};

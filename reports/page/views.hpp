@@ -62,6 +62,7 @@ struct Frame {
 };
 Frame large_frame(const Suspension& suspension);  // one view; an axle is wider
 Frame small_frame(const Suspension& suspension);  // of three
-std::vector<Figure> draw_views(const Suspension& suspension, const std::vector<View>& views, const Frame& frame);
+std::vector<Figure> draw_views(const Suspension& suspension, const std::vector<View>& views,
+                               const Frame& frame);
 
 }  // namespace elastocheck::reports

@@ -198,9 +198,11 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
             const auto c = static_cast<std::size_t>(branch.abscissa);
             const auto rounded = [](double value) { return std::round(100 * value) / 100 + 0.0; };
-            fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name,
-                           rounded(reference.values.front()[c]), rounded(reference.values.back()[c]),
-                           symbol(comparison.channels[c].unit));
+            const double from = rounded(reference.values.front()[c]),
+                         to = rounded(reference.values.back()[c]);
+            if (from != to)  // it hardly moves: no range worth saying
+                fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name, from, to,
+                               symbol(comparison.channels[c].unit));
         }
         fmt::format_to(out, "\n\n");
         deviation_table(comparison, branch, text);

@@ -35,7 +35,8 @@ std::string size(const Worst& worst) {
 std::string asked(const Judgement& j) {
     std::string text;
     if (std::isfinite(j.tolerance.mm)) text += setting(j.tolerance.mm, "mm");
-    if (std::isfinite(j.tolerance.deg)) text += (text.empty() ? "" : " and ") + setting(j.tolerance.deg, "deg");
+    if (std::isfinite(j.tolerance.deg))
+        text += (text.empty() ? "" : " and ") + setting(j.tolerance.deg, "deg");
     return text + (j.asked ? "" : " (the default)");
 }
 
@@ -52,7 +53,8 @@ std::string worst_of(const Judgement& j) {
 std::string rate_of(const Judgement& j) {
     if (!j.wheel_rate) return "";
     const double off = j.wheel_rate->off;
-    return fmt::format("; its wheel rate is up to {} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff");
+    return fmt::format("; its wheel rate is up to {} too {}", percent(std::abs(off)),
+                       off < 0 ? "soft" : "stiff");
 }
 
 bool exact(const Judgement& j) {
@@ -80,8 +82,8 @@ std::string sentence(const Judgement& j) {
         }
         case Verdict::pass:
             if (exact(j))
-                return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}.", subject(j),
-                                   asked(j));
+                return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}.",
+                                   subject(j), asked(j));
             return fmt::format("Pass: {} is within {} of the full solution everywhere, off by at most {}{}.",
                                subject(j), asked(j), worst_of(j), rate_of(j));
         case Verdict::fail:
@@ -94,12 +96,9 @@ std::string sentence(const Judgement& j) {
 json judgement_json(const Judgement& j) {
     json rate = nullptr;
     if (j.wheel_rate)
-        rate = {{"branch", j.wheel_rate->branch},
-                {"wheel", j.wheel_rate->wheel},
-                {"to", j.wheel_rate->to},
-                {"unit", symbol(j.wheel_rate->unit)},
-                {"off", j.wheel_rate->off},
-                {"as_position_mm", compare::as_position(*j.wheel_rate)}};
+        rate = {{"branch", j.wheel_rate->branch}, {"wheel", j.wheel_rate->wheel},
+                {"to", j.wheel_rate->to},         {"unit", symbol(j.wheel_rate->unit)},
+                {"off", j.wheel_rate->off},       {"as_position_mm", compare::as_position(*j.wheel_rate)}};
     return {{"verdict", compare::name(j.verdict)},
             {"sentence", sentence(j)},
             {"method", j.method},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "models/compile.hpp"
@@ -57,12 +58,14 @@ TEST(Drawing, NoWordLiesOnAnotherOrBeyondTheSheetInAnyViewOfAnyScene) {
             const auto list = boxes(figure);
             for (std::size_t a = 0; a < list.size(); ++a) {
                 EXPECT_GE(list[a].left, -0.5) << name << ' ' << figure.id << ": " << figure.words[a].text;
-                EXPECT_LE(list[a].right, figure.sheet->width + 0.5) << name << ' ' << figure.id << ": " << figure.words[a].text;
+                EXPECT_LE(list[a].right, figure.sheet->width + 0.5)
+                    << name << ' ' << figure.id << ": " << figure.words[a].text;
                 EXPECT_GE(list[a].bottom, -0.5) << name << ' ' << figure.id;
                 EXPECT_LE(list[a].top, figure.sheet->height + 0.5) << name << ' ' << figure.id;
                 for (std::size_t b = 0; b < a; ++b)
                     EXPECT_FALSE(overlap(list[a], list[b]))
-                        << name << ' ' << figure.id << ": " << figure.words[a].text << " on " << figure.words[b].text;
+                        << name << ' ' << figure.id << ": " << figure.words[a].text << " on "
+                        << figure.words[b].text;
             }
         }
 }
@@ -86,8 +89,8 @@ TEST(Drawing, EveryStrokeIsOnTheSheet) {
                     if (row.empty()) continue;
                     const double x = (row[0] - figure.sheet->x) * figure.sheet->scale,
                                  y = (row[1] - figure.sheet->y) * figure.sheet->scale;
-                    ASSERT_TRUE(std::isfinite(x) && x >= -1 && x <= figure.sheet->width + 1 && std::isfinite(y) &&
-                                y >= -1 && y <= figure.sheet->height + 1)
+                    ASSERT_TRUE(std::isfinite(x) && x >= -1 && x <= figure.sheet->width + 1 &&
+                                std::isfinite(y) && y >= -1 && y <= figure.sheet->height + 1)
                         << name << ' ' << figure.id << ": " << x << ' ' << y;
                 }
 }
@@ -127,6 +130,9 @@ TEST(Drawing, ABeamIsALineFromEndToEnd) {
     EXPECT_NEAR(left, 500, 1e-9);
     EXPECT_NEAR(right, -500, 1e-9);
     EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 2) << "a segment is none";
+    std::map<std::string, int> lines;  // of the arms, which are each other's image
+    for (const auto& link : d["links"]) lines[link["name"]] += link["kind"] == "body";
+    EXPECT_EQ(lines["arm_left"], lines["arm_right"]);
 }
 
 // From the side forward is to the left, from above down the page, below the front view on which left is right.
@@ -159,8 +165,7 @@ TEST(Labels, FindPlacesAsLongAsThereIsRoomAndNoneWhereThereIsNot) {
     for (std::size_t a = 0; a < placed.size(); ++a) {
         if (!placed[a]) continue;
         ++found;
-        for (std::size_t b = 0; b < a; ++b)
-            EXPECT_FALSE(placed[b] && overlap(*placed[a], *placed[b]));
+        for (std::size_t b = 0; b < a; ++b) EXPECT_FALSE(placed[b] && overlap(*placed[a], *placed[b]));
     }
     EXPECT_GE(found, 4) << "they are led away from the point";
     paper.taken.push_back({0, 0, 200, 200});

@@ -37,10 +37,12 @@ TEST(Judgement, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
     EXPECT_EQ(j.verdict, Verdict::fail);
     ASSERT_TRUE(j.position && j.angle && j.wheel_rate);
     const double mm = std::max(j.position->max, compare::as_position(*j.wheel_rate));
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), {1.01 * mm, 1.01 * j.angle->max}).verdict, Verdict::pass);
+    EXPECT_EQ(compare::judge(mcpherson(), compared(), {1.01 * mm, 1.01 * j.angle->max}).verdict,
+              Verdict::pass);
     EXPECT_EQ(compare::judge(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Verdict::fail);
     EXPECT_EQ(compare::judge(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Verdict::fail);
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict, Verdict::pass)
+    EXPECT_EQ(compare::judge(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict,
+              Verdict::pass)
         << "an angle that nobody asked about";
 }
 
@@ -56,7 +58,8 @@ TEST(Judgement, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
     for (const auto& rate : compare::rate_errors(model, comparison))
         EXPECT_NEAR(compare::as_position(rate), std::abs(rate.off) * std::abs(rate.over), 1e-12);
     ASSERT_GT(off, 0.1) << "[mm] under equal load";
-    EXPECT_EQ(compare::judge(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10}).verdict, Verdict::pass);
+    EXPECT_EQ(compare::judge(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10}).verdict,
+              Verdict::pass);
     compare::Comparison positions_right = comparison;
     for (auto& branch : positions_right.branches)
         for (auto* reading : {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
@@ -81,8 +84,9 @@ TEST(Judgement, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
 TEST(Judgement, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     const auto j = compare::judge(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);
-    for (const char* part : {"Fail: the linear recursion as published is off", "wheel centre", ", branch ", " deg (", "its wheel rate is up to ",
-                             "The tolerance is 0.01\u00a0mm and 0.001\u00a0deg (the default)."})
+    for (const char* part :
+         {"Fail: the linear recursion as published is off", "wheel centre", ", branch ", "\u00a0deg (",
+          "its wheel rate is up to ", "The tolerance is 0.01\u00a0mm and 0.001\u00a0deg (the default)."})
         EXPECT_TRUE(contains(text, part)) << part << ": " << text;
     const std::string given = sentence(compare::judge(mcpherson(), compared(), {100, 100}));
     EXPECT_TRUE(given.starts_with("Pass: ")) << given;
@@ -94,14 +98,15 @@ TEST(Judgement, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
     const support::Folder folder;
     const std::string out = (folder.path / "r").string();
     const auto said = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 -o " + out);
-    const json judgement = json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
+    const json judgement =
+        json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
     EXPECT_EQ(judgement["verdict"], "fail");
     EXPECT_TRUE(said.out.ends_with(judgement["sentence"].get<std::string>() + "\n")) << said.out;
     const auto wide = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m");
     EXPECT_EQ(wide.code, 2);
-    EXPECT_TRUE(contains(elastocheck_says("compare " + scenes +
-                                          "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg").out,
-                         "\nPass: "));
+    EXPECT_TRUE(contains(
+        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg").out,
+        "\nPass: "));
 }
 
 }  // namespace

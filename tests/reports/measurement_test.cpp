@@ -278,7 +278,9 @@ const Rig& rig() {
 TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
     const LoadCases cases{"case", {{"Bounce", "travel"}, {"Ride load", "load"}}};
     const json m = rig().add(
-        "case,parameter_mm,load_N,toe_deg\nBounce,-20,,0.1\nBounce,20,,-0.2\nRide load,,500,0.3\nbraking,20,,2\n", cases);
+        "case,parameter_mm,load_N,toe_deg\nBounce,-20,,0.1\nBounce,20,,-0.2\nRide "
+        "load,,500,0.3\nbraking,20,,2\n",
+        cases);
     EXPECT_EQ(m["branch"], (json{"travel", "travel", "load", "braking"}));
     EXPECT_EQ(m["parameter"], (json{-20.0, 20.0, 500.0, 20.0}));
     EXPECT_EQ(m["readings"][0]["channels"][0]["compared"], 4);
@@ -286,15 +288,18 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
     for (const auto& [csv, why] :
          {std::pair{"case,parameter_mm,toe_deg\nBunce,-20,1\n", "kc.csv:2: case: the scene has no 'Bunce'"},
           std::pair{"branch,parameter_mm,toe_deg\ntravel,-20,1\n", "kc.csv:1: unknown column 'branch'"},
-          std::pair{"parameter_mm,toe_deg\n-20,1\n", "kc.csv:1: no column 'case', which --branch-column names"},
+          std::pair{"parameter_mm,toe_deg\n-20,1\n",
+                    "kc.csv:1: no column 'case', which --branch-column names"},
           std::pair{"case,parameter_mm,load_N,toe_deg\nBounce,,500,1\n",
                     "kc.csv:2: load_N: branch 'travel' goes by parameter_mm"}})
         EXPECT_TRUE(rig().refusal(csv, cases).starts_with(why)) << rig().refusal(csv, cases);
     EXPECT_EQ(rig().refusal("case,parameter_mm,toe_deg\nB,-20,1\n", {"case", {{"B", "travle"}}}),
               "kc.csv: --case B=travle: the scene has no branch 'travle'");
-    EXPECT_TRUE(rig().refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
+    EXPECT_TRUE(rig()
+                    .refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
                     .starts_with("kc.csv:1: parameter_mm and load_N: a column 'branch' has to say"));
-    EXPECT_EQ(parse_load_case("Lat Force=x=lateral"), (std::pair<std::string, std::string>{"Lat Force=x", "lateral"}));
+    EXPECT_EQ(parse_load_case("Lat Force=x=lateral"),
+              (std::pair<std::string, std::string>{"Lat Force=x", "lateral"}));
     for (const char* wrong : {"lateral", "=lateral", "Lat="})
         EXPECT_THROW((void)parse_load_case(wrong), std::invalid_argument) << wrong;
 }
@@ -303,9 +308,12 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
 // goes over, and one without that is not drawn at all.
 TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
     json result = sample_result("chrono_mcpherson_travel");
-    result["scenes"][0]["measured"] = json::parse(
-        rig().add("branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0.3\nload,,700,0.4\n", {})
-            .dump());
+    result["scenes"][0]["measured"] =
+        json::parse(rig()
+                        .add("branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
+                             "3\nload,,700,0.4\n",
+                             {})
+                        .dump());
     const std::string file = "result.json";
     const Field scene{&result["scenes"][0], "scenes[0]", &file};
     int seen = 0;

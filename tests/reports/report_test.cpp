@@ -180,7 +180,8 @@ TEST(Report, SeveralScenesBeginWithASummaryOfTheirVerdicts) {
         << md.substr(0, 1500);
     EXPECT_FALSE(contains(row("McPherson strut (generic vehicle of Project Chrono)"), "–"))
         << row("McPherson strut (generic vehicle of Project Chrono)");
-    EXPECT_TRUE(contains(row("McPherson strut (generic vehicle of Project Chrono)"), " too s")) << "its wheel rate";
+    EXPECT_TRUE(contains(row("McPherson strut (generic vehicle of Project Chrono)"), " too s"))
+        << "its wheel rate";
     EXPECT_TRUE(contains(row("second"), "| not judged |")) << row("second");
 }
 
@@ -383,9 +384,10 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
     EXPECT_TRUE(contains(said.out, "The page: " + (folder.path / "out" / "report.html").string()))
         << said.out;
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_TRUE(contains(said.out, ": " + result["scenes"][0]["judgement"]["sentence"].get<std::string>())) << said.out;
-    for (const char* part : {"model", "branches", "drawing", "convergence", "trade", "recommended", "precision",
-                             "verdict", "judgement"})
+    EXPECT_TRUE(contains(said.out, ": " + result["scenes"][0]["judgement"]["sentence"].get<std::string>()))
+        << said.out;
+    for (const char* part : {"model", "branches", "drawing", "convergence", "trade", "recommended",
+                             "precision", "verdict", "judgement"})
         EXPECT_TRUE(result["scenes"][0].contains(part)) << part;
     EXPECT_EQ(result["reproduce"], "elastocheck report " + scene + " -o " + (folder.path / "out").string());
 }

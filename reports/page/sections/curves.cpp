@@ -134,13 +134,15 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                   .y = output.axis};
     figure.series = {reference, energy, published};
     if (measured) figure.series.push_back(*measured);
-    const auto [low, high] = std::ranges::minmax_element(
-        reference.rows, {}, [](const auto& row) { return row.empty() ? 0.0 : row[1]; });
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& row : reference.rows)
+        if (row.size() == 2) low = std::min(low, row[1]), high = std::max(high, row[1]);
+    const std::string from = number(low), to = number(high);
     figure.description = fmt::format(
-        "{} over {}: by the full solution from {} to {}. The points of its check by energy lie on its line; the "
-        "published recursion's line is drawn over it.",
-        output.axis, figure.x, number(low->empty() ? 0 : (*low)[1], 3),
-        number(high->empty() ? 0 : (*high)[1], 3));
+        "{} over {}: by the full solution {}. The points of its check by energy lie on its line; the "
+        "published "
+        "recursion's line is drawn over it.",
+        output.axis, figure.x, from == to ? from + " throughout" : fmt::format("from {} to {}", from, to));
     return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name), {figure}, table};
 }
 

@@ -20,9 +20,9 @@ std::optional<Section> drawing_section(const Field& scene) {
     const std::vector<View> views{front_view, side_view, top_view};
     group.figures = draw_views(*suspension, views, small_frame(*suspension));
     for (std::size_t k = 0; k < views.size(); ++k)
-        group.figures[k].description =
-            fmt::format("The {} {} at the design position, to scale{}. The coordinates are in the table.", noun,
-                        views[k].from, moved.empty() ? "" : ", with it at " + enumerated(moved) + " in pale lines");
+        group.figures[k].description = fmt::format(
+            "The {} {} at the design position, to scale{}. The coordinates are in the table.", noun,
+            views[k].from, moved.empty() ? "" : ", with it at " + enumerated(moved) + " in pale lines");
     group.caption = "All three views have one scale.";
     Table& table = group.table;
     table.caption = fmt::format("Points at the design position{}",
@@ -38,8 +38,9 @@ std::optional<Section> drawing_section(const Field& scene) {
         for (const double v : point.at) row.push_back(number(v, 4));
         for (const auto& position : suspension->moved)
             for (std::size_t axis = 0; axis < 3; ++axis)
-                row.push_back(point.body == "ground" ? "–"
-                                                     : deviation_number(position.points[k][axis] - point.at[axis]));
+                row.push_back(point.body == "ground"
+                                  ? "–"
+                                  : deviation_number(position.points[k][axis] - point.at[axis]));
         table.rows.push_back(row);
     }
     section.figures.push_back(std::move(group));

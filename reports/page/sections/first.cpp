@@ -75,7 +75,8 @@ void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep)
             std::vector<std::pair<double, std::array<std::string, 3>>> ends;
             for (const auto& branch : sweep.branches)
                 for (const auto& rate : scene["rate_errors"].items()) {
-                    if (rate["branch"].text() != branch["name"].text() || rate["wheel"].text() != wheel) continue;
+                    if (rate["branch"].text() != branch["name"].text() || rate["wheel"].text() != wheel)
+                        continue;
                     const double k = rate[ride ? "ride_rate_N_per_mm" : "wheel_rate_N_per_mm"].number(),
                                  off = rate[ride ? "ride_off" : "off"].number();
                     if (!std::isfinite(k)) continue;
@@ -91,8 +92,8 @@ void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep)
             const Tile tile{both(rates) + "\u00a0N/mm",
                             fmt::format("{}{}, mean from 0 to {}\u00a0{}; the recursion’s is off by {}",
                                         wheel.empty() || wheels.size() == 1 ? "" : wheel + " ",
-                                        ride ? "ride rate, with the tyre" : "wheel rate", both(to), sweep.unit,
-                                        both(offs))};
+                                        ride ? "ride rate, with the tyre" : "wheel rate", both(to),
+                                        sweep.unit, both(offs))};
             if (std::ranges::none_of(mine, [&](const Tile& other) { return other.value == tile.value; }))
                 mine.push_back(tile);
         }
@@ -121,12 +122,13 @@ void add_changes(std::vector<Tile>& tiles, const Field& scene, const Sweep& swee
                 const auto curve = end.curve.channel(channel.name);
                 values.push_back(key_number(curve[end.at] - curve[end.curve.start()]));
             }
-            if (values.empty()) continue;
+            if (std::ranges::all_of(values, [](const std::string& v) { return v == "0"; })) continue;
             const std::string whose = dot == std::string::npos ? "" : channel.name.substr(0, dot) + " ";
             mine.push_back({fmt::format("{}\u00a0{}", both(values), channel.unit),
                             fmt::format("{}{}, {}", whose, text, range_of(sweep, ends))});
         }
-        const bool same = std::ranges::all_of(mine, [&](const Tile& t) { return t.value == mine.front().value; });
+        const bool same =
+            std::ranges::all_of(mine, [&](const Tile& t) { return t.value == mine.front().value; });
         if (same && mine.size() > 1) {
             mine.resize(1);
             mine[0].label = fmt::format("{}, each wheel, {}", text, range_of(sweep, ends));
@@ -170,20 +172,22 @@ std::optional<Section> first_section(const Field& scene) {
     figure.title = fmt::format("The {}", noun);
     std::vector<std::string> names, moved;
     for (const auto& point : suspension->points)
-        if (point.hardpoint && std::ranges::find(names, point.name) == names.end()) names.push_back(point.name);
+        if (point.hardpoint && std::ranges::find(names, point.name) == names.end())
+            names.push_back(point.name);
     for (const auto& position : suspension->moved) moved.push_back(position.title);
-    figure.description = fmt::format("The {} seen {}, to scale, with its points {}{}.", noun,
-                                     axonometric_view(right).from, enumerated(names),
-                                     moved.empty() ? "" : ", and in pale lines at " + enumerated(moved));
-    group.caption = fmt::format(
-        "Design position to scale{}{}.", moved.empty() ? "" : ", pale lines: " + enumerated(moved),
-        suspension->wheels.empty() ? "" : "; the tyre’s width is only drawn");
+    figure.description =
+        fmt::format("The {} seen {}, to scale, with its points {}{}.", noun, axonometric_view(right).from,
+                    enumerated(names), moved.empty() ? "" : ", and in pale lines at " + enumerated(moved));
+    group.caption = fmt::format("Design position to scale{}{}.",
+                                moved.empty() ? "" : ", pale lines: " + enumerated(moved),
+                                suspension->wheels.empty() ? "" : "; the tyre’s width is only drawn");
     group.table = {.caption = "Points", .columns = {{"point", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}}};
     std::vector<std::string> told;
     for (const auto& point : suspension->points) {
         if (std::ranges::find(told, point.name) != told.end()) continue;
         told.push_back(point.name);
-        group.table.rows.push_back({point.name, number(point.at[0], 4), number(point.at[1], 4), number(point.at[2], 4)});
+        group.table.rows.push_back(
+            {point.name, number(point.at[0], 4), number(point.at[1], 4), number(point.at[2], 4)});
     }
     group.table.folded = true;
     section.figures.push_back(std::move(group));

@@ -40,7 +40,8 @@ std::optional<Series> points_of(const Field& scene, const std::vector<Field>& br
     if (!measured) return std::nullopt;
     const Field columns = (*measured)["columns"];
     const auto abscissa = measured->find("abscissa");
-    const auto across = over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
+    const auto across =
+        over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
     const auto column = channel.empty() ? measured->find("parameter") : columns.find(channel);
     if (!across || !column) return std::nullopt;
     const auto x = across->numbers(), y = column->numbers();
@@ -76,14 +77,16 @@ std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, co
 std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
                                    const std::string& channel, bool change) {
     const auto measured = scene.find("measured");
-    if (!measured || !(*measured)["branch_given"].truth()) return measured_series(scene, sweep, channel, change);
+    if (!measured || !(*measured)["branch_given"].truth())
+        return measured_series(scene, sweep, channel, change);
     return points_of(scene, {branch}, over_travel(scene, sweep), channel, change);
 }
 
 double value_between(const Series& measured, double x) {
     auto rows = measured.rows;
     std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
-    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row[0]; });  // NaN has no place in an order
+    std::ranges::stable_sort(rows, {},
+                             [](const auto& row) { return row[0]; });  // NaN has no place in an order
     for (std::size_t k = 1; k < rows.size(); ++k) {
         const auto &a = rows[k - 1], &b = rows[k];
         if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))

@@ -19,8 +19,8 @@ constexpr Colour colours[] = {vermilion, blue, green, purple};
 FigureGroup group(const std::string& branch, const compare::Table& levels) {
     FigureGroup group;
     group.caption = fmt::format("Expansions that branch {} takes over their order.", branch);
-    group.table = page_table(fmt::format("Series over branch {}; error to the full solution", branch),
-                             levels, order_columns);
+    group.table = page_table(fmt::format("Series over branch {}; error to the full solution", branch), levels,
+                             order_columns);
     group.table.folded = true;
     Figure figure{.id = fmt::format("orders-{}", slug(branch)),
                   .title = branch,
@@ -36,8 +36,9 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
     std::vector<std::string> told;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
-        figure.series.push_back({fmt::format("tolerance {} m", number(tolerance, 1)), Series::Style::line_points,
-                                 colours[k % std::size(colours)], static_cast<int>(4 + k), rows});
+        figure.series.push_back({fmt::format("tolerance {} m", number(tolerance, 1)),
+                                 Series::Style::line_points, colours[k % std::size(colours)],
+                                 static_cast<int>(4 + k), rows});
         told.push_back(fmt::format("tolerance {} m, {} expansions at order {} and {} at order {}",
                                    number(tolerance, 1), number(rows.front()[1], 3),
                                    number(rows.front()[0], 2), number(rows.back()[1], 3),

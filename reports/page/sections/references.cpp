@@ -12,13 +12,14 @@ namespace elastocheck::reports {
 std::optional<Section> references_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "references", .title = "The references, certified"};
-    Table agreement{.caption = "How far the solution by energy is from the one by equilibrium, worst over the branch",
-                    .columns = {{"branch", true},
-                                {"positions [mm]"},
-                                {"angles [deg]"},
-                                {"forces [N]"},
-                                {"moments [N·m]"},
-                                {"numbers compared"}}};
+    Table agreement{
+        .caption = "How far the solution by energy is from the one by equilibrium, worst over the branch",
+        .columns = {{"branch", true},
+                    {"positions [mm]"},
+                    {"angles [deg]"},
+                    {"forces [N]"},
+                    {"moments [N·m]"},
+                    {"numbers compared"}}};
     Table judged{.caption = "What each solution leaves in the equations of the others, worst over the points",
                  .columns = {{"branch", true},
                              {"states of", true},
@@ -94,7 +95,8 @@ std::optional<Section> references_section(const Field& scene) {
             section.words["reasons"].push_back(fmt::format("{}: {}", name, reason));
     }
     if (section.words.contains("no_energy") || section.words.contains("witness"))
-        agreement.caption = "How far the second reference is from the one by equilibrium, worst over the branch";
+        agreement.caption =
+            "How far the second reference is from the one by equilibrium, worst over the branch";
     judged.folded = true;
     section.tables = {agreement, judged, work};
     return section;

@@ -40,7 +40,8 @@ std::optional<Suspension> suspension_of(const Field& scene) {
     const auto places = places_of((*drawing)["design"]["points_mm"]);
     const auto named = (*drawing)["points"].items();
     const std::size_t count = named.size();
-    if (places.size() != count) (*drawing)["design"]["points_mm"].fail("not as many points as in the drawing");
+    if (places.size() != count)
+        (*drawing)["design"]["points_mm"].fail("not as many points as in the drawing");
     for (std::size_t k = 0; k < count; ++k) {
         const auto hard = named[k].find("hardpoint");
         s.points.push_back(
@@ -73,9 +74,9 @@ std::optional<Suspension> suspension_of(const Field& scene) {
     std::vector<double> order;
     for (const auto& at : (*drawing)["positions"].items()) {
         const auto of = at.find("of");
-        if (!of || at["where"].text() != "end" ||
-            std::ranges::none_of(sweep->branches,
-                                 [&](const Field& b) { return b["name"].text() == of->text(); }))
+        if (!of || at["where"].text() != "end" || std::ranges::none_of(sweep->branches, [&](const Field& b) {
+                return b["name"].text() == of->text();
+            }))
             continue;
         Suspension::Moved moved;
         moved.title = fmt::format("{} at {}", sweep->lifts ? "travel" : of->text(),
