@@ -5,19 +5,19 @@
 
 namespace elastocheck::compare {
 
-const char* name(Verdict verdict) {
+const char* name(Grade verdict) {
     switch (verdict) {
-        case Verdict::pass: return "pass";
-        case Verdict::fail: return "fail";
-        case Verdict::not_judged: return "not judged";
+        case Grade::pass: return "pass";
+        case Grade::fail: return "fail";
+        case Grade::not_judged: return "not judged";
     }
     return "";
 }
 
 double as_position(const RateError& rate) { return std::abs(rate.off * rate.over); }
 
-Judgement judge(const Model& model, const Comparison& comparison, const Tolerance& tolerance, bool asked) {
-    Judgement j;
+Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance, bool asked) {
+    Assessment j;
     j.tolerance = tolerance;
     j.asked = asked;
     for (const auto& branch : comparison.branches) {
@@ -46,7 +46,7 @@ Judgement judge(const Model& model, const Comparison& comparison, const Toleranc
     for (const auto* worst : {&j.angle, &j.angle_across})
         if (*worst) hold((*worst)->max, tolerance.deg);
     for (const auto& rate : rates) hold(as_position(rate), tolerance.mm);
-    j.verdict = within ? Verdict::pass : Verdict::fail;
+    j.verdict = within ? Grade::pass : Grade::fail;
     return j;
 }
 

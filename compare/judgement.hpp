@@ -12,11 +12,11 @@ namespace elastocheck::compare {
 
 inline constexpr Tolerance default_tolerance{0.01, 0.001};
 
-enum class Verdict { pass, fail, not_judged };
-const char* name(Verdict verdict);  // "pass", "fail", "not judged"
+enum class Grade { pass, fail, not_judged };
+const char* name(Grade verdict);  // "pass", "fail", "not judged"
 
-struct Judgement {
-    Verdict verdict = Verdict::not_judged;
+struct Assessment {
+    Grade verdict = Grade::not_judged;
     std::vector<std::string> reasons;  // why not judged
     std::string method;                // of the recursion
     Tolerance tolerance = default_tolerance;
@@ -35,7 +35,7 @@ struct Judgement {
 // positions are exact, whatever it takes to hold them.
 double as_position(const RateError& rate);
 
-Judgement judge(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
+Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
                 bool asked = true);
 
 }  // namespace elastocheck::compare

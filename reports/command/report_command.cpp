@@ -115,9 +115,9 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     document["precision"] = precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     add_verdict(document, comparison.compared, reasons);
-    auto judgement = compare::judge(model, comparison, trade_options.tolerance,
+    auto judgement = compare::assess(model, comparison, trade_options.tolerance,
                                     request.tolerance != ReportRequest{}.tolerance);
-    if (!reasons.empty()) judgement.verdict = compare::Verdict::not_judged, judgement.reasons = reasons;
+    if (!reasons.empty()) judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
     return document;
 }

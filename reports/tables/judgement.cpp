@@ -11,8 +11,8 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
-using compare::Judgement;
-using compare::Verdict;
+using compare::Assessment;
+using compare::Grade;
 using compare::Worst;
 
 constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are the arithmetic's
@@ -22,7 +22,7 @@ std::string spaced(std::string name) {
     return name;
 }
 
-std::string subject(const Judgement& j) {
+std::string subject(const Assessment& j) {
     if (j.method.empty() || j.method == "published") return "the linear recursion as published";
     return fmt::format("the recursion by method ‘{}’", j.method);
 }
@@ -32,7 +32,7 @@ std::string size(const Worst& worst) {
     return worst.max < nothing ? "nothing" : quantity(worst.max, symbol(worst.unit));
 }
 
-std::string asked(const Judgement& j) {
+std::string asked(const Assessment& j) {
     std::string text;
     if (std::isfinite(j.tolerance.mm)) text += setting(j.tolerance.mm, "mm");
     if (std::isfinite(j.tolerance.deg))
@@ -41,7 +41,7 @@ std::string asked(const Judgement& j) {
 }
 
 // "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)"
-std::string worst_of(const Judgement& j) {
+std::string worst_of(const Assessment& j) {
     std::string text;
     for (const auto* worst : {&j.position, &j.angle})
         if (*worst)
@@ -50,14 +50,14 @@ std::string worst_of(const Judgement& j) {
     return text;
 }
 
-std::string rate_of(const Judgement& j) {
+std::string rate_of(const Assessment& j) {
     if (!j.wheel_rate) return "";
     const double off = j.wheel_rate->off;
     return fmt::format("; its wheel rate is up to {} too {}", percent(std::abs(off)),
                        off < 0 ? "soft" : "stiff");
 }
 
-bool exact(const Judgement& j) {
+bool exact(const Assessment& j) {
     return !(j.position && !(j.position->max < nothing)) && !(j.angle && !(j.angle->max < nothing)) &&
            !(j.wheel_rate && !(compare::as_position(*j.wheel_rate) < nothing));
 }
@@ -72,28 +72,28 @@ json worst_json(const std::optional<Worst>& worst) {
 
 }  // namespace
 
-std::string sentence(const Judgement& j) {
+std::string sentence(const Assessment& j) {
     switch (j.verdict) {
-        case Verdict::not_judged: {
+        case Grade::not_judged: {
             const std::string more =
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "";
             return fmt::format("Not judged: {}{}. What is shown is no basis for a decision.",
                                j.reasons.empty() ? "nothing was compared" : j.reasons.front(), more);
         }
-        case Verdict::pass:
+        case Grade::pass:
             if (exact(j))
                 return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}.",
                                    subject(j), asked(j));
             return fmt::format("Pass: {} is within {} of the full solution everywhere, off by at most {}{}.",
                                subject(j), asked(j), worst_of(j), rate_of(j));
-        case Verdict::fail:
+        case Grade::fail:
             return fmt::format("Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",
                                subject(j), worst_of(j), rate_of(j), asked(j));
     }
     return {};
 }
 
-json judgement_json(const Judgement& j) {
+json judgement_json(const Assessment& j) {
     json rate = nullptr;
     if (j.wheel_rate)
         rate = {{"branch", j.wheel_rate->branch}, {"wheel", j.wheel_rate->wheel},

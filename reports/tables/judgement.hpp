@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-std::string sentence(const compare::Judgement& judgement);
+std::string sentence(const compare::Assessment& judgement);
 
 //   verdict         "pass", "fail", "not judged"
 //   sentence        as above
@@ -17,6 +17,6 @@ std::string sentence(const compare::Judgement& judgement);
 //   position, angle and position_across, angle_across (at equal abscissa): channel, branch, unit, max
 //   wheel_rate      branch, wheel, to, unit, off
 //   reasons         why not judged
-nlohmann::ordered_json judgement_json(const compare::Judgement& judgement);
+nlohmann::ordered_json judgement_json(const compare::Assessment& judgement);
 
 }  // namespace elastocheck::reports

@@ -14,8 +14,8 @@
 namespace elastocheck::reports {
 namespace {
 
-using compare::Judgement;
-using compare::Verdict;
+using compare::Assessment;
+using compare::Grade;
 using json = nlohmann::ordered_json;
 
 const Model& mcpherson() {
@@ -32,69 +32,69 @@ const compare::Comparison& compared() {
 }
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
-TEST(Judgement, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
-    const auto j = compare::judge(mcpherson(), compared(), compare::default_tolerance, false);
-    EXPECT_EQ(j.verdict, Verdict::fail);
+TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
+    const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
+    EXPECT_EQ(j.verdict, Grade::fail);
     ASSERT_TRUE(j.position && j.angle && j.wheel_rate);
     const double mm = std::max(j.position->max, compare::as_position(*j.wheel_rate));
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), {1.01 * mm, 1.01 * j.angle->max}).verdict,
-              Verdict::pass);
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Verdict::fail);
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Verdict::fail);
-    EXPECT_EQ(compare::judge(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict,
-              Verdict::pass)
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 1.01 * j.angle->max}).verdict,
+              Grade::pass);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict,
+              Grade::pass)
         << "an angle that nobody asked about";
 }
 
 // A jack dictates the travel: every position is right whatever force it takes, and a rate that is wrong must not pass.
-TEST(Judgement, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
+TEST(Assessment, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
     options.recursion.steps = 40;
     const auto comparison = compare::compare(model, options);
-    auto j = compare::judge(model, comparison, compare::default_tolerance);
+    auto j = compare::assess(model, comparison, compare::default_tolerance);
     ASSERT_TRUE(j.wheel_rate && j.position && j.angle);
     const double off = compare::as_position(*j.wheel_rate);
     for (const auto& rate : compare::rate_errors(model, comparison))
         EXPECT_NEAR(compare::as_position(rate), std::abs(rate.off) * std::abs(rate.over), 1e-12);
     ASSERT_GT(off, 0.1) << "[mm] under equal load";
-    EXPECT_EQ(compare::judge(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10}).verdict,
-              Verdict::pass);
+    EXPECT_EQ(compare::assess(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10}).verdict,
+              Grade::pass);
     compare::Comparison positions_right = comparison;
     for (auto& branch : positions_right.branches)
         for (auto* reading : {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
             for (auto& d : reading->channels) d.max = 0;
-    EXPECT_EQ(compare::judge(model, positions_right, {off / 2, 10}).verdict, Verdict::fail);
+    EXPECT_EQ(compare::assess(model, positions_right, {off / 2, 10}).verdict, Grade::fail);
 }
 
-TEST(Judgement, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
+TEST(Assessment, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
     compare::Comparison broken = compared();
     broken.branches[0].deviation.equal_parameter.channels[0].max = std::nan("");
-    EXPECT_EQ(compare::judge(mcpherson(), broken, {1e9, 1e9}).verdict, Verdict::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), broken, {1e9, 1e9}).verdict, Grade::fail);
     broken = compared();
     broken.branches[1].inconclusive.add("the references disagree");
-    const auto j = compare::judge(mcpherson(), broken, {1e9, 1e9});
-    EXPECT_EQ(j.verdict, Verdict::not_judged);
+    const auto j = compare::assess(mcpherson(), broken, {1e9, 1e9});
+    EXPECT_EQ(j.verdict, Grade::not_judged);
     EXPECT_TRUE(sentence(j).starts_with("Not judged: rebound: the references disagree.")) << sentence(j);
-    const auto nothing = compare::judge(mcpherson(), {}, {1, 1});
-    EXPECT_EQ(nothing.verdict, Verdict::not_judged);
+    const auto nothing = compare::assess(mcpherson(), {}, {1, 1});
+    EXPECT_EQ(nothing.verdict, Grade::not_judged);
     EXPECT_TRUE(sentence(nothing).starts_with("Not judged: nothing was compared.")) << sentence(nothing);
 }
 
-TEST(Judgement, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
-    const auto j = compare::judge(mcpherson(), compared(), compare::default_tolerance, false);
+TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
+    const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);
     for (const char* part :
          {"Fail: the linear recursion as published is off", "wheel centre", ", branch ", "\u00a0deg (",
           "its wheel rate is up to ", "The tolerance is 0.01\u00a0mm and 0.001\u00a0deg (the default)."})
         EXPECT_TRUE(contains(text, part)) << part << ": " << text;
-    const std::string given = sentence(compare::judge(mcpherson(), compared(), {100, 100}));
+    const std::string given = sentence(compare::assess(mcpherson(), compared(), {100, 100}));
     EXPECT_TRUE(given.starts_with("Pass: ")) << given;
     EXPECT_TRUE(contains(given, "within 100\u00a0mm and 100\u00a0deg of the full solution")) << given;
     EXPECT_FALSE(contains(given, "default")) << given;
 }
 
-TEST(Judgement, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
+TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
     const support::Folder folder;
     const std::string out = (folder.path / "r").string();
     const auto said = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 -o " + out);

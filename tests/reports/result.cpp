@@ -40,7 +40,7 @@ const json& sample_result(const std::string& name) {
         compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));
-    part["judgement"] = judgement_json(compare::judge(model, comparison, compare::default_tolerance, false));
+    part["judgement"] = judgement_json(compare::assess(model, comparison, compare::default_tolerance, false));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);
     return made[name] = json::parse(result.dump());

@@ -126,6 +126,20 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
     if (figure.series.empty() || !(high - low > 1e-6 * std::max(1e-3, std::abs(high)))) return std::nullopt;
     figure.description = fmt::format("{} over {}: by the reference between {} and {}.", figure.y, x_axis, number(low, 3), number(high, 3));
     group.caption = fmt::format("{} over {}, {}.", drawn.title, x_axis, branch["name"].text());
+    group.table = {.caption = figure.y, .columns = {{x_axis}}, .folded = true};
+    for (const auto& series : figure.series) group.table.columns.push_back({series.title});
+    for (const auto k : thinned(figure.series.front().rows.size(), 7)) {
+        const auto& first = figure.series.front().rows[k];
+        if (first.empty()) continue;
+        std::vector<std::string> row{number(first[0], 4)};
+        for (const auto& series : figure.series) {
+            const auto at = std::ranges::find_if(series.rows, [&](const auto& r) {
+                return !r.empty() && std::abs(r[0] - first[0]) <= 1e-6 * (1 + std::abs(first[0]));
+            });
+            row.push_back(at == series.rows.end() ? "–" : number((*at)[1], 4));
+        }
+        group.table.rows.push_back(std::move(row));
+    }
     group.figures.push_back(std::move(figure));
     return group;
 }
