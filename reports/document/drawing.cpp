@@ -293,16 +293,6 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     return result;
 }
 
-// Of models that have some.
-template <class M>
-void draw_dampers(Sketch& sketch, const M& model) {
-    if constexpr (requires { model.dampers; })
-        for (const auto& damper : model.dampers) {
-            const auto i = sketch.add(damper.i, damper.name);
-            sketch.link("damper", damper.name, i, sketch.add(damper.j, damper.name));
-        }
-}
-
 }  // namespace
 
 json drawing_json(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
@@ -346,7 +336,6 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                        }},
             elastic.kind);
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
-    draw_dampers(sketch, model);
     for (const auto& probe : model.probes) sketch.add(probe.at, probe.name);
     std::vector<std::vector<std::size_t>> hubs(model.bodies.size());
     std::set<std::size_t> patches;

@@ -10,7 +10,7 @@
 namespace elastocheck::reports {
 
 //   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body, position [mm]
-//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a stop, a beam, a damper
+//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a stop, a beam
 //   faces      a body's points that lie flat, in order round their outline: an arm
 //   symbols    joints and bushings as the scene has them: kind, name, where [mm], its axis where it has one
 //   wheels     centre, patch and spin axis at the design position
