@@ -7,6 +7,7 @@
 
 #include "reports/files/files.hpp"
 #include "reports/page/gnuplot.hpp"
+#include "reports/page/labels.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
 
@@ -87,8 +88,11 @@ json script_data(const Figure& figure, const std::string& name) {
                  {"y", range_of(s->y, s->y + s->height / s->scale)}};
     const double wide = figure.sheet ? figure.sheet->width : width * figure.width,
                  high = figure.sheet ? figure.sheet->height : height * figure.height;
-    for (const auto& [at, text] : figure.y_ticks)
+    double widest = 0;  // of the words beside the axis [px], which gnuplot takes for narrower than they are
+    for (const auto& [at, text] : figure.y_ticks) {
         ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
+        widest = std::max(widest, text_width(text, 11));
+    }
     return {{"name", name},
             {"title", figure.title},
             {"width", std::lround(wide)},
@@ -111,6 +115,8 @@ json script_data(const Figure& figure, const std::string& name) {
             {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
             {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
             {"ticks", ticks},
+            {"left", ticks.empty() ? json(nullptr)
+                                   : json(fmt::format("{:.4f}", std::min(0.5, (widest + 16) / wide)))},
             {"series", series},
             {"bands", bands},
             {"ink", palette[ink].light},

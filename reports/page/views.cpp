@@ -259,7 +259,7 @@ void draw_axes(Board& board, double bottom, double width) {
         left = std::min(left, length * dot(board.plane.right, axis));
         low = std::min(low, length * dot(board.plane.up, axis));
     }
-    const Spot origin{12 - left, bottom + 12 - low};
+    const Spot origin{12 - left, bottom + 16 - low};
     for (const auto& [name, axis] : axes) {
         const Spot u{dot(board.plane.right, axis), dot(board.plane.up, axis)};
         if (std::hypot(u.x, u.y) < 0.15) continue;
