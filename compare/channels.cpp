@@ -373,6 +373,10 @@ bool Channel::kinematic() const {
            !std::holds_alternative<Characteristic>(reads);
 }
 
+bool Channel::may_be_undefined() const {
+    return !undefined.empty() || std::holds_alternative<Steering>(reads) || std::holds_alternative<Ackermann>(reads);
+}
+
 std::vector<int> Channel::joints() const {
     return std::visit(overloaded{[](const Coordinate&) { return std::vector<int>{}; },
                                  [](const Toe&) { return std::vector<int>{}; },

@@ -199,10 +199,8 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
     command
         ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
         ->check(a_file("*.csv"));
-    command
-        ->add_option("--branch-column", request.branch_column,
-                     "column of --measured that says which branch a point belongs to (default: branch)")
-        ->check(a_name());
+    command->add_option("--branch-column", request.branch_column,
+                     "column of --measured that says which branch a point belongs to (default: branch)");
     command->add_option("--case", request.cases,
                         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated");
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")

@@ -188,10 +188,7 @@ std::vector<Symbol> symbols_of(const JointKind& kind) {
         kind);
 }
 
-bool is_segment(const Elastic& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::middle;
-}
+bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs::beam; }
 
 json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -314,13 +311,12 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                    constraint.kind);
     }
     std::vector<std::pair<std::string, std::vector<const Bushing*>>> beams;
-    std::set<std::pair<std::size_t, std::size_t>> sprung;
     for (const auto& elastic : model.elastics)
         std::visit(
             overloaded{[&](const AxialSpring& e) {
                            const auto i = sketch.add(e.i, elastic.name), j = sketch.add(e.j, elastic.name);
-                           const bool first = sprung.insert({i, j}).second;  // its stops lie within it
-                           sketch.link(first ? "spring" : "stop", elastic.name, i, j);
+                           const bool stop = elastic.written_as == WrittenAs::stop;
+                           sketch.link(stop ? "stop" : "spring", elastic.name, i, j);
                        },
                        [&](const Bushing& e) {
                            if (elastic.only_where_driven) return;  // a tyre
@@ -336,6 +332,10 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                        }},
             elastic.kind);
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
+    for (const auto& damper : model.dampers) {
+        const auto i = sketch.add(damper.i, damper.name);
+        sketch.link("damper", damper.name, i, sketch.add(damper.j, damper.name));
+    }
     for (const auto& probe : model.probes) sketch.add(probe.at, probe.name);
     std::vector<std::vector<std::size_t>> hubs(model.bodies.size());
     std::set<std::size_t> patches;

@@ -84,7 +84,7 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
         double size = 0, apart = 0;
         for (std::size_t k = 0; k < less.curve.a.size(); ++k) {
             const double value = less.curve.values[k][c];
-            if (some[c].may_be_undefined() && std::isnan(value) && std::isnan(more.curve.values[k][other]))
+            if (some[c].may_be_undefined() && value == undefined && more.curve.values[k][other] == undefined)
                 continue;
             size = std::max(size, std::abs(value));
             apart = worse(apart, std::abs(value - more.curve.values[k][other]));
