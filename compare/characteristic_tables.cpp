@@ -91,8 +91,7 @@ Table compliance_table(const Model& model, const Comparison& comparison) {
                                                   component(moves ? "displacement" : "rotation", r),
                                                   wheel(loaded)};
                             for (Eigen::Index k = 0; k < 6; ++k)
-                                row.emplace_back((*C)(r, loaded + k) * in_unit(moves ? Unit::mm : Unit::deg) *
-                                                 (k < 3 ? 1e3 : 100));
+                                row.emplace_back(in_table_units(*C, r, loaded + k));
                             row.emplace_back(at.reciprocity);
                             table.rows.push_back(std::move(row));
                         }

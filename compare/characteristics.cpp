@@ -501,4 +501,14 @@ double reciprocity(const Model& model, const Eigen::MatrixXd& C) {
     return (even - even.transpose()).cwiseAbs().maxCoeff() / even.cwiseAbs().maxCoeff();
 }
 
+double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column) {
+    return C(row, column) * in_unit(row % 6 < 3 ? Unit::mm : Unit::deg) * (column % 6 < 3 ? 1e3 : 100);
+}
+
+std::string answer_name(const Model& model, const std::string& point, Eigen::Index row) {
+    const std::string& wheel = model.wheels[static_cast<std::size_t>(row / 6)].name;
+    return fmt::format("{}, {}{} {}", point, wheel.empty() ? "" : wheel + " ",
+                       row % 6 < 3 ? "displacement" : "rotation", "xyz"[row % 3]);
+}
+
 }  // namespace elastocheck::compare

@@ -4,7 +4,7 @@
 // definition, with its sign, in one place (characteristics.cpp). All of them are the same for a wheel and its mirror image.
 #pragma once
 
-#include <span>
+#include <string>
 #include <vector>
 
 #include "compare/answers.hpp"
@@ -29,5 +29,9 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
 // |C - Cᵀ| over |C|, both the largest entry, lengths counted by the tyre's radius (1 m where patch and centre are one):
 // zero where what acts has an energy and the state is in equilibrium, up to the moments that it holds
 double reciprocity(const Model& model, const Eigen::MatrixXd& C);
+
+// An entry as it is shown: mm or deg per kN or per 100 N·m; and what a row is: "contact patch, left displacement x".
+double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column);
+std::string answer_name(const Model& model, const std::string& point, Eigen::Index row);
 
 }  // namespace elastocheck::compare

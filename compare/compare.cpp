@@ -104,6 +104,14 @@ double bound_of(Unit unit, const Bounds& bounds) {
     }
 }
 
+// By which rates may be apart: a share of the largest on the branch, and of a thousandth of their unit where they are nothing.
+double bound_of_characteristic(const std::vector<double>& values) {
+    constexpr double share = 1e-6;
+    double largest = 1e-3;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    return share * largest;
+}
+
 int count(const Reading& reading, const std::vector<bool>& determined) {
     int sum = 0;
     for (std::size_t c = 0; c < reading.channels.size(); ++c)
@@ -178,7 +186,10 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
         objections.add("the references were not compared: " + reading.not_compared);
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!branch.determined[c]) continue;
-        const double bound = bound_of(channels[c].unit, branch.bounds), off = reading.channels[c].max;
+        const double off = reading.channels[c].max,
+                     bound = std::holds_alternative<Characteristic>(channels[c].reads)
+                                 ? bound_of_characteristic(equilibrium.curve.channel(c))
+                                 : bound_of(channels[c].unit, branch.bounds);
         if (const double part = share(off, bound); !(part <= 1))
             objections.add(
                 fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",

@@ -7,6 +7,8 @@
 #include <limits>
 #include <tuple>
 
+#include "compare/characteristics.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
@@ -40,6 +42,20 @@ const GatedBranch* find(const Measurement& in, const std::string& branch) {
 }
 
 bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
+bool is_characteristic(Quantity q) {
+    return q == Quantity::characteristic_recursive || q == Quantity::characteristic_equilibrium;
+}
+bool is_compliance(Quantity q) {
+    return q == Quantity::compliance_recursive || q == Quantity::compliance_equilibrium;
+}
+
+// Where a characteristic is kept: at the first of the parameters, at the one nearest to 0, at the last.
+std::vector<std::size_t> landmarks(const std::vector<double>& a) {
+    const auto nearest = std::ranges::min_element(a, {}, [](double x) { return std::abs(x); });
+    std::vector<std::size_t> at{0, static_cast<std::size_t>(nearest - a.begin()), a.size() - 1};
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    return at;
+}
 bool is_deviation(Quantity q) {
     return q == Quantity::deviation_at_equal_parameter || q == Quantity::deviation_at_equal_abscissa;
 }
@@ -51,6 +67,8 @@ double range(const Series& s) {
 
 double scale(const Measurement& accepted, const Series& s) {
     if (is_channel(s.quantity)) return range(s);
+    if (is_characteristic(s.quantity) || is_compliance(s.quantity))
+        return std::abs(*std::ranges::max_element(s.values, {}, [](double v) { return std::abs(v); }));
     if (!is_deviation(s.quantity)) return std::abs(s.values.front());
     const Series* curve = find(accepted, s.branch, Quantity::equilibrium, s.channel);
     return curve != nullptr && !curve->values.empty() ? range(*curve) : 0;
@@ -62,6 +80,8 @@ bool all_finite(const std::vector<double>& values) {
 
 const Tolerance* tolerance_of(const Tolerances& tolerances, const Series& s) {
     auto found = tolerances.find(s.channel);
+    if (found == tolerances.end() && is_characteristic(s.quantity)) found = tolerances.find("characteristic");
+    if (found == tolerances.end() && is_compliance(s.quantity)) found = tolerances.find("compliance");
     if (found == tolerances.end()) found = tolerances.find(s.unit);
     return found == tolerances.end() ? nullptr : &found->second;
 }
@@ -104,6 +124,9 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     const GatedBranch* branch = find(baseline.accepted, was.branch);
     if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
         return cannot("has not as many numbers as its branch has points");
+    if (is_characteristic(was.quantity) &&
+        (branch == nullptr || branch->a.empty() || landmarks(branch->a).size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has landmarks");
     const Tolerance* tolerance = tolerance_of(tolerances, was);
     if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
@@ -122,6 +145,8 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .tolerance = allowed,
                         .noticeable = noticeable(baseline, was)};
         if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
+        if (is_characteristic(was.quantity))
+            offence.a = branch->a[landmarks(branch->a)[k]], offence.a_unit = branch->unit;
         verdict.offences.push_back(offence);
     }
 }
@@ -183,6 +208,23 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
     return common;
 }
 
+// The matrices where the first branch begins, a row a series.
+void add_compliance(const Model& model, const Comparison& comparison, std::vector<Series>& series) {
+    if (comparison.branches.empty()) return;
+    const auto& branch = comparison.branches.front();
+    for (const auto& [quantity, leg] : {std::pair{Quantity::compliance_recursive, Leg::recursive},
+                                        {Quantity::compliance_equilibrium, Leg::equilibrium}})
+        for (const auto& at : branch.runs[static_cast<std::size_t>(leg)].compliance) {
+            if (at.a != 0) continue;
+            for (const auto& [point, C] : {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
+                for (Eigen::Index r = 0; r < C->rows(); ++r) {
+                    Series row{branch.branch, quantity, answer_name(model, point, r), r % 6 < 3 ? "mm" : "deg", {}};
+                    for (Eigen::Index c = 0; c < C->cols(); ++c) row.values.push_back(rounded(in_table_units(*C, r, c)));
+                    series.push_back(std::move(row));
+                }
+        }
+}
+
 void add_counters(const std::string& branch, Quantity quantity, const LegRun& run,
                   std::vector<Series>& series) {
     const auto add = [&](const char* counter, double value) {
@@ -209,6 +251,10 @@ const char* name(Quantity quantity) {
     switch (quantity) {
         case Quantity::recursive: return "recursive";
         case Quantity::equilibrium: return "equilibrium";
+        case Quantity::characteristic_recursive: return "characteristic of recursive";
+        case Quantity::characteristic_equilibrium: return "characteristic of equilibrium";
+        case Quantity::compliance_recursive: return "compliance of recursive";
+        case Quantity::compliance_equilibrium: return "compliance of equilibrium";
         case Quantity::deviation_at_equal_parameter: return "deviation at equal parameter";
         case Quantity::deviation_at_equal_abscissa: return "deviation at equal abscissa";
         case Quantity::work_recursive: return "work of recursive";
@@ -250,15 +296,17 @@ Tolerances default_tolerances(ToleranceClass kind) {
     switch (kind) {
         case ToleranceClass::same_build:  // the last digit of the file
             return {{"mm", {2e-9, 0}},  {"deg", {2e-9, 0}}, {"N", {2e-9, 0}},
-                    {"N·m", {2e-9, 0}}, {"%", {2e-9, 0}},   {"count", {0, 0}}};
+                    {"N·m", {2e-9, 0}}, {"%", {2e-9, 0}},   {"count", {0, 0}},
+                    {"characteristic", {2e-9, 1e-12}}, {"compliance", {2e-9, 1e-12}}};
         case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
             return {
                 {"mm", {5e-9, 0}},    {"deg", {5e-9, 0}}, {"N", {7e-8, 0}},
                 {"N·m", {5e-9, 0}},   {"%", {2e-5, 0}},  // of a cotangent at 2 deg: 5e-9 deg are 800 times as much, in percent
-                {"count", {1, 0.012}}};
+                {"count", {1, 0.012}}, {"characteristic", {1e-8, 1e-8}}, {"compliance", {1e-8, 1e-8}}};
         case ToleranceClass::physical:
             return {{"mm", {0.01, 1e-3}}, {"deg", {0.001, 1e-3}}, {"N", {1, 1e-3}},
-                    {"N·m", {0.1, 1e-3}}, {"%", {0.5, 1e-3}},     {"count", {2, 0.5}}};
+                    {"N·m", {0.1, 1e-3}}, {"%", {0.5, 1e-3}},     {"count", {2, 0.5}},
+                    {"characteristic", {1e-3, 5e-3}}, {"compliance", {1e-3, 5e-3}}};
     }
     return {};
 }
@@ -288,6 +336,17 @@ Measurement measure(const Model& model, const Comparison& comparison) {
             if (!branch.determined[c]) continue;
             const auto& channel = comparison.channels[c];
             const std::string unit = symbol(channel.unit);
+            if (std::holds_alternative<Characteristic>(channel.reads)) {
+                for (const auto& [quantity, run] : {std::pair{Quantity::characteristic_recursive, &recursive},
+                                                    {Quantity::characteristic_equilibrium, &equilibrium}}) {
+                    Series few{branch.branch, quantity, channel.name, unit, {}};
+                    for (const std::size_t k : landmarks(kept.a))
+                        few.values.push_back(
+                            rounded(run->curve.values[run->curve.start - before + at[k]][c]));
+                    result.series.push_back(std::move(few));
+                }
+                continue;
+            }
             for (const auto& [quantity, run] :
                  {std::pair{Quantity::recursive, &recursive}, {Quantity::equilibrium, &equilibrium}}) {
                 Series curve{branch.branch, quantity, channel.name, unit, {}};
@@ -307,6 +366,7 @@ Measurement measure(const Model& model, const Comparison& comparison) {
         add_counters(branch.branch, Quantity::work_energy, energy, result.series);
         result.branches.push_back(std::move(kept));
     }
+    add_compliance(model, comparison, result.series);
     std::ranges::sort(result.series, [](const Series& a, const Series& b) { return key(a) < key(b); });
     return result;
 }

@@ -27,6 +27,10 @@ const char* name(ToleranceClass kind);  // "same-build", ...
 enum class Quantity {
     recursive,                     // a channel of the recursion along the branch
     equilibrium,                   // ... of the equilibrium leg
+    characteristic_recursive,      // kinematics and compliance at the start and the ends of the branch, by the recursion
+    characteristic_equilibrium,    // ... by the equilibrium leg
+    compliance_recursive,          // a row of the compliance matrix at the start of the first branch, likewise
+    compliance_equilibrium,
     deviation_at_equal_parameter,  // the largest |recursion - equilibrium leg| over all points, one number
     deviation_at_equal_abscissa,   // likewise
     work_recursive,                // counters of a leg: steps, factorisations, iterations, evaluations
@@ -35,6 +39,10 @@ enum class Quantity {
 };
 inline constexpr std::array quantities{Quantity::recursive,
                                        Quantity::equilibrium,
+                                       Quantity::characteristic_recursive,
+                                       Quantity::characteristic_equilibrium,
+                                       Quantity::compliance_recursive,
+                                       Quantity::compliance_equilibrium,
                                        Quantity::deviation_at_equal_parameter,
                                        Quantity::deviation_at_equal_abscissa,
                                        Quantity::work_recursive,
@@ -47,7 +55,8 @@ struct Series {
     Quantity quantity = Quantity::recursive;
     std::string channel;         // or counter
     std::string unit;            // "mm", "deg", "N", "N·m", "count"
-    std::vector<double> values;  // one per kept parameter of the branch for a channel, else one
+    std::vector<double> values;  // one per kept parameter of the branch for a channel; of a characteristic at the
+                                 // first of them, at the one nearest to 0 and at the last; a row of a matrix; else one
 };
 
 struct GatedBranch {
@@ -68,13 +77,14 @@ struct Measurement {
 // file holds.
 Measurement measure(const Model& model, const Comparison& comparison);
 
-// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; of the equilibrium leg's curve
+// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; the largest entry of a characteristic or of a
+// row of compliances; of the equilibrium leg's curve
 // for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
 struct Tolerance {
     double atol = 0, rtol = 0;
 };
 
-// By channel where it is listed, else by unit.
+// By channel where it is listed, else "characteristic", "compliance", else by unit.
 using Tolerances = std::map<std::string, Tolerance>;
 Tolerances default_tolerances(ToleranceClass kind);
 

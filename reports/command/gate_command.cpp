@@ -223,7 +223,13 @@ int accept_scene(const Task& task, const GateOptions& options) {
     if (!was) {
         print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
     } else {
-        is.baseline.tolerances = was->baseline.tolerances;
+        auto& tolerances = is.baseline.tolerances;  // the defaults, of what the old one had none yet
+        for (auto& [kind, usual] : tolerances)
+            if (const auto own = was->baseline.tolerances.find(kind); own != was->baseline.tolerances.end()) {
+                auto kept = own->second;
+                kept.insert(usual.begin(), usual.end());
+                usual = std::move(kept);
+            }
         is.baseline.limits = was->baseline.limits;
         judge(*was, is, name(ToleranceClass::same_build), scene);
         scene.differs = "every change beyond rounding";

@@ -21,7 +21,9 @@ using compare::Series;
 using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
-constexpr std::array units{"mm", "deg", "N", "N·m", "count"};
+bool is_known(const std::string& unit) {
+    return unit == "count" || std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
+}
 
 // A field of the file, with the path to it for messages.
 struct Field {
@@ -137,7 +139,7 @@ Series series_of(const Field& field) {
     expect_fields(field, {"branch", "of", "channel", "unit", "values"});
     Series s{text(at(field, "branch")), named(at(field, "of"), compare::quantities),
              text(at(field, "channel")), text(at(field, "unit")), numbers(at(field, "values"))};
-    if (std::ranges::find(units, s.unit) == units.end())
+    if (!is_known(s.unit))
         refuse(at(field, "unit"), fmt::format("'{}' is not known", s.unit));
     return s;
 }
