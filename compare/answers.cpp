@@ -19,9 +19,11 @@ using Eigen::Vector3d;
 bool is_jack(const Model& model, std::size_t joint) {
     const ModelJoint& j = model.joints[joint];
     return j.only_where_driven && j.j == ground &&
-           std::ranges::any_of(model.constraints, [&](const Constraint& c) {
-               return c.joint == static_cast<int>(joint) && std::holds_alternative<PointInPlane>(c.kind);
-           }) &&
+           std::ranges::any_of(model.constraints,
+                               [&](const Constraint& c) {
+                                   return c.joint == static_cast<int>(joint) &&
+                                          std::holds_alternative<PointInPlane>(c.kind);
+                               }) &&
            std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
                return wheel.body == j.i &&
                       (wheel.centre_local == j.at.s_local || wheel.contact_local == j.at.s_local);
@@ -137,8 +139,7 @@ Response respond(const Gait& gait, const Model& model, const Branch& branch, con
         case Leg::series:
             return recursive::respond(model, branch, state, disturbances,
                                       recursive::find_method("series").value());
-        case Leg::equilibrium:
-            return reference::equilibrium::respond(model, branch, state, disturbances);
+        case Leg::equilibrium: return reference::equilibrium::respond(model, branch, state, disturbances);
         case Leg::energy: return reference::energy::respond(model, branch, state, disturbances);
     }
     return {};
@@ -158,8 +159,7 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
     const std::size_t first = jack_up(stand);
     std::vector<Disturbance> changes = wrenches;
     for (std::size_t w = 0; w < wheels; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
-    const bool steers =
-        steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+    const bool steers = steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     if (steers) changes.push_back(Motion{steering});
     Response jacked = respond(gait, stand.model, stand.branch, stand.state, changes);
     if (jacked.outcome != Outcome::converged) {

@@ -374,7 +374,8 @@ bool Channel::kinematic() const {
 }
 
 bool Channel::may_be_undefined() const {
-    return !undefined.empty() || std::holds_alternative<Steering>(reads) || std::holds_alternative<Ackermann>(reads);
+    return !undefined.empty() || std::holds_alternative<Steering>(reads) ||
+           std::holds_alternative<Ackermann>(reads);
 }
 
 std::vector<int> Channel::joints() const {

@@ -32,10 +32,20 @@ enum class Unit {
     deg_per_100Nm,
     percent,
 };
-inline constexpr std::array all_units{
-    Unit::mm,          Unit::deg,           Unit::newton,       Unit::newton_metre, Unit::none,
-    Unit::deg_per_m,   Unit::deg_per_100mm, Unit::mm_per_100mm, Unit::deg_per_mm,   Unit::deg_per_deg,
-    Unit::newton_per_mm, Unit::deg_per_kN,  Unit::deg_per_100Nm, Unit::percent};
+inline constexpr std::array all_units{Unit::mm,
+                                      Unit::deg,
+                                      Unit::newton,
+                                      Unit::newton_metre,
+                                      Unit::none,
+                                      Unit::deg_per_m,
+                                      Unit::deg_per_100mm,
+                                      Unit::mm_per_100mm,
+                                      Unit::deg_per_mm,
+                                      Unit::deg_per_deg,
+                                      Unit::newton_per_mm,
+                                      Unit::deg_per_kN,
+                                      Unit::deg_per_100Nm,
+                                      Unit::percent};
 const char* symbol(Unit unit);     // "mm", ..., "-", "deg/kN"
 double in_unit(Unit unit);         // how many of them one m, rad, N, N·m or 1 is
 Unit unit_of(ParameterUnit unit);  // in which a branch's parameter is shown

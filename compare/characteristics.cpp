@@ -141,7 +141,8 @@ Vector3d on_the_road(const Wheels& wheels, std::size_t w, const Axis& axis) {
 // the other goes down by as much.
 Motions rolled_towards(const Wheels& wheels, std::size_t w) {
     Motions roll = rolled(wheels);
-    const double half = std::abs(wheels.at(wheels.patch(0)).y() - wheels.at(wheels.patch(1)).y()) / 2 * wheels.side(w);
+    const double half =
+        std::abs(wheels.at(wheels.patch(0)).y() - wheels.at(wheels.patch(1)).y()) / 2 * wheels.side(w);
     for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
     return roll;
 }
@@ -164,7 +165,6 @@ double ride_rate(const Wheels& wheels, std::size_t w) {
     const double k_w = wheel_rate(wheels, w, Pattern::alike), k_t = wheels[w].tyre_rate;
     return std::isinf(k_w) ? undefined : k_w * k_t / (k_w + k_t);
 }
-
 
 // Towards the middle of the vehicle, so that a wheel and its mirror image answer alike; at the patch, the wheels held.
 double inward(const Wheels& wheels, std::size_t w) { return -wheels.side(w); }
@@ -214,10 +214,10 @@ double shortening(const Wheels& wheels, const Point& i, const Point& j) {
 enum class Of {
     every_wheel,
     wheel_on_tyre,
-    steered_wheel,  // some branch drives a joint that is no jack, ...
+    steered_wheel,    // some branch drives a joint that is no jack, ...
     wheel_on_rack,    // ... along an axis
     wheel_on_column,  // ... about one
-    front_wheel,    // of a scene that says `vehicle`
+    front_wheel,      // of a scene that says `vehicle`
     rear_wheel,
     wheel_of_axle,  // one of a left and a right one
     wheels,         // all together
@@ -231,7 +231,8 @@ struct Entry {
     Unit unit;
     const char* definition;
     const char* undefined;
-    double (*formula)(const Wheels& wheels, std::size_t k);  // k: wheel, or spring in Model::elastics, or damper; SI
+    double (*formula)(const Wheels& wheels,
+                      std::size_t k);  // k: wheel, or spring in Model::elastics, or damper; SI
 };
 
 constexpr const char* never = "";
@@ -243,22 +244,28 @@ constexpr const char* no_rate = "nothing resists the travel of the wheel, or not
 
 const std::array table{
     Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
-          "change of toe over travel of the wheel centre, all wheels rising alike; positive towards toe-in in jounce",
+          "change of toe over travel of the wheel centre, all wheels rising alike; positive towards toe-in "
+          "in jounce",
           never, [](const Wheels& x, std::size_t w) { return x.toe(w, raised(x)); }},
     Entry{Of::every_wheel, "bump_camber", Unit::deg_per_100mm,
-          "change of camber over travel of the wheel centre, all wheels rising alike; positive where the top leans out in "
+          "change of camber over travel of the wheel centre, all wheels rising alike; positive where the top "
+          "leans out in "
           "jounce",
           never, [](const Wheels& x, std::size_t w) { return x.camber(w, raised(x)); }},
-    Entry{Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
-          "lateral displacement of the contact patch over travel, all wheels rising alike; positive outwards in jounce",
-          never,
-          [](const Wheels& x, std::size_t w) { return x.side(w) * moved(x.state, raised(x), x.patch(w)).y(); }},
+    Entry{
+        Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
+        "lateral displacement of the contact patch over travel, all wheels rising alike; positive outwards "
+        "in jounce",
+        never,
+        [](const Wheels& x, std::size_t w) { return x.side(w) * moved(x.state, raised(x), x.patch(w)).y(); }},
     Entry{Of::every_wheel, "recession_gradient", Unit::mm_per_100mm,
-          "longitudinal displacement of the wheel centre over travel, all wheels rising alike; positive to the back in "
+          "longitudinal displacement of the wheel centre over travel, all wheels rising alike; positive to "
+          "the back in "
           "jounce",
           never, [](const Wheels& x, std::size_t w) { return -moved(x.state, raised(x), x.centre(w)).x(); }},
     Entry{Of::every_wheel, "front_view_swing_arm", Unit::mm,
-          "distance from the wheel centre, across, to where the carrier seen from the front turns about, all wheels rising "
+          "distance from the wheel centre, across, to where the carrier seen from the front turns about, all "
+          "wheels rising "
           "alike; positive where that is inboard",
           "the carrier does not turn as seen from the front: the arm is endless",
           [](const Wheels& x, std::size_t w) {
@@ -267,7 +274,8 @@ const std::array table{
               return ratio(x.side(w) * v.z(), turned(by, x[w].body).x(), nowhere);
           }},
     Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
-          "distance from the wheel centre, along the vehicle, to where the carrier seen from the side turns about, all wheels "
+          "distance from the wheel centre, along the vehicle, to where the carrier seen from the side turns "
+          "about, all wheels "
           "rising alike; positive where that is ahead of the wheel",
           "the carrier does not turn as seen from the side: the arm is endless",
           [](const Wheels& x, std::size_t w) {
@@ -276,38 +284,46 @@ const std::array table{
               return ratio(v.z(), turned(by, x[w].body).y(), nowhere);
           }},
     Entry{Of::every_wheel, "wheel_rate", Unit::newton_per_mm,
-          "vertical force at the contact patch over vertical displacement of the wheel centre, all wheels loaded alike",
-          no_rate,
-          [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
+          "vertical force at the contact patch over vertical displacement of the wheel centre, all wheels "
+          "loaded alike",
+          no_rate, [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
     Entry{Of::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
-          "change of toe over a force at the contact patch towards the middle of the vehicle (as on the outer wheel in a "
+          "change of toe over a force at the contact patch towards the middle of the vehicle (as on the "
+          "outer wheel in a "
           "turn), wheel centres held at their height; positive towards toe-in",
           never,
           [](const Wheels& x, std::size_t w) { return inward(x, w) * x.toe(w, held(x, w, at_patch + 1)); }},
-    Entry{Of::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
-          "change of camber over the same force, likewise; positive where the top leans out", never,
-          [](const Wheels& x, std::size_t w) { return inward(x, w) * x.camber(w, held(x, w, at_patch + 1)); }},
+    Entry{
+        Of::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
+        "change of camber over the same force, likewise; positive where the top leans out", never,
+        [](const Wheels& x, std::size_t w) { return inward(x, w) * x.camber(w, held(x, w, at_patch + 1)); }},
     Entry{Of::every_wheel, "lateral_stiffness", Unit::newton_per_mm,
-          "lateral force at the contact patch over its lateral displacement, wheel centres held at their height",
+          "lateral force at the contact patch over its lateral displacement, wheel centres held at their "
+          "height",
           gives_nothing, [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_patch + 1); }},
     Entry{Of::every_wheel, "braking_force_steer", Unit::deg_per_kN,
-          "change of toe over a force to the back at the contact patch, wheel centres held at their height; positive towards "
+          "change of toe over a force to the back at the contact patch, wheel centres held at their height; "
+          "positive towards "
           "toe-in",
           never, [](const Wheels& x, std::size_t w) { return -x.toe(w, held(x, w, at_patch)); }},
     Entry{Of::every_wheel, "braking_force_camber", Unit::deg_per_kN,
           "change of camber over the same force, likewise; positive where the top leans out", never,
           [](const Wheels& x, std::size_t w) { return -x.camber(w, held(x, w, at_patch)); }},
     Entry{Of::every_wheel, "longitudinal_stiffness", Unit::newton_per_mm,
-          "longitudinal force at the contact patch over its longitudinal displacement, wheel centres held at their height",
+          "longitudinal force at the contact patch over its longitudinal displacement, wheel centres held at "
+          "their height",
           gives_nothing, [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_patch); }},
     Entry{Of::every_wheel, "traction_force_steer", Unit::deg_per_kN,
-          "change of toe over a force forward at the wheel centre, wheel centres held at their height; positive towards toe-in",
+          "change of toe over a force forward at the wheel centre, wheel centres held at their height; "
+          "positive towards toe-in",
           never, [](const Wheels& x, std::size_t w) { return x.toe(w, held(x, w, at_centre)); }},
     Entry{Of::every_wheel, "longitudinal_stiffness_at_centre", Unit::newton_per_mm,
-          "longitudinal force at the wheel centre over its longitudinal displacement, wheel centres held at their height",
+          "longitudinal force at the wheel centre over its longitudinal displacement, wheel centres held at "
+          "their height",
           gives_nothing, [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_centre); }},
     Entry{Of::every_wheel, "aligning_torque_steer", Unit::deg_per_100Nm,
-          "change of toe over a moment about the vertical that turns the wheel towards toe-in, wheel centres held at their "
+          "change of toe over a moment about the vertical that turns the wheel towards toe-in, wheel centres "
+          "held at their "
           "height; positive towards toe-in",
           never,
           [](const Wheels& x, std::size_t w) { return -x.side(w) * x.toe(w, held(x, w, moment_on + 2)); }},
@@ -315,17 +331,20 @@ const std::array table{
           "change of camber over the same moment, likewise; positive where the top leans out", never,
           [](const Wheels& x, std::size_t w) { return -x.side(w) * x.camber(w, held(x, w, moment_on + 2)); }},
     Entry{Of::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
-                 "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)",
-                 no_rate, ride_rate},
+          "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
+          ride_rate},
     Entry{Of::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
-          "change of toe over the displacement of the steering joint, wheel centres held at their height; positive towards "
+          "change of toe over the displacement of the steering joint, wheel centres held at their height; "
+          "positive towards "
           "toe-in",
           not_steered, steer_gradient},
     Entry{Of::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
-          "change of toe over the angle of the steering joint, wheel centres held at their height; positive towards toe-in",
+          "change of toe over the angle of the steering joint, wheel centres held at their height; positive "
+          "towards toe-in",
           not_steered, steer_gradient},
     Entry{Of::steered_wheel, "caster_steered", Unit::deg,
-          "of the axis that the carrier turns about as the steering moves and the wheel centres keep their height: angle to the "
+          "of the axis that the carrier turns about as the steering moves and the wheel centres keep their "
+          "height: angle to the "
           "vertical seen from the side, positive where its top leans back",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
@@ -333,13 +352,15 @@ const std::array table{
               return axis ? std::atan2(-axis->n.x(), axis->n.z()) : undefined;
           }},
     Entry{Of::steered_wheel, "kingpin_inclination_steered", Unit::deg,
-          "of the same axis: angle to the vertical seen from the front, positive where its top leans inwards", does_not_steer,
+          "of the same axis: angle to the vertical seen from the front, positive where its top leans inwards",
+          does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
               return axis ? std::atan2(-x.side(w) * axis->n.y(), axis->n.z()) : undefined;
           }},
     Entry{Of::steered_wheel, "scrub_radius_steered", Unit::mm,
-          "lateral distance on the road from the same axis to the contact patch, positive where the axis meets the road "
+          "lateral distance on the road from the same axis to the contact patch, positive where the axis "
+          "meets the road "
           "inboard of the patch",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
@@ -347,59 +368,74 @@ const std::array table{
               return axis ? -x.side(w) * on_the_road(x, w, *axis).y() : undefined;
           }},
     Entry{Of::steered_wheel, "mechanical_trail_steered", Unit::mm,
-          "longitudinal distance on the road from the contact patch to the same axis, positive where the axis meets the road "
+          "longitudinal distance on the road from the contact patch to the same axis, positive where the "
+          "axis meets the road "
           "ahead of the patch",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
               return axis ? on_the_road(x, w, *axis).x() : undefined;
           }},
-    Entry{Of::front_wheel, "anti_dive", Unit::percent,
-          "brake_share · wheelbase / cg_height · how far the contact patch goes forward over travel: what the links carry of "
-          "the load that braking shifts; positive where they hold the nose up",
-          no_vertical,
-          [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, 1); }},
+    Entry{
+        Of::front_wheel, "anti_dive", Unit::percent,
+        "brake_share · wheelbase / cg_height · how far the contact patch goes forward over travel: what the "
+        "links carry of "
+        "the load that braking shifts; positive where they hold the nose up",
+        no_vertical,
+        [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, 1); }},
     Entry{Of::front_wheel, "anti_lift", Unit::percent,
-          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes forward over travel; "
+          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes "
+          "forward over travel; "
           "positive where the links hold the nose down as the axle drives",
           no_vertical,
-          [](const Wheels& x, std::size_t w) { return anti(x, driven_at(x, w), x.model.vehicle->drive_share, 1); }},
-    Entry{Of::rear_wheel, "anti_lift", Unit::percent,
-          "brake_share · wheelbase / cg_height · how far the contact patch goes back over travel: what the links carry of the "
-          "load that braking shifts; positive where they hold the tail down",
-          no_vertical,
-          [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, -1); }},
+          [](const Wheels& x, std::size_t w) {
+              return anti(x, driven_at(x, w), x.model.vehicle->drive_share, 1);
+          }},
+    Entry{
+        Of::rear_wheel, "anti_lift", Unit::percent,
+        "brake_share · wheelbase / cg_height · how far the contact patch goes back over travel: what the "
+        "links carry of the "
+        "load that braking shifts; positive where they hold the tail down",
+        no_vertical,
+        [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, -1); }},
     Entry{Of::rear_wheel, "anti_squat", Unit::percent,
-          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes back over travel; "
+          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes "
+          "back over travel; "
           "positive where the links hold the tail up as the axle drives",
           no_vertical,
-          [](const Wheels& x, std::size_t w) { return anti(x, driven_at(x, w), x.model.vehicle->drive_share, -1); }},
+          [](const Wheels& x, std::size_t w) {
+              return anti(x, driven_at(x, w), x.model.vehicle->drive_share, -1);
+          }},
     Entry{Of::wheels, "roll_centre_height", Unit::mm,
-    "height above the contact patches of where the lines meet that stand, seen from the front, square on the motion of the "
-    "patches: of an axle that rolls, of one wheel with the middle of the vehicle; positive above the road",
-    "no finite roll centre", [](const Wheels& x, std::size_t) { return roll_centre(x); }},
+          "height above the contact patches of where the lines meet that stand, seen from the front, square "
+          "on the motion of the "
+          "patches: of an axle that rolls, of one wheel with the middle of the vehicle; positive above the "
+          "road",
+          "no finite roll centre", [](const Wheels& x, std::size_t) { return roll_centre(x); }},
     Entry{Of::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
-          "change of toe over the roll of the car body towards this wheel, wheels on the road; positive towards toe-in", never,
-          [](const Wheels& x, std::size_t w) { return x.toe(w, rolled_towards(x, w)); }},
+          "change of toe over the roll of the car body towards this wheel, wheels on the road; positive "
+          "towards toe-in",
+          never, [](const Wheels& x, std::size_t w) { return x.toe(w, rolled_towards(x, w)); }},
     Entry{Of::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
-          "change of camber against the car body over its roll towards this wheel; positive where the top leans out", never,
-          [](const Wheels& x, std::size_t w) { return x.camber(w, rolled_towards(x, w)); }},
+          "change of camber against the car body over its roll towards this wheel; positive where the top "
+          "leans out",
+          never, [](const Wheels& x, std::size_t w) { return x.camber(w, rolled_towards(x, w)); }},
     Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
-          "vertical force at the contact patch over vertical displacement of the wheel centre, the other wheel's opposite",
-          no_rate,
-          [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
+          "vertical force at the contact patch over vertical displacement of the wheel centre, the other "
+          "wheel's opposite",
+          no_rate, [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
     Entry{Of::spring, "motion_ratio", Unit::none,
-                         "shortening of the spring over travel of the wheel centres, all rising alike", never,
-                         [](const Wheels& x, std::size_t k) {
-                             const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
-                             return shortening(x, spring.i, spring.j);
-                         }},
+          "shortening of the spring over travel of the wheel centres, all rising alike", never,
+          [](const Wheels& x, std::size_t k) {
+              const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
+              return shortening(x, spring.i, spring.j);
+          }},
     Entry{Of::damper, "motion_ratio", Unit::none,
-                         "shortening of the damper over travel of the wheel centres, all rising alike", never,
-                         [](const Wheels& x, std::size_t k) {
-                             const auto& damper = x.model.dampers[k];
-                             return shortening(x, damper.i, damper.j);
-                         }},
+          "shortening of the damper over travel of the wheel centres, all rising alike", never,
+          [](const Wheels& x, std::size_t k) {
+              const auto& damper = x.model.dampers[k];
+              return shortening(x, damper.i, damper.j);
+          }},
 };
 
 bool turns(const Model& model, int joint) {
@@ -415,8 +451,10 @@ std::size_t count(const Model& model, Of of) {
         case Of::every_wheel: return model.wheels.size();
         case Of::wheel_on_tyre: return model.wheels.size();
         case Of::steered_wheel: return if_so(steering_joint(model) >= 0);
-        case Of::wheel_on_rack: return if_so(steering_joint(model) >= 0 && !turns(model, steering_joint(model)));
-        case Of::wheel_on_column: return if_so(steering_joint(model) >= 0 && turns(model, steering_joint(model)));
+        case Of::wheel_on_rack:
+            return if_so(steering_joint(model) >= 0 && !turns(model, steering_joint(model)));
+        case Of::wheel_on_column:
+            return if_so(steering_joint(model) >= 0 && turns(model, steering_joint(model)));
         case Of::front_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::front);
         case Of::rear_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::rear);
         case Of::wheel_of_axle: return if_so(is_axle(model));
@@ -468,19 +506,22 @@ std::vector<Channel> characteristics(const Model& model) {
     return list;
 }
 
-double value_of(const Model& model, const Characteristic& what, const Equilibrium& state, const Answers& answers) {
+double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
+                const Answers& answers) {
     const Entry& entry = table[what.entry];
     return answers.why_not.empty() ? entry.formula({model, state, answers}, what.of) : nan;
 }
 
-Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state, const Answers& answers) {
+Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
+                           const Answers& answers) {
     const auto n = static_cast<Eigen::Index>(answers.free.size());
     const Wheels wheels{model, state, answers};
     const int force = point == WheelPoint::centre ? at_centre : at_patch;
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)
         for (int k = 0; k < 6; ++k) {
-            const auto& by = answers.free[static_cast<std::size_t>(j)][static_cast<std::size_t>(k < 3 ? force + k : k)];
+            const auto& by =
+                answers.free[static_cast<std::size_t>(j)][static_cast<std::size_t>(k < 3 ? force + k : k)];
             for (Eigen::Index i = 0; i < n; ++i) {
                 const auto w = static_cast<std::size_t>(i);
                 const Point at = point == WheelPoint::centre ? wheels.centre(w) : wheels.patch(w);

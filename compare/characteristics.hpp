@@ -16,7 +16,8 @@ namespace elastocheck::compare {
 std::vector<Channel> characteristics(const Model& model);
 
 // The value of one in its unit; NaN where it is undefined (Channel::undefined says what that means).
-double value_of(const Model& model, const Characteristic& what, const Equilibrium& state, const Answers& answers);
+double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
+                const Answers& answers);
 
 // ---- Compliance.
 
@@ -24,7 +25,8 @@ double value_of(const Model& model, const Characteristic& what, const Equilibriu
 // [m] and rotation [rad], columns force at the point [N] and moment [N·m], wheel by wheel; jacks and tyres gone.
 // Empty where nothing resists.
 enum class WheelPoint { centre, patch };
-Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state, const Answers& answers);
+Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
+                           const Answers& answers);
 
 // |C - Cᵀ| over |C|, both the largest entry, lengths counted by the tyre's radius (1 m where patch and centre are one):
 // zero where what acts has an energy and the state is in equilibrium, up to the moments that it holds

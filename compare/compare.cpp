@@ -32,7 +32,8 @@ bool asks_for_characteristics(const std::vector<Channel>& channels) {
         channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
 }
 
-std::vector<Compliance> compliance_of(const Model& model, const Way& way, const Gait& gait, const LegRun& run) {
+std::vector<Compliance> compliance_of(const Model& model, const Way& way, const Gait& gait,
+                                      const LegRun& run) {
     std::vector<Compliance> list;
     for (const auto* state : {&run.landmarks.front, &run.landmarks.start, &run.landmarks.back}) {
         if (!*state) continue;
@@ -77,7 +78,8 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     });
     if (!front) front = start;
     if (!back) back = start;
-    if (!model.wheels.empty() && asks_for_characteristics(channels)) run.compliance = compliance_of(model, way, gait, run);
+    if (!model.wheels.empty() && asks_for_characteristics(channels))
+        run.compliance = compliance_of(model, way, gait, run);
     if (gait.leg == Leg::recursive || gait.leg == Leg::series) run.seconds = seconds_alone(ways, gait);
     return run;
 }
@@ -100,7 +102,7 @@ double bound_of(Unit unit, const Bounds& bounds) {
         case Unit::newton_metre: return bounds.moment;
         case Unit::percent:
             return 6e3 * bounds.angle;  // of two cotangents at 2 deg, of a wheelbase of two tracks
-        default: return 0;  // of a characteristic: apart
+        default: return 0;              // of a characteristic: apart
     }
 }
 

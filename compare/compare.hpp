@@ -43,7 +43,8 @@ struct LegRun : Walked {
         // forces are NaN by the energy leg's where there is no energy
     Scale scale = {};  // of what acts over the points
     Landmarks landmarks = {};
-    std::vector<Compliance> compliance = {};  // at front, start and back, as far as they are apart; of a scene with wheels
+    std::vector<Compliance> compliance =
+        {};  // at front, start and back, as far as they are apart; of a scene with wheels
 };
 
 // The recursion goes as `recursion` says, the published one unless it says otherwise, and every one of its

@@ -52,8 +52,9 @@ bool is_compliance(Quantity q) {
 // Where a characteristic is kept: at the first of the parameters, at the one nearest to 0, at the last.
 std::vector<std::size_t> landmarks(const std::vector<double>& a) {
     const auto nearest = std::ranges::min_element(a, {}, [](double x) { return std::abs(x); });
-    std::vector<std::size_t> at{0, static_cast<std::size_t>(nearest - a.begin()), a.size() - 1};
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    std::vector<std::size_t> at;
+    for (const auto k : {std::size_t{0}, static_cast<std::size_t>(nearest - a.begin()), a.size() - 1})
+        if (at.empty() || at.back() != k) at.push_back(k);
     return at;
 }
 bool is_deviation(Quantity q) {
@@ -216,10 +217,13 @@ void add_compliance(const Model& model, const Comparison& comparison, std::vecto
                                         {Quantity::compliance_equilibrium, Leg::equilibrium}})
         for (const auto& at : branch.runs[static_cast<std::size_t>(leg)].compliance) {
             if (at.a != 0) continue;
-            for (const auto& [point, C] : {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
+            for (const auto& [point, C] :
+                 {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
                 for (Eigen::Index r = 0; r < C->rows(); ++r) {
-                    Series row{branch.branch, quantity, answer_name(model, point, r), r % 6 < 3 ? "mm" : "deg", {}};
-                    for (Eigen::Index c = 0; c < C->cols(); ++c) row.values.push_back(rounded(in_table_units(*C, r, c)));
+                    Series row{
+                        branch.branch, quantity, answer_name(model, point, r), r % 6 < 3 ? "mm" : "deg", {}};
+                    for (Eigen::Index c = 0; c < C->cols(); ++c)
+                        row.values.push_back(rounded(in_table_units(*C, r, c)));
                     series.push_back(std::move(row));
                 }
         }
@@ -295,18 +299,32 @@ Judgement Verdict::judgement() const {
 Tolerances default_tolerances(ToleranceClass kind) {
     switch (kind) {
         case ToleranceClass::same_build:  // the last digit of the file
-            return {{"mm", {2e-9, 0}},  {"deg", {2e-9, 0}}, {"N", {2e-9, 0}},
-                    {"N·m", {2e-9, 0}}, {"%", {2e-9, 0}},   {"count", {0, 0}},
-                    {"characteristic", {2e-9, 1e-12}}, {"compliance", {2e-9, 1e-12}}};
+            return {{"mm", {2e-9, 0}},
+                    {"deg", {2e-9, 0}},
+                    {"N", {2e-9, 0}},
+                    {"N·m", {2e-9, 0}},
+                    {"%", {2e-9, 0}},
+                    {"count", {0, 0}},
+                    {"characteristic", {2e-9, 1e-12}},
+                    {"compliance", {2e-9, 1e-12}}};
         case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
-            return {
-                {"mm", {5e-9, 0}},    {"deg", {5e-9, 0}}, {"N", {7e-8, 0}},
-                {"N·m", {5e-9, 0}},   {"%", {2e-5, 0}},  // of a cotangent at 2 deg: 5e-9 deg are 800 times as much, in percent
-                {"count", {1, 0.012}}, {"characteristic", {1e-8, 1e-8}}, {"compliance", {1e-8, 1e-8}}};
+            return {{"mm", {5e-9, 0}},
+                    {"deg", {5e-9, 0}},
+                    {"N", {7e-8, 0}},
+                    {"N·m", {5e-9, 0}},
+                    {"%", {2e-5, 0}},  // of a cotangent at 2 deg: 5e-9 deg are 800 times as much, in percent
+                    {"count", {1, 0.012}},
+                    {"characteristic", {1e-8, 1e-8}},
+                    {"compliance", {1e-8, 1e-8}}};
         case ToleranceClass::physical:
-            return {{"mm", {0.01, 1e-3}}, {"deg", {0.001, 1e-3}}, {"N", {1, 1e-3}},
-                    {"N·m", {0.1, 1e-3}}, {"%", {0.5, 1e-3}},     {"count", {2, 0.5}},
-                    {"characteristic", {1e-3, 5e-3}}, {"compliance", {1e-3, 5e-3}}};
+            return {{"mm", {0.01, 1e-3}},
+                    {"deg", {0.001, 1e-3}},
+                    {"N", {1, 1e-3}},
+                    {"N·m", {0.1, 1e-3}},
+                    {"%", {0.5, 1e-3}},
+                    {"count", {2, 0.5}},
+                    {"characteristic", {1e-3, 5e-3}},
+                    {"compliance", {1e-3, 5e-3}}};
     }
     return {};
 }

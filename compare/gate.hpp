@@ -25,11 +25,11 @@ const char* name(ToleranceClass kind);  // "same-build", ...
 
 // What a series tells about a branch.
 enum class Quantity {
-    recursive,                     // a channel of the recursion along the branch
-    equilibrium,                   // ... of the equilibrium leg
-    characteristic_recursive,      // kinematics and compliance at the start and the ends of the branch, by the recursion
-    characteristic_equilibrium,    // ... by the equilibrium leg
-    compliance_recursive,          // a row of the compliance matrix at the start of the first branch, likewise
+    recursive,                 // a channel of the recursion along the branch
+    equilibrium,               // ... of the equilibrium leg
+    characteristic_recursive,  // kinematics and compliance at the start and the ends of the branch, by the recursion
+    characteristic_equilibrium,  // ... by the equilibrium leg
+    compliance_recursive,        // a row of the compliance matrix at the start of the first branch, likewise
     compliance_equilibrium,
     deviation_at_equal_parameter,  // the largest |recursion - equilibrium leg| over all points, one number
     deviation_at_equal_abscissa,   // likewise
@@ -53,10 +53,11 @@ const char* name(Quantity quantity);  // "recursive", "deviation at equal parame
 struct Series {
     std::string branch;
     Quantity quantity = Quantity::recursive;
-    std::string channel;         // or counter
-    std::string unit;            // "mm", "deg", "N", "N·m", "count"
-    std::vector<double> values;  // one per kept parameter of the branch for a channel; of a characteristic at the
-                                 // first of them, at the one nearest to 0 and at the last; a row of a matrix; else one
+    std::string channel;  // or counter
+    std::string unit;     // "mm", "deg", "N", "N·m", "count"
+    std::vector<double>
+        values;  // one per kept parameter of the branch for a channel; of a characteristic at the
+                 // first of them, at the one nearest to 0 and at the last; a row of a matrix; else one
 };
 
 struct GatedBranch {

@@ -36,6 +36,6 @@ struct Assessment {
 double as_position(const RateError& rate);
 
 Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
-                bool asked = true);
+                  bool asked = true);
 
 }  // namespace elastocheck::compare

@@ -106,7 +106,7 @@ double rate(const Model& model, const Channel& channel, const Equilibrium& state
                    [&](const Effort& c) { return unknown(c); }, [&](const Reaction& c) { return unknown(c); },
                    [&](const Total& c) { return unknown(c); }, [&](const OfElement& c) { return unknown(c); },
                    [&](const AxialForce& c) { return unknown(c); },
-                    [&](const Characteristic& c) { return unknown(c); }},
+                   [&](const Characteristic& c) { return unknown(c); }},
                channel.reads) *
            in_unit(channel.unit);
 }

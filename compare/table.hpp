@@ -34,9 +34,9 @@ struct Table {
 
 Table channel_table(const std::vector<Channel>& channels);  // what every output is, with its sign
 Table settled_table(const std::vector<Channel>& channels, const std::vector<Settled>& settled);
-Table curve_table(const Comparison& comparison);         // every leg, branch and point, all channels
-Table deviation_table(const Comparison& comparison);     // per branch, reading and channel
-Table agreement_table(const Comparison& comparison);     // bounds and objections per branch
+Table curve_table(const Comparison& comparison);      // every leg, branch and point, all channels
+Table deviation_table(const Comparison& comparison);  // per branch, reading and channel
+Table agreement_table(const Comparison& comparison);  // bounds and objections per branch
 // Kinematics and compliance at the design position, each with the error of the recursion; empty without a wheel.
 Table characteristic_table(const Comparison& comparison);
 // How far the wheels give, per branch, landmark, leg and point: a row each component of the answer, a column each of what acts.

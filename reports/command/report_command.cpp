@@ -116,7 +116,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     add_verdict(document, comparison.compared, reasons);
     auto judgement = compare::assess(model, comparison, trade_options.tolerance,
-                                    request.tolerance != ReportRequest{}.tolerance);
+                                     request.tolerance != ReportRequest{}.tolerance);
     if (!reasons.empty()) judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
     return document;
@@ -200,7 +200,7 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
         ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
         ->check(a_file("*.csv"));
     command->add_option("--branch-column", request.branch_column,
-                     "column of --measured that says which branch a point belongs to (default: branch)");
+                        "column of --measured that says which branch a point belongs to (default: branch)");
     command->add_option("--case", request.cases,
                         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated");
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")

@@ -91,7 +91,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     delivery.say(tables(model, comparison));
     if (study) delivery.say(formulation_text(*study, comparison));
     const auto judgement = compare::assess(model, comparison, compare::parse_tolerance(request.within),
-                                          request.within != CompareRequest{}.within);
+                                           request.within != CompareRequest{}.within);
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);

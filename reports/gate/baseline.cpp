@@ -22,7 +22,8 @@ using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
 bool is_known(const std::string& unit) {
-    return unit == "count" || std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
+    return unit == "count" ||
+           std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
 }
 
 // A field of the file, with the path to it for messages.
@@ -139,8 +140,7 @@ Series series_of(const Field& field) {
     expect_fields(field, {"branch", "of", "channel", "unit", "values"});
     Series s{text(at(field, "branch")), named(at(field, "of"), compare::quantities),
              text(at(field, "channel")), text(at(field, "unit")), numbers(at(field, "values"))};
-    if (!is_known(s.unit))
-        refuse(at(field, "unit"), fmt::format("'{}' is not known", s.unit));
+    if (!is_known(s.unit)) refuse(at(field, "unit"), fmt::format("'{}' is not known", s.unit));
     return s;
 }
 

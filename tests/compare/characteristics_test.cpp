@@ -76,7 +76,9 @@ struct Arm {
 };
 
 std::string arm_scene(const Arm& arm, const std::string& more = "") {
-    const auto point = [](const Vector3d& p) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", p.x(), p.y(), p.z()); };
+    const auto point = [](const Vector3d& p) {
+        return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", p.x(), p.y(), p.z());
+    };
     return fmt::format(
         "points: {{a: {}, b: {}, c: {}, p: {}, top: [0.1, 1.0, 0.4], low: [0.1, 1.0, 0.0]}}\n"
         "bodies: {{arm: {{origin: c}}}}\n"
@@ -131,9 +133,10 @@ TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromThe
 TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto with = [&](const char* axle) {
-        return model_of(arm_scene(arm, fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
-                                                   "drive_share: 1}}\n",
-                                                   axle)));
+        return model_of(arm_scene(
+            arm, fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
+                             "drive_share: 1}}\n",
+                             axle)));
     };
     const Read rear(with("rear"), Leg::equilibrium), front(with("front"), Leg::equilibrium);
     EXPECT_NEAR(rear["anti_lift"], 100 * 0.4 * 0.8 * 5, 1e-9);
@@ -145,8 +148,8 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
 
 // ---- Two arms in the plane across: the wheel turns about where their lines meet.
 
-std::string wishbones(const std::string& upper_inner, const std::string& upper_outer, const std::string& lower_inner,
-                      const std::string& lower_outer) {
+std::string wishbones(const std::string& upper_inner, const std::string& upper_outer,
+                      const std::string& lower_inner, const std::string& lower_outer) {
     return fmt::format(
         "points: {{ui: {}, uo: {}, li: {}, lo: {}, c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, 0.8]}}\n"
         "bodies: {{upper: {{origin: ui}}, lower: {{origin: li}}, wheel: {{origin: c}}}}\n"
@@ -166,8 +169,8 @@ TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFr
     // Both fall by 0.1 over 0.4 towards the wheel: its points go inwards by a quarter of what they rise... and outwards
     // where they rise towards the wheel.
     for (const double fall : {0.0, 0.1, -0.1}) {
-        const Model model = model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall), "[0, 0.3, 0.15]",
-                                               fmt::format("[0, 0.7, {}]", 0.15 - fall)));
+        const Model model = model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall),
+                                               "[0, 0.3, 0.15]", fmt::format("[0, 0.7, {}]", 0.15 - fall)));
         for (const Leg leg : all_legs) {
             const Read is(model, leg);
             EXPECT_NEAR(is["bump_camber"], 0, 1e-9) << fall;
@@ -179,7 +182,8 @@ TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFr
 }
 
 TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
-    const Model model = model_of(wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
+    const Model model =
+        model_of(wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
     // Where the lines z = 0.42 + 0.04/0.33 (y - 0.35) and z = 0.18 - 0.04/0.42 (y - 0.3) meet.
     const double m = 0.04 / 0.33, n = -0.04 / 0.42, y = (0.18 - n * 0.3 - 0.42 + m * 0.35) / (m - n),
                  z = 0.42 + m * (y - 0.35);
@@ -198,7 +202,9 @@ TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
 TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
     const double caster = 0.1, inclination = 0.2;  // slopes: dx/dz, dy/dz to the top
     for (const int side : {1, -1}) {
-        const auto point = [&](double x, double y, double z) { return fmt::format("[{}, {}, {}]", x, side * y, z); };
+        const auto point = [&](double x, double y, double z) {
+            return fmt::format("[{}, {}, {}]", x, side * y, z);
+        };
         const Model model = model_of(fmt::format(
             "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
             "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: above}}}}\n"
@@ -211,9 +217,10 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
             "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
             "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
             "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
-            point(-0.2 * caster, 0.8 - 0.2 * inclination, 0.5), point(0.2 * caster, 0.8 + 0.2 * inclination, 0.1),
-            point(0, 0.8, 0.3), point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9),
-            side > 0 ? "" : "-", side > 0 ? "left" : "right"));
+            point(-0.2 * caster, 0.8 - 0.2 * inclination, 0.5),
+            point(0.2 * caster, 0.8 + 0.2 * inclination, 0.1), point(0, 0.8, 0.3), point(0, 0.8, 0),
+            point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9), side > 0 ? "" : "-",
+            side > 0 ? "left" : "right"));
         for (const Leg leg : all_legs) {
             const Read is(model, leg);
             EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
@@ -231,7 +238,8 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
 TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     const Model model = model_of(
         "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
-        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], rotational_rates: [9e3, 7e3, 8e3]}}\n"
+        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], rotational_rates: [9e3, "
+        "7e3, 8e3]}}\n"
         "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, steps: 2}}\n"
         "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n");
     const Vector3d lever = Vector3d(0, 1, 0) - Vector3d(0.1, 0.7, 0.4);
@@ -248,9 +256,12 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
         const Read is(model, leg);
         const Eigen::MatrixXd C = compliance(model, WheelPoint::patch, is.state, is.answers);
         ASSERT_EQ(C.rows(), 6);
-        EXPECT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff()) << name(leg) << "\n" << C;
+        EXPECT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff())
+            << name(leg) << "\n"
+            << C;
         EXPECT_LE(reciprocity(model, C), 1e-13);
-        EXPECT_NEAR(is["wheel_rate"], 1e-3 / compliance(model, WheelPoint::centre, is.state, is.answers)(2, 2), 1e-6);
+        EXPECT_NEAR(is["wheel_rate"],
+                    1e-3 / compliance(model, WheelPoint::centre, is.state, is.answers)(2, 2), 1e-6);
         // With the wheel's height held: the compliance less what the jack takes.
         Matrix6 at_centre = compliance(model, WheelPoint::centre, is.state, is.answers);
         const Vector6 z = at_centre.col(2);
@@ -267,8 +278,8 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
 Model standing(const Scene& scene) { return compile(trim(scene).scene); }
 
 TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
-    for (const char* scene : {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid", "multi_link",
-                              "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
+    for (const char* scene : {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid",
+                              "multi_link", "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
         SCOPED_TRACE(scene);
         const Model model = standing(support::scene(scene));
         const Read truth(model, Leg::equilibrium), second(model, Leg::energy), series(model, Leg::series);
@@ -278,7 +289,8 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
                 if (is == undefined) {
                     EXPECT_EQ(other->values()[c], undefined) << truth.channels()[c].name;
                 } else {
-                    EXPECT_NEAR(other->values()[c], is, 1e-6 * std::max(1.0, std::abs(is))) << truth.channels()[c].name;
+                    EXPECT_NEAR(other->values()[c], is, 1e-6 * std::max(1.0, std::abs(is)))
+                        << truth.channels()[c].name;
                 }
             }
         }
@@ -292,7 +304,8 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
 TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
     for (const char* name : {"double_wishbone", "semi_trailing_arm", "front_axle"}) {
         const Scene scene = support::scene(name);
-        const Read is(standing(scene), Leg::equilibrium), other(standing(support::mirrored(scene)), Leg::equilibrium),
+        const Read is(standing(scene), Leg::equilibrium),
+            other(standing(support::mirrored(scene)), Leg::equilibrium),
             units(standing(support::in_millimetres_and_kilonewtons(name)), Leg::equilibrium);
         for (std::size_t c = 0; c < is.values().size(); ++c) {
             const auto& channel = is.channels()[c];
@@ -300,7 +313,8 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
                 if (is.values()[c] == undefined) {
                     EXPECT_EQ(same->values()[c], undefined) << name << " " << channel.name;
                 } else {
-                    EXPECT_NEAR(same->values()[c], is.values()[c], 1e-7 * std::max(1.0, std::abs(is.values()[c])))
+                    EXPECT_NEAR(same->values()[c], is.values()[c],
+                                1e-7 * std::max(1.0, std::abs(is.values()[c])))
                         << name << " " << channel.name;
                 }
             }
@@ -331,7 +345,8 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
         const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
         // The jack is under the centre; the patch rises a little more or less where the wheel leans.
-        const double rises = moved(is.state, is.answers.travel[0], {model.wheels[0].body, model.wheels[0].contact_local}).z();
+        const double rises =
+            moved(is.state, is.answers.travel[0], {model.wheels[0].body, model.wheels[0].contact_local}).z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }
@@ -361,9 +376,11 @@ TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
     const Model unloaded = model_of(arm_scene(arm));
     std::string text = arm_scene(arm, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
     const Model loaded = model_of(text);
-    const double published = Read(loaded, Leg::recursive)["wheel_rate"], truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
+    const double published = Read(loaded, Leg::recursive)["wheel_rate"],
+                 truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
     EXPECT_GT(std::abs(published - truth), 0.01 * truth);
-    EXPECT_NEAR(Read(unloaded, Leg::recursive)["wheel_rate"], Read(unloaded, Leg::equilibrium)["wheel_rate"], 1e-9);
+    EXPECT_NEAR(Read(unloaded, Leg::recursive)["wheel_rate"], Read(unloaded, Leg::equilibrium)["wheel_rate"],
+                1e-9);
 }
 
 }  // namespace

@@ -41,8 +41,7 @@ TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
               Grade::pass);
     EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Grade::fail);
     EXPECT_EQ(compare::assess(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Grade::fail);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict,
-              Grade::pass)
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict, Grade::pass)
         << "an angle that nobody asked about";
 }
 

@@ -67,8 +67,8 @@ TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
     const Contents a = contents_of(folder.path / "a"), b = contents_of(folder.path / "b");
     ASSERT_EQ(a.size(), b.size());
     for (const auto& [name, text] : a) EXPECT_EQ(text, b.at(name)) << name;
-    for (const char* name : {"report.html", "report.md", "result.json", "curves.csv", "forces.csv", "files.txt",
-                             "figures/chrono-mcpherson-toe-jounce-and-rebound.svg",
+    for (const char* name : {"report.html", "report.md", "result.json", "curves.csv", "forces.csv",
+                             "files.txt", "figures/chrono-mcpherson-toe-jounce-and-rebound.svg",
                              "figures/chrono-mcpherson-toe-jounce-and-rebound.gp",
                              "figures/chrono-mcpherson-toe-jounce-and-rebound.csv"})
         EXPECT_TRUE(a.contains(name)) << name;

@@ -130,6 +130,25 @@ TEST(TrimCommand, WhatIsNotReachedLeavesNothingToJudge) {
     EXPECT_FALSE(std::filesystem::exists(folder.path / "baselines"));
 }
 
+// ---- the README
+
+TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
+    const std::string page = text_of(std::string(ELASTOCHECK_VALIDATION) + "/../../README.md");
+    const auto from = page.find("```yaml\nelastocheck: 1"), to = page.find("\n```", from);
+    ASSERT_NE(from, std::string::npos);
+    const std::string lines = page.substr(from + 8, to - from - 7);
+    EXPECT_LE(std::ranges::count(lines, '\n'), 11);
+    const Folder folder;
+    const Said said = elastocheck_says("compare " + folder.write("my_arm.yaml", lines));
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.out, "roll_centre_height")) << said.out;
+    // The sentence that it quotes, whatever its lines.
+    std::string flat = page;
+    std::ranges::replace(flat, '\n', ' ');
+    const auto sentence = parts_of(said.out, '\n').back();
+    EXPECT_TRUE(contains(flat, sentence)) << sentence;
+}
+
 // ---- inspect
 
 TEST(Inspect, SaysWhatElementsAre) {

@@ -17,23 +17,28 @@ namespace {
 std::string off_by(double off, double share) {
     if (!std::isfinite(off)) return "–";
     if (off == 0 || std::abs(share) < 1e-4) return "0";
-    return std::isfinite(share) ? fmt::format("{} ({}\u202f%)", signed_number(off, 2), signed_number(share, 2))
-                                : signed_number(off, 2);
+    return std::isfinite(share)
+               ? fmt::format("{} ({}\u202f%)", signed_number(off, 2), signed_number(share, 2))
+               : signed_number(off, 2);
 }
 
 Table figures_table(const compare::Table& at_design) {
     Table table{.caption = "Kinematics and compliance at the design position",
-                .columns = {{"figure", true}, {"value"}, {"unit", true}, {"published recursion off by"}, {"what it is", true}}};
+                .columns = {{"figure", true},
+                            {"value"},
+                            {"unit", true},
+                            {"published recursion off by"},
+                            {"what it is", true}}};
     for (std::size_t r = 0; r < at_design.rows.size(); ++r) {
         std::string name = words(at_design, r, "output");
         std::ranges::replace(name, '_', ' ');
         const std::string& undefined = words(at_design, r, "undefined");
-        table.rows.push_back({name,
-                              undefined.empty() ? number(reports::number(at_design, r, "value"), 4) : "none",
-                              words(at_design, r, "unit"),
-                              off_by(reports::number(at_design, r, "off"), reports::number(at_design, r, "off %")),
-                              undefined.empty() ? words(at_design, r, "definition")
-                                                : fmt::format("{}. Here: {}", words(at_design, r, "definition"), undefined)});
+        table.rows.push_back(
+            {name, undefined.empty() ? number(reports::number(at_design, r, "value"), 4) : "none",
+             words(at_design, r, "unit"),
+             off_by(reports::number(at_design, r, "off"), reports::number(at_design, r, "off %")),
+             undefined.empty() ? words(at_design, r, "definition")
+                               : fmt::format("{}. Here: {}", words(at_design, r, "definition"), undefined)});
     }
     return table;
 }
@@ -47,11 +52,13 @@ std::optional<Table> matrix_table(const compare::Table& compliance, std::string_
             reports::number(compliance, r, "a") == 0)
             rows.push_back(r);
     if (rows.empty()) return std::nullopt;
-    Table table{.caption = fmt::format("Compliance at the {}: displacement [mm] and rotation [deg] per kN and per 100 N·m, the "
-                                       "wheel free",
-                                       point),
+    Table table{.caption = fmt::format(
+                    "Compliance at the {}: displacement [mm] and rotation [deg] per kN and per 100 N·m, the "
+                    "wheel free",
+                    point),
                 .columns = {{"answer", true}}};
-    const bool several = std::ranges::any_of(rows, [&](auto r) { return words(compliance, r, "wheel") != words(compliance, rows[0], "wheel"); });
+    const bool several = std::ranges::any_of(
+        rows, [&](auto r) { return words(compliance, r, "wheel") != words(compliance, rows[0], "wheel"); });
     if (several) table.columns = {{"wheel", true}, {"answer", true}, {"loaded wheel", true}};
     constexpr const char* causes[] = {"force x", "force y", "force z", "moment x", "moment y", "moment z"};
     for (const char* cause : causes) table.columns.push_back({cause});
@@ -74,16 +81,18 @@ struct Drawn {
     std::string_view name, title;
 };
 constexpr Drawn over_travel[] = {
-    {"wheel_rate", "Wheel rate"},           {"roll_centre_height", "Roll centre height"},
-    {"bump_steer", "Bump steer"},           {"bump_camber", "Bump camber"},
-    {"caster", "Caster"},                   {"motion_ratio", "Motion ratio"},
-    {"recession_gradient", "Recession"},    {"lateral_force_steer", "Lateral force steer"},
+    {"wheel_rate", "Wheel rate"},
+    {"roll_centre_height", "Roll centre height"},
+    {"bump_steer", "Bump steer"},
+    {"bump_camber", "Bump camber"},
+    {"caster", "Caster"},
+    {"motion_ratio", "Motion ratio"},
+    {"recession_gradient", "Recession"},
+    {"lateral_force_steer", "Lateral force steer"},
 };
 constexpr Drawn over_steering[] = {
-    {"steer_gradient", "Steer gradient"},
-    {"scrub_radius", "Scrub radius"},
-    {"mechanical_trail", "Mechanical trail"},
-    {"caster", "Caster"},
+    {"steer_gradient", "Steer gradient"},           {"scrub_radius", "Scrub radius"},
+    {"mechanical_trail", "Mechanical trail"},       {"caster", "Caster"},
     {"kingpin_inclination", "Kingpin inclination"},
 };
 
@@ -91,8 +100,8 @@ bool is(const std::string& channel, std::string_view name) {
     return channel == name || channel.ends_with("." + std::string(name));
 }
 
-std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const Drawn& drawn, const std::string& x_axis,
-                                  bool over_abscissa) {
+std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const Drawn& drawn,
+                                  const std::string& x_axis, bool over_abscissa) {
     FigureGroup group;
     Figure figure{.id = fmt::format("{}-{}", slug(std::string(drawn.name)), slug(branch["name"].text())),
                   .title = std::string(drawn.title),
@@ -103,12 +112,15 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
     for (const auto& channel : channels_of(scene)) {
         if (!is(channel.name, drawn.name) || !truth.values.find(channel.name)) continue;
         figure.y = fmt::format("{} [{}]", drawn.title, channel.unit);
-        const std::string whose = channel.name == drawn.name ? "" : channel.name.substr(0, channel.name.size() - drawn.name.size() - 1);
+        const std::string whose = channel.name == drawn.name
+                                      ? ""
+                                      : channel.name.substr(0, channel.name.size() - drawn.name.size() - 1);
         for (const auto* curve : {&truth, &recursion}) {
             const auto values = curve->channel(channel.name);
             const auto& x = over_abscissa && !curve->x.empty() ? curve->x : curve->a;
             const bool reference = curve == &truth;
-            Series series{.title = fmt::format("{}{}", whose.empty() ? "" : whose + ", ", reference ? "reference" : "published recursion"),
+            Series series{.title = fmt::format("{}{}", whose.empty() ? "" : whose + ", ",
+                                               reference ? "reference" : "published recursion"),
                           .style = reference ? Series::Style::wide : Series::Style::line,
                           .colour = static_cast<Colour>(reference ? colour : vermilion)};
             for (const auto k : thinned(values.size(), 81)) {
@@ -124,7 +136,8 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
         break;  // of two wheels the first; of several springs the first
     }
     if (figure.series.empty() || !(high - low > 1e-6 * std::max(1e-3, std::abs(high)))) return std::nullopt;
-    figure.description = fmt::format("{} over {}: by the reference between {} and {}.", figure.y, x_axis, number(low, 3), number(high, 3));
+    figure.description = fmt::format("{} over {}: by the reference between {} and {}.", figure.y, x_axis,
+                                     number(low, 3), number(high, 3));
     group.caption = fmt::format("{} over {}, {}.", drawn.title, x_axis, branch["name"].text());
     group.table = {.caption = figure.y, .columns = {{x_axis}}, .folded = true};
     for (const auto& series : figure.series) group.table.columns.push_back({series.title});
@@ -177,7 +190,7 @@ std::optional<Section> characteristics_section(const Field& scene) {
         if (auto table = matrix_table(compliance, point)) section.tables.push_back(std::move(*table));
     double worst = 0;
     for (std::size_t r = 0; r < compliance.rows.size(); ++r)
-        if (words(compliance, r, "leg") != "recursive")
+        if (words(compliance, r, "leg") != "recursive" && reports::number(compliance, r, "a") == 0)
             worst = std::max(worst, reports::number(compliance, r, "reciprocity"));
     if (!compliance.rows.empty()) section.words["reciprocity"] = number(worst, 2);
     return section;

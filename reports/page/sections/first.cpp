@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/table.hpp"
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
 #include "reports/page/sections/suspension.hpp"
+#include "reports/tables/select.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -101,6 +103,36 @@ void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep)
     }
 }
 
+// Rates at the design position; of twins the first.
+void add_characteristics(std::vector<Tile>& tiles, const Field& scene) {
+    const auto found = scene.find("characteristics");
+    if (!found) return;
+    struct Wanted {
+        const char *name, *text;
+    };
+    constexpr Wanted wanted[] = {
+        {"wheel_rate", "wheel rate"},
+        {"roll_centre_height", "roll centre above the road"},
+        {"bump_steer", "bump steer (toe-in in jounce positive)"},
+        {"lateral_force_steer", "lateral force steer (force inwards, toe-in positive)"}};
+    const compare::Table table = read_table((*found)["design"], compare::characteristic_table({}));
+    for (const auto& [name, text] : wanted)
+        for (std::size_t r = 0; r < table.rows.size(); ++r) {
+            const std::string& output = words(table, r, "output");
+            if (output != name && !output.ends_with("." + std::string(name))) continue;
+            const double value = reports::number(table, r, "value"), off = reports::number(table, r, "off");
+            if (std::isfinite(value))
+                tiles.push_back(
+                    {fmt::format("{}\u00a0{}", number(value, 3), words(table, r, "unit")),
+                     fmt::format("{}{}, at the design position{}",
+                                 output == name ? "" : output.substr(0, output.find('.')) + " ", text,
+                                 std::isfinite(off)
+                                     ? fmt::format("; the recursion’s is off by {}", key_number(off))
+                                     : "")});
+            break;
+        }
+}
+
 // What an output changes by at the ends; twins that do the same are said once.
 void add_changes(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep) {
     struct Wanted {
@@ -158,6 +190,7 @@ std::optional<Section> first_section(const Field& scene) {
         if (sweep->lifts) add_rates(tiles, scene, *sweep);
         add_changes(tiles, scene, *sweep);
     }
+    add_characteristics(tiles, scene);
     for (const auto& tile : tiles) words["tiles"].push_back({{"value", tile.value}, {"label", tile.label}});
 
     const auto suspension = suspension_of(scene);

@@ -8,13 +8,12 @@ std::vector<Section> sections_of(const Field& scene) {
         const char* title;
         std::vector<std::optional<Section> (*)(const Field&)> sections;
     };
-    const Part parts[] = {
-        {"", {first_section, drawing_section}},
-        {"What it does", {characteristics_section, curves_section, forces_section}},
-        {"How far to trust it",
-         {measured_section, verdict_section, deviation_section, price_section, convergence_section,
-          attribution_section, orders_section, arithmetic_section, references_section, formulations_section,
-          model_section}}};
+    const Part parts[] = {{"", {first_section, drawing_section}},
+                          {"What it does", {characteristics_section, curves_section, forces_section}},
+                          {"How far to trust it",
+                           {measured_section, verdict_section, deviation_section, price_section,
+                            convergence_section, attribution_section, orders_section, arithmetic_section,
+                            references_section, formulations_section, model_section}}};
     std::vector<Section> sections;
     for (const auto& part : parts)
         for (const auto make : part.sections)

@@ -97,7 +97,9 @@ TEST(EnergyRespond, OfAFourBarsCrank) {
         VectorXd expected = VectorXd::Zero(12);
         expected[4] = 1;
         expected[10] = omega;
-        EXPECT_LE(apart(one(way, path.points[0], std::get<Motion>(way.branch.drivers[0].what)), expected), 1e-11) << phi;
+        EXPECT_LE(apart(one(way, path.points[0], std::get<Motion>(way.branch.drivers[0].what)), expected),
+                  1e-11)
+            << phi;
     }
 }
 

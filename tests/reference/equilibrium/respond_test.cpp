@@ -104,7 +104,9 @@ TEST(EquilibriumRespond, OfAFourBarsCrank) {
         VectorXd expected = VectorXd::Zero(12);
         expected[4] = 1;
         expected[10] = omega;
-        EXPECT_LE(apart(one(way, path.points[0], std::get<Motion>(way.branch.drivers[0].what)), expected), 1e-12) << phi;
+        EXPECT_LE(apart(one(way, path.points[0], std::get<Motion>(way.branch.drivers[0].what)), expected),
+                  1e-12)
+            << phi;
     }
 }
 
@@ -158,7 +160,8 @@ TEST(EquilibriumRespond, AnOffsetThatASecondJointHoldsIsSaidToContradict) {
     const OneWay way = support::way_of(s, "still", 1);
     const Response response = ask(way, {0, {way.model.bodies[0].design}, {}, 0}, Motion{1});
     EXPECT_EQ(response.outcome, Outcome::inconsistent_constraints);
-    EXPECT_NE(response.detail.find("moving 'jack': the joints 'hinge', 'jack', 'stop' contradict"), std::string::npos)
+    EXPECT_NE(response.detail.find("moving 'jack': the joints 'hinge', 'jack', 'stop' contradict"),
+              std::string::npos)
         << response.detail;
 }
 
