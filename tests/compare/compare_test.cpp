@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -23,6 +24,19 @@ const Comparison& mcpherson() {
     return comparison;
 }
 
+// What has no value somewhere on the branch, an endless arm, is not compared there.
+bool is_undefined(const Comparison& all, const BranchComparison& branch, std::size_t c) {
+    return all.channels[c].may_be_undefined() && !branch.determined[c];
+}
+
+// By which a rate of the equilibrium leg may be missed; nothing for what is no rate.
+double share_of_rate(const Comparison& all, const BranchComparison& branch, std::size_t c) {
+    if (!std::holds_alternative<Characteristic>(all.channels[c].reads)) return 0;
+    double largest = 1e-3;
+    for (const double value : branch.runs[1].curve.channel(c)) largest = std::max(largest, std::abs(value));
+    return 1e-6 * largest;
+}
+
 TEST(Compare, ReferencesAgreeOnTheMcPhersonAtEveryPointOfTheSweep) {
     for (const auto& branch : mcpherson().branches) {
         ASSERT_EQ(branch.runs[1].curve.a.size(), 301u);
@@ -30,7 +44,8 @@ TEST(Compare, ReferencesAgreeOnTheMcPhersonAtEveryPointOfTheSweep) {
             const auto& channel = mcpherson().channels[c];
             const auto& d = branch.uncertainty.equal_parameter.channels[c];
             EXPECT_EQ(d.compared, 301);
-            const double bound = channel.main ? 1e-6 : 1e-5;
+            if (is_undefined(mcpherson(), branch, c)) continue;
+            const double bound = std::max(channel.main ? 1e-6 : 1e-5, share_of_rate(mcpherson(), branch, c));
             EXPECT_TRUE(std::isfinite(d.max) && d.max <= bound)
                 << branch.branch << " " << channel.name << " " << d.max;
         }
@@ -117,8 +132,11 @@ TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
 TEST(Compare, DeviationFromOneReferenceIsTheDeviationFromTheOther) {
     for (const auto& branch : mcpherson().branches)
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            EXPECT_NEAR(branch.deviation.equal_parameter.channels[c].max,
-                        branch.cross_check.equal_parameter.channels[c].max, 1e-5);
+            if (!is_undefined(mcpherson(), branch, c)) {
+                EXPECT_NEAR(branch.deviation.equal_parameter.channels[c].max,
+                            branch.cross_check.equal_parameter.channels[c].max,
+                            std::max(1e-5, share_of_rate(mcpherson(), branch, c)));
+            }
 }
 
 TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
@@ -181,9 +199,11 @@ TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
         EXPECT_EQ(branch.deviation.a, Leg::equilibrium);
         EXPECT_EQ(branch.deviation.b, Leg::recursive);
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            EXPECT_EQ(branch.deviation.equal_parameter.channels[c].end,
-                      branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
-                << mcpherson().channels[c].name;
+            if (!is_undefined(mcpherson(), branch, c)) {
+                EXPECT_EQ(branch.deviation.equal_parameter.channels[c].end,
+                          branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
+                    << mcpherson().channels[c].name;
+            }
     }
 }
 
@@ -320,7 +340,10 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
     for (const auto& branch : comparison.branches)
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const Channel& channel = comparison.channels[c];
-            const double bound = channel.unit == Unit::mm       ? branch.bounds.length
+            if (is_undefined(comparison, branch, c)) continue;
+            const double rate = share_of_rate(comparison, branch, c);
+            const double bound = rate > 0                       ? rate
+                                 : channel.unit == Unit::mm     ? branch.bounds.length
                                  : channel.unit == Unit::deg    ? branch.bounds.angle
                                  : channel.unit == Unit::newton ? branch.bounds.force
                                                                 : branch.bounds.moment;

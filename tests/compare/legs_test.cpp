@@ -98,7 +98,7 @@ Streamed streamed(const Model& model, const std::vector<Way>& ways, const Gait& 
     const auto all = channels(model);
     Streamed result;
     result.path = walk(
-        ways, gait, [&](const Equilibrium& state) { return row_of(model, all, state); },
+        ways, gait, [&](const Equilibrium& state) { return row_of(model, all, ways.front(), gait, state); },
         [&](Row row) { result.rows.push_back(std::move(row)); });
     return result;
 }

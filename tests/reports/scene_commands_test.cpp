@@ -13,6 +13,7 @@ namespace {
 
 namespace support = elastocheck::support;
 using elastocheck::elastocheck_says;
+using elastocheck::parts_of;
 using elastocheck::scenes;
 using support::contains;
 using support::Folder;

@@ -27,10 +27,12 @@ using support::text_of;
 std::string csv_of_kept_points(const Model& model, const compare::Gait& gait, int steps) {
     const auto channels = compare::channels(model);
     std::string csv = reports::curves_header(channels);
-    for (const auto& branch : model.branches)
-        for (const auto& point : walk(compare::ways_of(model, branch, steps), gait).points)
+    for (const auto& branch : model.branches) {
+        const auto ways = compare::ways_of(model, branch, steps);
+        for (const auto& point : walk(ways, gait).points)
             csv += reports::curves_row(branch.name, gait.leg, compare::unit_of(branch.unit),
-                                       compare::row_of(model, channels, point));
+                                       compare::row_of(model, channels, ways.front(), gait, point));
+    }
     return csv;
 }
 
