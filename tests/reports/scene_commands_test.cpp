@@ -144,9 +144,11 @@ TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(contains(said.out, "roll_centre_height")) << said.out;
     // The sentence that it quotes, whatever its lines.
-    std::string flat = page;
+    std::string flat = page, sentence = parts_of(said.out, '\n').back();
     std::ranges::replace(flat, '\n', ' ');
-    const auto sentence = parts_of(said.out, '\n').back();
+    for (const std::string space : {"\u00a0", "\u202f"})
+        for (std::size_t at; (at = sentence.find(space)) != std::string::npos;)
+            sentence.replace(at, space.size(), " ");
     EXPECT_TRUE(contains(flat, sentence)) << sentence;
 }
 

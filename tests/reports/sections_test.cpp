@@ -40,9 +40,9 @@ void for_each_place(const json& value, const json::json_pointer& place, F&& f) {
 TEST(Sections, EveryPartOfADocumentBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
-    EXPECT_EQ(ids, (std::vector<std::string>{"first", "drawing", "curves", "forces", "verdict", "deviation",
-                                             "price", "convergence", "attribution", "orders", "arithmetic",
-                                             "references", "model"}));
+    EXPECT_EQ(ids, (std::vector<std::string>{"first", "drawing", "characteristics", "curves", "forces",
+                                             "verdict", "deviation", "price", "convergence", "attribution",
+                                             "orders", "arithmetic", "references", "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
