@@ -76,7 +76,7 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
     expect("toe", {"toe [deg]"});
     expect("camber,wheel_centre_x", {"camber [deg]", "wheel_centre_x [mm]"});
     expect("camber --channels toe,camber", {"camber [deg]", "toe [deg]"});
-    expect("'wheel_*'", {"wheel_centre_x [mm]", "wheel_centre_y [mm]", "wheel_centre_z [mm]"});
+    expect("'wheel_centre_*'", {"wheel_centre_x [mm]", "wheel_centre_y [mm]", "wheel_centre_z [mm]"});
     expect("travel,'ball_joint.force_?','*_joint.force_z'",
            {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]", "ball_joint.force_z [N]"});
 }
@@ -90,17 +90,18 @@ TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
     ASSERT_GT(rows.size(), 20u);
     EXPECT_EQ(rows[0],
               (std::vector<std::string>{"branch", "leg", "parameter", "unit", "suspension.compression [mm]",
-                                        "suspension.deflection [mm]", "suspension.force [N]",
-                                        "tyre.force [N]", "wheel_centre_z [mm]"}));
+                                        "suspension.motion_ratio [-]", "suspension.deflection [mm]",
+                                        "suspension.force [N]", "tyre.force [N]", "wheel_centre_z [mm]"}));
     for (std::size_t r = 1; r < rows.size(); ++r) {
-        const double z = std::stod(rows[r][8]), h = std::stod(rows[r][2]);
+        const double z = std::stod(rows[r][9]), h = std::stod(rows[r][2]);
         EXPECT_NEAR(std::stod(rows[r][4]), z, 1e-6);
-        EXPECT_NEAR(std::stod(rows[r][6]), 3500 + 30 * z, 1e-5);
+        EXPECT_NEAR(std::stod(rows[r][5]), 1, 1e-9);
+        EXPECT_NEAR(std::stod(rows[r][7]), 3500 + 30 * z, 1e-5);
         if (rows[r][0] == "road") {
-            EXPECT_NEAR(std::stod(rows[r][7]), 3892.4 + 200 * (h - z), 1e-5);
+            EXPECT_NEAR(std::stod(rows[r][8]), 3892.4 + 200 * (h - z), 1e-5);
         }
         if (rows[r][0] == "wheel") {
-            EXPECT_EQ(rows[r][7], "") << "no tyre stands there";
+            EXPECT_EQ(rows[r][8], "") << "no tyre stands there";
         }
     }
 }
