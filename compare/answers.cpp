@@ -153,8 +153,11 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
     if (const Response free = respond(gait, stand.model, stand.branch, stand.state, wrenches);
         free.outcome == Outcome::converged)
         answers.free = by_wheel(free.increments, wheels);
-    else
+    else {
         answers.why_not_free = told(free);
+        answers.nothing_resists =
+            free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
+    }
 
     const std::size_t first = jack_up(stand);
     std::vector<Disturbance> changes = wrenches;

@@ -31,7 +31,8 @@ struct Answers {
     std::vector<std::array<Motions, causes>> held;  // per wheel and cause, jacked: per N, per N·m
     std::vector<std::array<Motions, causes>> free;  // likewise, free; empty where `why_not_free` says why
     std::string why_not;                            // there is none of the first three
-    std::string why_not_free;                       // nothing resists the travel of a wheel, say
+    std::string why_not_free;                       // there is none of the last
+    bool nothing_resists = false;                   // why not: a wheel is free to move, which is no failure
 };
 
 // The joint that steers: the first, other than a jack, that some branch drives. -1 where there is none.

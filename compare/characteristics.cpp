@@ -152,7 +152,7 @@ Motions rolled_towards(const Wheels& wheels, std::size_t w) {
 // 1 N up on the patch of every wheel, or of an axle's against each other, this wheel's up; free.
 enum class Pattern { alike, opposite };
 double wheel_rate(const Wheels& wheels, std::size_t w, Pattern pattern) {
-    if (wheels.answers.free.empty()) return undefined;
+    if (wheels.answers.free.empty()) return wheels.answers.nothing_resists ? undefined : nan;
     std::vector<Motions> up;
     std::vector<double> weights;
     for (std::size_t k = 0; k < wheels.answers.free.size(); ++k) {

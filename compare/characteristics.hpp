@@ -15,7 +15,8 @@ namespace elastocheck::compare {
 // The characteristics of a model, as outputs beside channels(model), none of them a main one; empty without a wheel.
 std::vector<Channel> characteristics(const Model& model);
 
-// The value of one in its unit; NaN where it is undefined (Channel::undefined says what that means).
+// The value of one, SI; `undefined` where it has none (Channel::undefined says what that means), NaN where the leg that was
+// asked had no answer.
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const Answers& answers);
 
@@ -29,7 +30,7 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
                            const Answers& answers);
 
 // |C - Cᵀ| over |C|, both the largest entry, lengths counted by the tyre's radius (1 m where patch and centre are one):
-// zero where what acts has an energy and the state is in equilibrium, up to the moments that it holds
+// zero where what acts has an energy and the state is in equilibrium, up to the moments that it holds.
 double reciprocity(const Model& model, const Eigen::MatrixXd& C);
 
 // An entry as it is shown: mm or deg per kN or per 100 N·m; and what a row is: "contact patch, left displacement x".

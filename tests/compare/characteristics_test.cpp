@@ -146,6 +146,23 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     EXPECT_NEAR(front["anti_lift"], -100 * 0.2 * 5, 1e-9);
 }
 
+// What nothing resists has no rate; what could not be told is no number, and never passes for the former.
+TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
+    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
+    const Model model = model_of(arm_scene(arm));
+    Read is(model, Leg::equilibrium);
+    const auto list = characteristics(model);
+    const auto& rate = list[static_cast<std::size_t>(find_channel(list, "wheel_rate"))];
+    const auto value = [&] {
+        return value_of(model, std::get<Characteristic>(rate.reads), is.state, is.answers);
+    };
+    EXPECT_TRUE(std::isfinite(value()));
+    is.answers.free.clear();
+    EXPECT_TRUE(std::isnan(value()));
+    is.answers.nothing_resists = true;
+    EXPECT_EQ(value(), undefined);
+}
+
 // ---- Two arms in the plane across: the wheel turns about where their lines meet.
 
 std::string wishbones(const std::string& upper_inner, const std::string& upper_outer,
