@@ -10,6 +10,7 @@
 
 #include "compare/characteristics.hpp"
 #include "compare/compare.hpp"
+#include "compare/elements.hpp"
 #include "compare/trim.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
@@ -91,7 +92,7 @@ std::string arm_scene(const Arm& arm, const std::string& more = "") {
 }
 
 TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
-    const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}};
+    const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}, {0, 1.1, 0}, {0.03, 1.12, -0.3}};
     const Model model = model_of(arm_scene(arm));
     const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0), de = n.cross(e);
     const double dz = v_c.z();
@@ -284,8 +285,64 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
         const Vector6 z = at_centre.col(2);
         at_centre -= z * z.transpose() / z[2];
         EXPECT_NEAR(is["longitudinal_stiffness_at_centre"], 1e-3 / at_centre(0, 0), 1e-6);
+        // The patch is below the centre, so that the jack takes the same of it. Inwards and to the back are -y and -x,
+        // towards toe-in of a left wheel is -z.
+        Matrix6 held = C;
+        held -= C.col(2) * C.row(2) / C(2, 2);
+        EXPECT_NEAR(is["lateral_force_steer"], 1e3 * deg * held(5, 1), 1e-9);
+        EXPECT_NEAR(is["braking_force_steer"], 1e3 * deg * held(5, 0), 1e-9);
+        EXPECT_NEAR(is["lateral_force_camber"], 1e3 * deg * held(3, 1), 1e-9);
+        EXPECT_NEAR(is["lateral_stiffness"], 1e-3 / held(1, 1), 1e-6);
         EXPECT_NEAR(is["aligning_torque_steer"], 100 * deg * at_centre(5, 5), 1e-12);
         EXPECT_NEAR(is["traction_force_steer"], 1e3 * deg * -at_centre(5, 0), 1e-9);
+    }
+}
+
+// A jack and a tyre are the dead force that they exert: the wheel answers as under that force in the same place.
+TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
+    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
+    const auto rates_at_end = [&](const Model& model, const std::string& force) {
+        const auto all = characteristics(model);
+        const Way way = ways_of(model, model.branches[0]).front();
+        const Gait gait{.leg = Leg::equilibrium};
+        const auto path = walk(way, gait);
+        EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+        auto told = channels(model);
+        std::ranges::move(element_channels(model), std::back_inserter(told));
+        const int c = find_channel(told, force);
+        const auto values = evaluate(way.model, way.branch, told, path.points.back());
+        return std::pair{row_of(model, all, way, gait, path.points.back()).values,
+                         c < 0 ? 0.0 : values[static_cast<std::size_t>(c)]};
+    };
+    const auto scene = [&](const std::string& branches, const std::string& more) {
+        std::string text = arm_scene(arm, more);
+        const auto from = text.find("branches:"), to = text.find('\n', from);
+        return model_of(text.replace(from, to - from, branches));
+    };
+    struct Case {
+        std::string branches, more, force, at;
+    };
+    for (const Case& held :
+         {Case{"branches: {t: {drive: travel, to: 0.08, steps: 2}}", "", "jack.drive_force", "c"},
+          Case{"branches: {t: {drive: tyres.front.road, to: 0.1, steps: 2}}",
+               "tyres: {front: {rate: 200e3, preload: 0}}\n", "front.force", "p"}}) {
+        const auto [by_holding, force] = rates_at_end(scene(held.branches, held.more), held.force);
+        ASSERT_GT(force, 1000) << held.force;
+        std::string text = arm_scene(arm, held.more);
+        text.replace(text.find("at: p, force"), 5, "at: " + held.at);
+        const auto from = text.find("branches:"), to = text.find('\n', from);
+        text.replace(from, to - from,
+                     fmt::format("branches: {{t: {{load: up, to: {:.17g}, steps: 2}}}}", force));
+        const auto by_load = rates_at_end(model_of(text), "").first;
+        ASSERT_EQ(by_load.size(), by_holding.size());
+        for (std::size_t c = 0; c < by_load.size(); ++c) {
+            if (std::isinf(by_load[c])) {
+                EXPECT_EQ(by_holding[c], by_load[c]) << held.force << " " << c;
+            } else {
+                EXPECT_NEAR(by_holding[c], by_load[c], 1e-7 * std::max(1.0, std::abs(by_load[c])))
+                    << held.force << " " << c;
+            }
+        }
     }
 }
 
