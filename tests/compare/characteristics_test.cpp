@@ -218,36 +218,40 @@ TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
 // A carrier on two balls, held to the ground: it turns about the line through them, as the rack pushes its arm. The line
 // passes the wheel centre, whose height the steering then keeps.
 TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
-    const double caster = 0.1, inclination = 0.2;  // slopes: dx/dz, dy/dz to the top
-    for (const int side : {1, -1}) {
-        const auto point = [&](double x, double y, double z) {
-            return fmt::format("[{}, {}, {}]", x, side * y, z);
-        };
-        const Model model = model_of(fmt::format(
-            "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
-            "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: above}}}}\n"
-            "joints:\n"
-            "  top: {{type: spherical, bodies: [wheel, link], at: top}}\n"
-            "  low: {{type: spherical, bodies: [wheel, link], at: low}}\n"
-            "  slide: {{type: translational, bodies: [link, ground], at: above, axis: z}}\n"
-            "  tie: {{type: distance, bodies: [wheel, rack], from: outer, to: inner}}\n"
-            "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: true}}\n"
-            "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
-            "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
-            "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
-            point(-0.2 * caster, 0.8 - 0.2 * inclination, 0.5),
-            point(0.2 * caster, 0.8 + 0.2 * inclination, 0.1), point(0, 0.8, 0.3), point(0, 0.8, 0),
-            point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9), side > 0 ? "" : "-",
-            side > 0 ? "left" : "right"));
-        for (const Leg leg : all_legs) {
-            const Read is(model, leg);
-            EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
-            EXPECT_NEAR(is["kingpin_inclination_steered"], deg * std::atan(inclination), 1e-8);
-            EXPECT_NEAR(is["mechanical_trail_steered"], 1e3 * 0.3 * caster, 1e-7);
-            // 0.3 below the wheel centre the axis has come out by 0.3 · 0.2: beyond the patch.
-            EXPECT_NEAR(is["scrub_radius_steered"], -1e3 * 0.3 * inclination, 1e-7);
+    struct Line {
+        double caster, inclination, inboard;  // slopes: dx/dz, dy/dz to the top; of the wheel centre [m]
+    };
+    // Upright, it may stand beside the wheel centre, whose height is kept as well.
+    for (const auto& [caster, inclination, inboard] : {Line{0.1, 0.2, 0}, Line{0, 0, 0.08}})
+        for (const int side : {1, -1}) {
+            const auto point = [&](double x, double y, double z) {
+                return fmt::format("[{}, {}, {}]", x, side * y, z);
+            };
+            const Model model = model_of(fmt::format(
+                "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
+                "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: above}}}}\n"
+                "joints:\n"
+                "  top: {{type: spherical, bodies: [wheel, link], at: top}}\n"
+                "  low: {{type: spherical, bodies: [wheel, link], at: low}}\n"
+                "  slide: {{type: translational, bodies: [link, ground], at: above, axis: z}}\n"
+                "  tie: {{type: distance, bodies: [wheel, rack], from: outer, to: inner}}\n"
+                "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: true}}\n"
+                "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
+                "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
+                "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
+                point(-0.2 * caster, 0.8 - inboard - 0.2 * inclination, 0.5),
+                point(0.2 * caster, 0.8 - inboard + 0.2 * inclination, 0.1), point(0, 0.8, 0.3),
+                point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9),
+                side > 0 ? "" : "-", side > 0 ? "left" : "right"));
+            for (const Leg leg : all_legs) {
+                const Read is(model, leg);
+                EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
+                EXPECT_NEAR(is["kingpin_inclination_steered"], deg * std::atan(inclination), 1e-8);
+                EXPECT_NEAR(is["mechanical_trail_steered"], 1e3 * 0.3 * caster, 1e-7);
+                // 0.3 below the wheel centre the axis has come out by 0.3 · 0.2: beyond the patch.
+                EXPECT_NEAR(is["scrub_radius_steered"], 1e3 * (inboard - 0.3 * inclination), 1e-7);
+            }
         }
-    }
 }
 
 // ---- Compliance.
