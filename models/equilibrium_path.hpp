@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,24 @@ struct Wrench {
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N·m], ground axes
 };
 
+// How far a state may be from the equilibrium that it stands for, by the leg's own account: above the true error, and
+// infinite where the leg can promise nothing.
+struct ErrorBound {
+    double length = std::numeric_limits<double>::infinity();  // of any body's origin [m]
+    double angle = std::numeric_limits<double>::infinity();   // of any body's orientation [rad]
+};
+
 struct Equilibrium {
     double load = 0;          // load factor a of the branch
     std::vector<Pose> poses;  // one per Model::bodies
     std::vector<Wrench>
         reactions;  // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
     double constraint_error = 0;  // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
+    // What a leg says of the point where it is asked to give account of its path; else as here.
+    ErrorBound bound = {};
+    // The least stiffness of what the joints leave free and something resists, in the leg's own scaling, over what it was
+    // at a = 0: 0 where the branch turns back, divides or loses its stability, negative past that.
+    double stiffness_left = std::numeric_limits<double>::quiet_NaN();
 };
 
 enum class Outcome {
@@ -31,10 +44,11 @@ enum class Outcome {
     iteration_limit,           // the solver gave up before its own criterion was met
     diverged,                  // steps that swing back and forth and grow: the method is unstable here
     limit_point,               // the branch ends here: it turns back, and no equilibrium continues it
-    branch_lost,               // no equilibrium continues the branch, however small the load step
-    not_conservative,          // a load or a formulation has no energy: the energy leg cannot be asked
-    too_large,      // more work than a leg whose cost grows with the cube of the scene is worth: not asked
-    outside_table,  // a curve that says nothing beyond its ends was led beyond them
+    dividing_point,    // another curve of equilibria crosses the branch here, which is unstable past it
+    branch_lost,       // no equilibrium continues the branch, however small the load step
+    not_conservative,  // a load or a formulation has no energy: the energy leg cannot be asked
+    too_large,         // more work than a leg whose cost grows with the cube of the scene is worth: not asked
+    outside_table,     // a curve that says nothing beyond its ends was led beyond them
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
 

@@ -43,6 +43,9 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
         case Outcome::limit_point:
             detail += ": a limit point, past it no equilibrium continues the branch";
             break;
+        case Outcome::dividing_point:
+            detail += ": another curve of equilibria crosses the branch, which is unstable past this point";
+            break;
         case Outcome::diverged:
             detail +=
                 std::holds_alternative<Linear>(method.kind)

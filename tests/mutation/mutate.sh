@@ -115,7 +115,7 @@ done
 
 # What differs gets a new time, older sources included and what an interrupted run left: a build goes by times.
 mkdir -p "$tree" "$output"
-rooms='models recursive reference compare reports tests'
+rooms='README.md models recursive reference compare reports tests'
 # shellcheck disable=SC2086 # a list of words
 (cd "$root" && find CMakeLists.txt $rooms -type f) | while read -r file; do
     cmp -s "$root/$file" "$tree/$file" && continue
