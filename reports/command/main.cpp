@@ -26,6 +26,7 @@
 #include "reports/command/recursion_options.hpp"
 #include "reports/command/report_command.hpp"
 #include "reports/command/solve_command.hpp"
+#include "reports/command/stress_command.hpp"
 #include "reports/command/study_commands.hpp"
 #include "reports/document/field.hpp"
 #include "reports/document/measurement.hpp"
@@ -205,6 +206,12 @@ int run(int argc, char** argv) {
     ReportRequest request;
     const auto* report_command = add_report_command(app, request);
 
+    StressRequest stress_request;
+    auto* stress_command = add_stress_command(app, stress_request);
+    stress_command->add_option("-o,--output", output, "folder for stress.json and cells.csv")
+        ->check(a_folder());
+    add_json(*stress_command, as_json);
+
     name_values(app);
 
     try {
@@ -221,6 +228,7 @@ int run(int argc, char** argv) {
         }
         const Delivery delivery{.folder = output, .as_json = as_json, .command = command};
         const Detail detail = keep_all ? Detail::everything : Detail::required;
+        if (*stress_command) return stress(stress_request, delivery, progress);
         if (*inspect_command) return inspect(scene, settings, detail, verbose, delivery);
         if (*solve_command || *compare_command) {
             const auto leg =

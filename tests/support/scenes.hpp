@@ -1,9 +1,10 @@
-// The shipped scenes, and the same scene told differently: what must not matter to any solver.
+// The shipped scenes, and the same scene told differently.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "compare/retold.hpp"
 #include "models/scene.hpp"
 
 namespace elastocheck::support {
@@ -23,16 +24,10 @@ bool has_potential(const Scene& scene);
 // models/scenes/NAME.yaml, which is in m and N, with its numbers rewritten and read in mm and kN.
 Scene in_millimetres_and_kilonewtons(const std::string& name);
 
-// Everything turned by R and moved by t: ground frame, bodies, loads.
-Scene moved(const Scene& scene, const Eigen::Quaterniond& R, const Eigen::Vector3d& t);
-
-// The same bodies described in other body axes: body b's axes are turned by turns[b % size].
-Scene with_body_axes(const Scene& scene, const std::vector<Eigen::Quaterniond>& turns);
-
-// y → -y: the other side of the vehicle.
-Scene mirrored(const Scene& scene);
-
-// Bodies, joints and elements in reverse order.
-Scene reversed(const Scene& scene);
+// The same scene told differently: what must not matter to any solver.
+using compare::mirrored;
+using compare::moved;
+using compare::reversed;
+using compare::with_body_axes;
 
 }  // namespace elastocheck::support

@@ -1,0 +1,521 @@
+#include "compare/stress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "compare/agreement.hpp"
+#include "compare/positions.hpp"
+#include "models/compile.hpp"
+#include "models/overloaded.hpp"
+#include "recursive/diagnosis.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// ---- Where a state stands: what is looked at of it.
+
+struct Place {
+    std::string name;
+    Point at;
+};
+
+struct Stand {
+    std::vector<Vector3d> p;         // of every place
+    std::vector<Quaterniond> turns;  // of its body, since it was drawn
+};
+
+std::vector<Place> places_of(const Model& model) {
+    const auto diagnosis = recursive::diagnose(model);
+    std::vector<bool> idle(model.bodies.size());
+    for (const auto& mode : diagnosis.idle)
+        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
+            if (std::abs(entry.value()) > 1e-6) idle[static_cast<std::size_t>(entry.index() / 6)] = true;
+    std::vector<Place> places;
+    const auto add = [&](const std::string& name, const Point& at) {
+        if (at.body != ground && !idle[static_cast<std::size_t>(at.body)]) places.push_back({name, at});
+    };
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+        add("body " + model.bodies[b].name, {static_cast<BodyId>(b), Vector3d::Zero()});
+    for (const auto& probe : model.probes) add("probe " + probe.name, probe.at);
+    for (const auto& wheel : model.wheels) add("wheel " + wheel.name, {wheel.body, wheel.centre_local});
+    return places;
+}
+
+Stand stand(const Model& model, const std::vector<Place>& places, const Equilibrium& state) {
+    Stand where;
+    for (const auto& place : places) {
+        const auto& drawn = model.bodies[static_cast<std::size_t>(place.at.body)].design;
+        where.p.push_back(position(state.poses, place.at));
+        where.turns.push_back(pose(state.poses, place.at.body).p * drawn.p.conjugate());
+    }
+    return where;
+}
+
+bool is_finite(const Stand& where) {
+    return std::ranges::all_of(where.p, [](const auto& p) { return p.allFinite(); }) &&
+           std::ranges::all_of(where.turns, [](const auto& q) { return q.coeffs().allFinite(); });
+}
+
+// The largest over all places; NaN where a number is none.
+ErrorBound apart(const Stand& a, const Stand& b) {
+    ErrorBound most{0, 0};
+    for (std::size_t k = 0; k < a.p.size(); ++k) {
+        const double length = (a.p[k] - b.p[k]).norm(), angle = a.turns[k].angularDistance(b.turns[k]);
+        if (!(length <= most.length)) most.length = length;
+        if (!(angle <= most.angle)) most.angle = angle;
+    }
+    return is_finite(a) && is_finite(b) ? most : ErrorBound{nan, nan};
+}
+
+Stand retold(const Stand& where, const Retelling& how) {
+    Stand told;
+    for (const auto& p : where.p) told.p.emplace_back(how.length * (how.M * p) + how.t);
+    for (const auto& turn : where.turns)
+        told.turns.emplace_back(Eigen::Matrix3d(how.M * turn.toRotationMatrix() * how.M.transpose()));
+    return told;
+}
+
+// ---- What everybody found on one way.
+
+struct Found {
+    Outcome outcome = Outcome::converged;
+    std::string detail;
+    bool threw = false;  // a bug, told in `detail`
+    std::vector<Stand> stands;
+    std::vector<ErrorBound> accounts;  // as given, per point
+};
+
+// What is known of one point: x_T and e.
+struct Known {
+    Knowledge how = Knowledge::none;
+    Stand where;
+    ErrorBound within;
+};
+
+struct WayRun {
+    std::string name;
+    std::size_t points = 0;  // asked for
+    std::vector<Place> places;
+    double size = 1, reach = 1;  // L; the largest coordinate [m]
+    std::vector<Found> found;    // per solver
+    std::vector<Known> known;    // per point
+};
+
+struct TrialRun {
+    std::vector<WayRun> ways;
+};
+
+// Exact but for rounding.
+ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
+
+bool is_reference(const Solver& solver) {
+    return solver.gait.leg == Leg::equilibrium || solver.gait.leg == Leg::energy;
+}
+
+ErrorBound claim_of(const Solver& solver, const ErrorBound& account, double size) {
+    if (std::isfinite(account.length) && std::isfinite(account.angle)) return account;
+    if (is_reference(solver)) return exact(size);
+    const ErrorBound rounding = exact(size);
+    return std::visit(overloaded{[&](const recursive::Adaptive& told) {
+                                     return ErrorBound{std::max(told.length_tolerance, rounding.length),
+                                                       std::max(told.angle_tolerance, rounding.angle)};
+                                 },
+                                 [&](const recursive::Series& told) {
+                                     return ErrorBound{std::max(told.tolerance, rounding.length),
+                                                       std::max(told.tolerance / size, rounding.angle)};
+                                 },
+                                 [](const auto&) { return ErrorBound{}; }},
+                      solver.gait.recursion.method.kind);
+}
+
+// Where two that share no equation stand within their claims of each other. The series is asked last: it makes no
+// independent statement of what a bushing measures.
+Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t point) {
+    std::vector<std::size_t> witnesses;
+    for (const char* name : {"equilibrium", "energy", "series"})
+        witnesses.push_back(
+            static_cast<std::size_t>(std::ranges::find(solvers, name, &Solver::name) - solvers.begin()));
+    for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+        const auto i = witnesses[static_cast<std::size_t>(a)], j = witnesses[static_cast<std::size_t>(b)];
+        const Found &one = run.found[i], &other = run.found[j];
+        if (point >= one.stands.size() || point >= other.stands.size()) continue;
+        const ErrorBound distance = apart(one.stands[point], other.stands[point]);
+        const ErrorBound c_i = claim_of(solvers[i], one.accounts[point], run.size),
+                         c_j = claim_of(solvers[j], other.accounts[point], run.size);
+        if (distance.length <= c_i.length + c_j.length && distance.angle <= c_i.angle + c_j.angle)
+            return {Knowledge::references,
+                    one.stands[point],
+                    {distance.length + eps * run.reach, distance.angle + eps}};
+    }
+    return {};
+}
+
+WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver>& solvers) {
+    WayRun run;
+    run.name = way.name;
+    run.places = places_of(way.model);
+    const int every = std::max(1, (way.branch.steps + 1) / 2);  // the start, about the middle, the end
+    run.points = asked_for({way}, every).size();
+    std::vector<Equilibrium> states;
+    for (const auto& solver : solvers) {
+        Found& found = run.found.emplace_back();
+        if (variant.many_steps && !is_reference(solver) && !has_steps(solver.gait.recursion.method) &&
+            way.branch.steps > 1000)
+            continue;  // its steps are its own: asked elsewhere
+        Gait gait = solver.gait;
+        gait.every = every;
+        try {
+            const EquilibriumPath path = walk(way, gait, [&](const Equilibrium& state) {
+                found.stands.push_back(stand(way.model, run.places, state));
+                found.accounts.push_back(state.bound);
+                if (solver.gait.leg == Leg::equilibrium) states.push_back(state);
+            });
+            found.outcome = path.outcome;
+            found.detail = path.detail;
+        } catch (const std::exception& error) {
+            found.threw = true;
+            found.detail = error.what();
+        }
+    }
+    if (states.empty()) states.push_back(design_state(way.model));
+    run.size = scale_of(way.model, way.branch, states).length;
+    run.reach = run.size;
+    for (const auto& body : way.model.bodies)
+        run.reach = std::max(run.reach, body.design.r.cwiseAbs().maxCoeff());
+    for (std::size_t k = 0; k < run.points; ++k) run.known.push_back(agreed(solvers, run, k));
+    return run;
+}
+
+TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
+    TrialRun result;
+    const Model model = compile(trial.variant.scene);
+    for (const auto& branch : model.branches)
+        for (const auto& way : ways_of(model, branch)) {
+            if (way.branch.drivers.empty()) continue;
+            result.ways.push_back(walk_all(trial.variant, way, solvers));
+        }
+    return result;
+}
+
+// ---- Judgement.
+
+// The places of one told scene as they are numbered in the other; those that both have.
+struct Match {
+    std::vector<std::size_t> here, there;
+};
+Match match(const std::vector<Place>& here, const std::vector<Place>& there) {
+    Match both;
+    for (std::size_t k = 0; k < here.size(); ++k) {
+        const auto same = std::ranges::find(there, here[k].name, &Place::name);
+        if (same == there.end()) continue;
+        both.here.push_back(k);
+        both.there.push_back(static_cast<std::size_t>(same - there.begin()));
+    }
+    return both;
+}
+Stand only(const Stand& where, const std::vector<std::size_t>& places) {
+    Stand some;
+    for (const auto k : places) some.p.push_back(where.p[k]), some.turns.push_back(where.turns[k]);
+    return some;
+}
+
+// Outcomes that say something of the mechanism: that no equilibrium continues the branch.
+bool says_that_it_ends(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::singular:
+        case Outcome::limit_point:
+        case Outcome::dividing_point:
+        case Outcome::branch_lost:
+        case Outcome::inconsistent_constraints:
+        case Outcome::loaded_idle_mode: return true;
+        case Outcome::converged:
+        case Outcome::not_finite:
+        case Outcome::iteration_limit:
+        case Outcome::diverged:
+        case Outcome::not_conservative:
+        case Outcome::too_large:
+        case Outcome::outside_table: return false;
+    }
+    return false;
+}
+
+// Where both references say that the branch ends; empty where one does not.
+std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
+    std::string why;
+    for (std::size_t s = 0; s < solvers.size(); ++s) {
+        if (!is_reference(solvers[s])) continue;
+        if (!says_that_it_ends(run.found[s].outcome) || run.found[s].stands.size() >= run.points) return {};
+        why = run.found[s].detail;
+    }
+    return why;
+}
+
+bool all_known(const WayRun& run) {
+    return std::ranges::all_of(run.known, [](const Known& known) { return known.how != Knowledge::none; });
+}
+
+// How far the place that goes farthest goes over the known points.
+double range_of(const WayRun& run) {
+    double range = 0;
+    const Known* start = nullptr;
+    for (const auto& known : run.known) {
+        if (known.how == Knowledge::none) continue;
+        if (start == nullptr) start = &known;
+        range = std::max(range, apart(start->where, known.where).length);
+    }
+    return range > 1e-9 * run.size ? range : run.size;
+}
+
+void judge_points(const Solver& solver, const Found& found, const WayRun& run, StressCell& cell) {
+    double worst = 0;
+    bool any_unknown = false, breaks = false, no_digit = false, promises = true;
+    for (std::size_t k = 0; k < found.stands.size(); ++k) {
+        if (!is_finite(found.stands[k])) {
+            cell.verdict = Verdict::wrong;
+            cell.why = "a state is no number";
+            return;
+        }
+        const ErrorBound claim = claim_of(solver, found.accounts[k], run.size);
+        promises &= std::isfinite(claim.length);
+        no_digit |= std::isfinite(found.accounts[k].length) && found.accounts[k].length >= cell.range;
+        cell.claim = k == 0 ? claim.length : std::max(cell.claim, claim.length);
+        if (k >= run.known.size() || run.known[k].how == Knowledge::none) {
+            any_unknown = true;
+            continue;
+        }
+        const Known& known = run.known[k];
+        if (cell.knowledge == Knowledge::none || known.how == Knowledge::retold) cell.knowledge = known.how;
+        const ErrorBound d = apart(found.stands[k], known.where);
+        worst = std::max(worst, d.length + known.within.length);
+        if (!(d.length - known.within.length <= claim.length &&
+              d.angle - known.within.angle <= claim.angle)) {
+            breaks = true;
+            cell.why = fmt::format("off by {:.2e} mm and {:.2e} rad, and claims {:.2e} mm and {:.2e} rad",
+                                   1e3 * d.length, d.angle, 1e3 * claim.length, claim.angle);
+        }
+    }
+    if (cell.knowledge != Knowledge::none) {
+        cell.error = worst;
+        cell.digits = std::clamp(-std::log10(worst / cell.range), 0.0, 16.0);
+    }
+    if (breaks)
+        cell.verdict = Verdict::wrong;
+    else if (found.outcome != Outcome::converged)
+        cell.verdict = Verdict::honest, cell.digits = nan;
+    else if (no_digit)
+        cell.verdict = Verdict::honest, cell.why = "its own account says that no digit is right";
+    else if (any_unknown)
+        cell.verdict = Verdict::unjudged, cell.digits = nan;
+    else
+        cell.verdict = promises ? Verdict::right : Verdict::unpromised;
+}
+
+// The same mechanism told otherwise has the same answer: to the digits that a solver claims, or of one that claims nothing
+// to a ten millionth of what moves and ten thousand roundings of the largest coordinate.
+void judge_retold(const Solver& solver, const Found& found, const WayRun& run, const Found& base_found,
+                  const WayRun& base, const Retelling& how, StressCell& cell) {
+    if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
+    if (cell.verdict == Verdict::wrong) return;
+    const Match both = match(run.places, base.places);
+    for (std::size_t k = 0; k < std::min(found.stands.size(), base_found.stands.size()); ++k) {
+        const Stand here = only(found.stands[k], both.here),
+                    there = retold(only(base_found.stands[k], both.there), how);
+        const ErrorBound d = apart(here, there);
+        const ErrorBound c = claim_of(solver, found.accounts[k], run.size),
+                         c_base = claim_of(solver, base_found.accounts[k], base.size);
+        const double rounding = 1e4 * eps * run.reach,
+                     allowed = std::isfinite(c.length) && std::isfinite(c_base.length)
+                                   ? c.length + how.length * c_base.length + rounding
+                                   : 1e-7 * cell.range + rounding;
+        if (!(d.length <= allowed)) {
+            cell.verdict = Verdict::wrong;
+            cell.why =
+                fmt::format("differs by {:.2e} mm from what it says of the scene itself", 1e3 * d.length);
+        }
+    }
+}
+
+StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::size_t s, const WayRun& run,
+                 const WayRun* base) {
+    const Found& found = run.found[s];
+    StressCell cell;
+    cell.scene = trial.scene, cell.sweep = trial.sweep, cell.variant = trial.variant.label;
+    cell.way = run.name, cell.solver = solvers[s].name;
+    cell.outcome = found.outcome, cell.detail = found.detail;
+    cell.range = range_of(run);
+    if (found.threw) {
+        cell.verdict = Verdict::wrong;
+        cell.why = "gave no answer but an exception";
+        return cell;
+    }
+    judge_points(solvers[s], found, run, cell);
+    if (cell.verdict == Verdict::wrong) return cell;
+    if (is_reference(solvers[s]) && says_that_it_ends(found.outcome) && base != nullptr && all_known(*base))
+        cell.verdict = Verdict::wrong,
+        cell.why = "says that no equilibrium continues the branch, where one is known";
+    if (found.outcome != Outcome::converged) return cell;
+    const std::string end = ended(solvers, run);
+    if (found.stands.size() < run.points)
+        cell.verdict = Verdict::wrong, cell.why = "converged, and points are missing";
+    else if (trial.variant.impossible)
+        cell.verdict = Verdict::wrong, cell.why = "converged where by construction nothing is in equilibrium";
+    else if (!end.empty())
+        cell.verdict = Verdict::wrong, cell.why = "converged where both references say: " + end;
+    else if (base != nullptr)
+        judge_retold(solvers[s], found, run, base->found[s], *base, *trial.variant.retold, cell);
+    return cell;
+}
+
+// What is not known of a scene told otherwise is known where it is known of the scene itself.
+void lend(const WayRun& base, const Retelling& how, WayRun& run) {
+    const Match both = match(run.places, base.places);
+    if (both.here.size() != run.places.size()) return;
+    for (std::size_t k = 0; k < std::min(run.known.size(), base.known.size()); ++k)
+        if (run.known[k].how == Knowledge::none && base.known[k].how != Knowledge::none)
+            run.known[k] = {
+                Knowledge::retold,
+                retold(only(base.known[k].where, both.there), how),
+                {how.length * base.known[k].within.length + eps * run.reach, base.known[k].within.angle}};
+}
+
+template <class T>
+std::vector<std::string> distinct(std::span<const T> all, std::string T::*member) {
+    std::vector<std::string> names;
+    for (const auto& one : all)
+        if (std::ranges::find(names, one.*member) == names.end()) names.push_back(one.*member);
+    return names;
+}
+
+}  // namespace
+
+const char* name(Knowledge knowledge) {
+    switch (knowledge) {
+        case Knowledge::none: return "none";
+        case Knowledge::references: return "references";
+        case Knowledge::retold: return "the scene itself";
+    }
+    return "";
+}
+
+const char* name(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::right: return "right";
+        case Verdict::unpromised: return "unpromised";
+        case Verdict::honest: return "honest";
+        case Verdict::unjudged: return "unjudged";
+        case Verdict::wrong: return "wrong";
+    }
+    return "";
+}
+
+std::vector<Solver> solvers() {
+    std::vector<Solver> all;
+    for (const auto& method : recursive::methods)
+        all.push_back({std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
+    return all;
+}
+
+std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps) {
+    std::vector<Trial> all;
+    for (const auto& sweep : sweeps)
+        for (auto& variant : sweep.variants(scene)) all.push_back({name, sweep.name, std::move(variant)});
+    return all;
+}
+
+int Survival::count(Verdict verdict) const {
+    return static_cast<int>(std::ranges::count(cells, verdict, &StressCell::verdict));
+}
+int Survival::judged() const { return static_cast<int>(cells.size()) - count(Verdict::unjudged); }
+
+Survival stress(std::span<const Trial> trials, const StressOptions& options) {
+    Survival survival;
+    const auto who = solvers();
+    survival.scenes = distinct(trials, &Trial::scene);
+    survival.sweeps = distinct(trials, &Trial::sweep);
+    for (const auto& solver : who) survival.solvers.push_back(solver.name);
+
+    // Trials are independent of each other until they are judged.
+    std::vector<TrialRun> runs(trials.size());
+    std::atomic<std::size_t> next = 0;
+    std::mutex telling;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        for (std::size_t t = next++; t < trials.size(); t = next++) {
+            if (!trials[t].variant.skipped.empty()) continue;
+            try {
+                if (options.progress) {
+                    const std::lock_guard lock(telling);
+                    options.progress(fmt::format("{} of {}: {}, {}", t + 1, trials.size(), trials[t].scene,
+                                                 trials[t].variant.label));
+                }
+                runs[t] = run(trials[t], who);
+            } catch (...) {
+                const std::lock_guard lock(telling);
+                failure = std::current_exception();
+                next = trials.size();
+            }
+        }
+    };
+    {
+        std::vector<std::jthread> workers;
+        for (int k = 1; k < options.threads; ++k) workers.emplace_back(work);
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+        const Trial& trial = trials[t];
+        if (!trial.variant.skipped.empty())
+            survival.skipped.push_back(
+                {trial.scene, trial.sweep, trial.variant.label, trial.variant.skipped});
+        const TrialRun* base = nullptr;
+        if (trial.variant.retold)
+            for (std::size_t b = 0; b < trials.size(); ++b)
+                if (trials[b].scene == trial.scene && trials[b].sweep == as_it_is) base = &runs[b];
+        for (std::size_t w = 0; w < runs[t].ways.size(); ++w) {
+            WayRun& way = runs[t].ways[w];
+            const WayRun* same = base != nullptr && w < base->ways.size() ? &base->ways[w] : nullptr;
+            if (same != nullptr) lend(*same, *trial.variant.retold, way);
+            for (std::size_t s = 0; s < who.size(); ++s) {
+                const bool asked = way.found[s].threw || !way.found[s].stands.empty() ||
+                                   way.found[s].outcome != Outcome::converged;
+                if (asked) survival.cells.push_back(judge(trial, who, s, way, same));
+            }
+        }
+    }
+    return survival;
+}
+
+char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
+          const std::string& solver) {
+    char result = '.';
+    double digits = std::numeric_limits<double>::infinity();
+    bool unjudged = false;
+    for (const auto& cell : survival.cells) {
+        if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver) continue;
+        if (cell.verdict == Verdict::wrong) return 'X';
+        if (result == '.') result = '!';
+        unjudged |= cell.verdict == Verdict::unjudged;
+        if (cell.verdict == Verdict::right || cell.verdict == Verdict::unpromised)
+            digits = std::min(digits, cell.digits);
+    }
+    if (unjudged) return '?';
+    return std::isfinite(digits) ? static_cast<char>('0' + std::clamp(static_cast<int>(digits), 0, 9))
+                                 : result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,135 @@
+// What becomes of every leg and method at the extremes: right to so many digits, an honest outcome, or wrong.
+//
+// A trial is a scene, varied; a cell is what one leg or method makes of one way of it. Whoever says "converged" claims
+// something, and is held to it:
+//
+//   the account it gives       Equilibrium::bound, where it is finite
+//   what it was told           the tolerance of `adaptive`, of `series`
+//   else, of a reference       exact but for rounding: 1e-9 of the scene's size, 1e-6 deg
+//   else                       nothing: its digits are told
+//
+// The true error of a state lies between |x - x_T| - e and |x - x_T| + e, x_T a state that is known to within e. A claim is
+// broken where the lower end is above it. What is known, and how: Knowledge. Wrong is as well who converges where both
+// references say that the branch ends, who answers otherwise when the same mechanism is told otherwise, and a reference that
+// says then that the branch ends, when it does not.
+//
+// A body that an idle mode moves is anywhere along it, so such bodies are not looked at.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/legs.hpp"
+#include "models/equilibrium_path.hpp"
+#include "models/scene.hpp"
+
+namespace elastocheck::compare {
+
+// ---- What is asked.
+
+// How the same mechanism is told: what was at p is at  length · M p + t.
+struct Retelling {
+    Eigen::Matrix3d M = Eigen::Matrix3d::Identity();  // a rotation or a mirror image
+    Eigen::Vector3d t = Eigen::Vector3d::Zero();      // [m]
+    double length = 1;
+};
+
+struct Variant {
+    std::string label;                     // "as it is", "rates of 'coil' times 1e+06"
+    Scene scene;                           // without a trim
+    std::optional<Retelling> retold = {};  // of the scene as it is: whatever is found is the same
+    bool impossible = false;   // by construction there is no equilibrium: whoever finds one is wrong
+    bool many_steps = false;   // asked of the methods that take as many steps as they are told
+    std::string skipped = {};  // why nobody is asked
+};
+
+// A name, and what it makes of a scene. Every branch of the scene as it is; of all else the first.
+struct Sweep {
+    std::string name;
+    std::function<std::vector<Variant>(const Scene&)> variants;
+};
+
+struct Trial {
+    std::string scene;  // whose row it is in
+    std::string sweep;  // ... and column
+    Variant variant;
+};
+
+inline constexpr std::string_view as_it_is = "as it is";  // the sweep that has only the scene itself
+std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps);
+
+// The sweeps that any scene stands: sweeps.cpp.
+const std::vector<Sweep>& sweeps();
+
+// ---- Who is asked: every method of the recursion, and the references.
+struct Solver {
+    std::string name;  // "published", "equilibrium"
+    Gait gait;
+};
+std::vector<Solver> solvers();
+
+// ---- What came of it.
+
+enum class Knowledge {
+    none,
+    references,  // two that share no equation are within their claims of each other
+    retold,      // the same mechanism as it was drawn, whose state is known
+};
+const char* name(Knowledge knowledge);
+
+enum class Verdict {
+    right,       // converged, within what is claimed
+    unpromised,  // converged, and claims nothing: its digits
+    honest,      // another outcome, or an account that says that no digit is right
+    unjudged,    // converged, and nothing is known
+    wrong,
+};
+const char* name(Verdict verdict);
+
+struct StressCell {
+    std::string scene, sweep, variant, way, solver;
+    Outcome outcome = Outcome::converged;
+    std::string detail;  // what the solver says
+    Verdict verdict = Verdict::unjudged;
+    std::string why;  // of a verdict that needs a reason
+    Knowledge knowledge = Knowledge::none;
+    double digits =
+        std::numeric_limits<double>::quiet_NaN();  // -log10(error / range); NaN where nothing is known
+    double error = std::numeric_limits<double>::quiet_NaN();  // of any place, at most [m]
+    double claim = std::numeric_limits<double>::infinity();   // [m]
+    double range =
+        0;  // how far the place that goes farthest goes, or the scene's size where nothing moves [m]
+};
+
+struct Survival {
+    std::vector<std::string> scenes, sweeps, solvers;  // in the order in which they were asked
+    std::vector<StressCell> cells;                     // in the order of the trials, whoever came first
+    struct Skipped {
+        std::string scene, sweep, variant, why;
+    };
+    std::vector<Skipped> skipped;
+    int count(Verdict verdict) const;
+    int judged() const;  // right, unpromised, honest or wrong
+};
+
+struct StressOptions {
+    int threads = 2;
+    std::function<void(std::string_view)> progress = {};
+};
+
+Survival stress(std::span<const Trial> trials, const StressOptions& options = {});
+
+// ---- The map: what a solver came to in all trials of a scene and a sweep, one sign.
+//
+//   0 ... 9  digits of the worst that converged (9: nine or more)     !  every outcome was honest
+//   ?  converged, and nothing is known                                .  not asked
+//   X  wrong
+char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
+          const std::string& solver);
+
+}  // namespace elastocheck::compare

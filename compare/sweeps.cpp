@@ -1,0 +1,140 @@
+// The sweeps that any scene stands. Few points each: both ends, and one between.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "compare/retold.hpp"
+#include "compare/stress.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+Scene first_branch(const Scene& scene) {
+    Scene one = scene;
+    if (one.branches.size() > 1) one.branches.resize(1);
+    return one;
+}
+
+// The first branch, `to` and `from` times a factor.
+Scene driven(const Scene& scene, double factor) {
+    Scene farther = first_branch(scene);
+    for (auto& branch : farther.branches) branch.from *= factor, branch.to *= factor;
+    return farther;
+}
+
+std::vector<Variant> itself(const Scene& scene) { return {{"as it is", scene}}; }
+
+// One element much softer or stiffer than the others: the first that gives a force.
+std::vector<Variant> stiffness(const Scene& scene) {
+    std::vector<Variant> variants;
+    if (scene.elastics.empty()) return variants;
+    for (const double factor : {0.0, 1e-6, 1e6, 1e12, 1e18}) {
+        Scene varied = first_branch(scene);
+        Elastic& element = varied.elastics.front();
+        element = stiffened(element, factor);
+        variants.push_back({fmt::format("rates of '{}' times {:g}", element.name, factor), varied});
+    }
+    return variants;
+}
+
+// Lengths and loads smaller or larger, translational rates with them as they are, so that it moves as far for its size; and
+// rotational rates as they are: the lever that they work on becomes nothing, or all.
+std::vector<Variant> levers(const Scene& scene) {
+    std::vector<Variant> variants;
+    for (const double factor : {1e-6, 1e-3, 1e3})
+        variants.push_back(
+            {fmt::format("lever arms times {:g}", factor),
+             with_rotational_rates(scaled(first_branch(scene), factor, factor), 1 / (factor * factor))});
+    return variants;
+}
+
+// The parameter from next to nothing to far too much. At 0 what is held alone acts.
+std::vector<Variant> loads(const Scene& scene) {
+    std::vector<Variant> variants;
+    Scene still = first_branch(scene);
+    for (auto& branch : still.branches)
+        for (auto& driver : branch.drivers) driver.rate = 0;
+    variants.push_back({"nothing is driven", still});
+    if (scene.branches.empty()) return variants;
+    const double to = std::max(std::abs(scene.branches.front().to), std::abs(scene.branches.front().from));
+    for (const double target : {1e-12, 1e6})
+        variants.push_back({fmt::format("driven to {:g} instead of {:g}", target, to),
+                            driven(scene, to > 0 ? target / to : 1)});
+    return variants;
+}
+
+std::vector<Variant> beyond(const Scene& scene) {
+    std::vector<Variant> variants;
+    for (const double factor : {3.0, 10.0, 30.0})
+        variants.push_back({fmt::format("driven {:g} times as far", factor), driven(scene, factor)});
+    return variants;
+}
+
+// One, and as many as round-off notices: so many as half a minute is enough for.
+std::vector<Variant> steps(const Scene& scene) {
+    std::vector<Variant> variants;
+    const double most = 2e6 / std::pow(1.0 + static_cast<double>(scene.bodies.size()), 1.5);
+    const int many = most > 5e5 ? 1'000'000 : most > 5e4 ? 100'000 : 10'000;
+    for (const int steps : {1, many}) {
+        Scene varied = first_branch(scene);
+        for (auto& branch : varied.branches) branch.steps = steps;
+        variants.push_back({.label = fmt::format("{} step{}", steps, steps == 1 ? "" : "s"),
+                            .scene = varied,
+                            .many_steps = true});
+    }
+    return variants;
+}
+
+// The same numbers in other units, as if the file said so.
+std::vector<Variant> units(const Scene& scene) {
+    std::vector<Variant> variants;
+    for (const auto& [label, factor] :
+         {std::pair{"its millimetres taken for metres", 1e3}, {"its metres taken for millimetres", 1e-3}})
+        variants.push_back({.label = label,
+                            .scene = scaled(first_branch(scene), factor, factor * factor),
+                            .retold = Retelling{.length = factor}});
+    return variants;
+}
+
+std::vector<Variant> far_away(const Scene& scene) {
+    const Vector3d t(10e3, 0, 0);
+    return {{.label = "10 km from the origin",
+             .scene = moved(first_branch(scene), Quaterniond::Identity(), t),
+             .retold = Retelling{.t = t}}};
+}
+
+std::vector<Variant> told_otherwise(const Scene& original) {
+    const Scene scene = first_branch(original);
+    const Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
+    const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
+    return {{.label = "rotated",
+             .scene = moved(scene, R, Vector3d::Zero()),
+             .retold = Retelling{.M = R.toRotationMatrix()}},
+            {.label = "mirrored", .scene = mirrored(scene), .retold = Retelling{.M = S}},
+            {.label = "in reverse order", .scene = reversed(scene), .retold = Retelling{}},
+            {.label = "in other body axes",
+             .scene = with_body_axes(scene, {R, R.conjugate()}),
+             .retold = Retelling{}}};
+}
+
+}  // namespace
+
+const std::vector<Sweep>& sweeps() {
+    static const std::vector<Sweep> all{{std::string(as_it_is), itself},
+                                        {"told otherwise", told_otherwise},
+                                        {"units", units},
+                                        {"far away", far_away},
+                                        {"stiffness", stiffness},
+                                        {"levers", levers},
+                                        {"load", loads},
+                                        {"beyond", beyond},
+                                        {"steps", steps}};
+    return all;
+}
+
+}  // namespace elastocheck::compare

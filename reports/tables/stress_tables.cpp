@@ -1,0 +1,125 @@
+#include "reports/tables/stress_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+using compare::Survival;
+using compare::Verdict;
+
+constexpr std::array verdicts{Verdict::right, Verdict::unpromised, Verdict::honest, Verdict::unjudged,
+                              Verdict::wrong};
+constexpr std::size_t width = 118;  // of a terminal
+
+compare::Column words(std::string name, std::string description = {}) {
+    return {std::move(name), {}, std::move(description), true};
+}
+
+// Infinite says nothing, as does NaN.
+double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
+
+std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep) {
+    std::string all;
+    for (const auto& solver : survival.solvers) all += sign(survival, scene, sweep, solver);
+    return all;
+}
+
+std::string where(const compare::StressCell& cell) {
+    return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.way, cell.solver);
+}
+
+}  // namespace
+
+compare::Table cell_table(const Survival& survival) {
+    compare::Table table{
+        "cells",
+        {words("scene"),
+         words("sweep"),
+         words("variant"),
+         words("way", "of a branch, from where it begins"),
+         words("solver"),
+         words("outcome"),
+         words("verdict"),
+         words("known by", "what the true state is"),
+         {"digits", "", "-log10 of the error over the range"},
+         {"error", "mm", "of any place, at most"},
+         {"claim", "mm", "what the solver says that it is off by, at most; empty where it says nothing"},
+         {"range", "mm", "how far the place that goes farthest goes; the scene's size where nothing moves"},
+         words("reason"),
+         words("detail", "what the solver says")},
+        {}};
+    for (const auto& c : survival.cells)
+        table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome), name(c.verdict),
+                              name(c.knowledge), c.digits, 1e3 * c.error, told(1e3 * c.claim), 1e3 * c.range,
+                              c.why, c.detail});
+    return table;
+}
+
+std::string stress_text(const Survival& survival) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    std::size_t head = 0;
+    for (const auto& scene : survival.scenes) head = std::max(head, scene.size());
+    std::size_t column = survival.solvers.size();
+    for (const auto& sweep : survival.sweeps) column = std::max(column, sweep.size());
+    const std::size_t at_once = std::max<std::size_t>(1, (width - head) / (column + 2));
+    for (std::size_t first = 0; first < survival.sweeps.size(); first += at_once) {
+        const std::size_t last = std::min(first + at_once, survival.sweeps.size());
+        fmt::format_to(out, "{:<{}}", "", head);
+        for (std::size_t s = first; s < last; ++s)
+            fmt::format_to(out, "  {:<{}}", survival.sweeps[s], column);
+        text += '\n';
+        for (const auto& scene : survival.scenes) {
+            fmt::format_to(out, "{:<{}}", scene, head);
+            for (std::size_t s = first; s < last; ++s)
+                fmt::format_to(out, "  {:<{}}", signs(survival, scene, survival.sweeps[s]), column);
+            text += '\n';
+        }
+        text += '\n';
+    }
+    text += "One sign each of";
+    for (const auto& solver : survival.solvers) fmt::format_to(out, " {}", solver);
+    text +=
+        ", the worst of all variants of a sweep:\n"
+        "  0 ... 9  digits of the range of motion that are right (9: nine or more)    !  an honest outcome, "
+        "each time\n"
+        "  ?  converged, and nothing is known    X  WRONG    .  not asked\n";
+    for (const auto verdict : verdicts)
+        fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
+                       verdict == verdicts.back() ? "" : ", ");
+    fmt::format_to(out, ": {} cells\n", survival.cells.size());
+    for (const auto& s : survival.skipped)
+        fmt::format_to(out, "not asked: {}, {}: {}\n", s.scene, s.variant, s.why);
+    for (const auto& cell : survival.cells)
+        if (cell.verdict == Verdict::wrong) fmt::format_to(out, "WRONG: {}: {}\n", where(cell), cell.why);
+    return text;
+}
+
+json stress_json(const Survival& survival) {
+    json map = json::array(), counts = json::object(), skipped = json::array();
+    for (const auto& scene : survival.scenes) {
+        json row = json::array();
+        for (const auto& sweep : survival.sweeps) row.push_back(signs(survival, scene, sweep));
+        map.push_back({{"scene", scene}, {"signs", row}});
+    }
+    for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
+    for (const auto& s : survival.skipped)
+        skipped.push_back({{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
+    return {{"solvers", survival.solvers},
+            {"sweeps", survival.sweeps},
+            {"map", map},
+            {"counts", counts},
+            {"skipped", skipped},
+            {"cells", table_json(cell_table(survival))}};
+}
+
+}  // namespace elastocheck::reports
