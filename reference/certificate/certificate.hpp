@@ -19,6 +19,10 @@ namespace elastocheck::reference::certificate {
 struct Tolerance {
     double length = 1e-9;            // of every body's origin [m]
     double angle = 1.7453292520e-8;  // of every body's orientation [rad], 1e-6 deg
+    double force = 1e-2;             // of every joint's reaction [N]
+    double moment = 1e-2;            // of every joint's reaction [N·m]
+    double held = 1e-6;              // what may hold an idle motion, and it still be called idle [N, N·m]
+    double gap = 1e-9;               // what redundant constraints may stay open by [m, rad]
 };
 
 enum class Answer {
@@ -44,8 +48,9 @@ struct Certificate {
     Extent unique;    // no other equilibrium is as near as this; 0 where nothing is known
     double held = 0;  // |μ|: what holds idle modes, at most [N, N·m]; 0 where there are none
     double gap = 0;   // what redundant constraints stay open by, at most [m, rad]; 0 where there are none
-    bool stable =
-        false;  // every stiffness of what is free and not idle is positive over the whole box; false: not shown
+    // Every stiffness of what is free and not idle is positive over the whole box; false: not shown.
+    bool stable = false;
+    Equilibrium centre;  // of the box, as doubles; no poses where there is no box
 };
 
 // Of one state, from any leg, at a = state.load of the branch. Throws std::invalid_argument where the state is not of

@@ -26,9 +26,12 @@ const std::vector<Room> rooms{
     {"recursive", {"models"}},
     {"reference/equilibrium", {"models"}},
     {"reference/energy", {"models"}},
-    {"compare", {"models", "recursive", "reference/equilibrium", "reference/energy"}},
+    {"reference/certificate", {"models"}},
+    {"compare",
+     {"models", "recursive", "reference/equilibrium", "reference/energy", "reference/certificate"}},
     {"reports",
-     {"models/reader", "models", "recursive", "reference/equilibrium", "reference/energy", "compare"}},
+     {"models/reader", "models", "recursive", "reference/equilibrium", "reference/energy",
+      "reference/certificate", "compare"}},
 };
 
 bool is_below(const std::string& path, const std::string& folder) { return path.starts_with(folder + "/"); }
@@ -117,6 +120,9 @@ TEST(Layering, AlarmRings) {
     EXPECT_EQ(violations("reports/a.cpp", "#include \"build_info.hpp\"\n").size(), 0u);
     EXPECT_EQ(violations("reference/energy/a.cpp", "#include \"reference/equilibrium/solve.hpp\"\n").size(),
               1u);
+    EXPECT_EQ(
+        violations("reference/certificate/a.cpp", "#include \"reference/equilibrium/laws.hpp\"\n").size(),
+        1u);
     EXPECT_EQ(violations("models/a.hpp", "#include \"compare/compare.hpp\"\n").size(), 1u);
     EXPECT_EQ(violations("compare/a.hpp", "#include \"reports/csv.hpp\"\n").size(), 1u);
     EXPECT_EQ(violations("recursive/a.cpp", "#include \"../reference/energy/solve.hpp\"\n").size(), 1u);

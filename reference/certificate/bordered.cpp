@@ -1,0 +1,247 @@
+#include "reference/certificate/bordered.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// A reciprocal condition number this much above what is nothing needs no search.
+constexpr double surely_regular = 1e3;
+constexpr int equilibration_sweeps = 8;
+// Of a null vector's largest entry: what is below is rounding.
+constexpr double no_part = 1e-12;
+
+// D_r A D_c with rows and columns of size one (Ruiz).
+struct Equilibrated {
+    MatrixXd A;
+    VectorXd D_r, D_c;
+};
+Equilibrated equilibrated(const MatrixXd& A) {
+    Equilibrated of{A, VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
+    const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
+    for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
+        const VectorXd r = of.A.cwiseAbs().rowwise().maxCoeff().unaryExpr(scale),
+                       c = of.A.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(scale);
+        of.A = r.asDiagonal() * of.A * c.asDiagonal();
+        of.D_r.array() *= r.array();
+        of.D_c.array() *= c.array();
+    }
+    return of;
+}
+
+// x with A x = 0, and y with yᵀ A = 0, by columns.
+struct NullSpaces {
+    MatrixXd right, left;
+};
+NullSpaces null_spaces(const MatrixXd& A, double nothing) {
+    const auto [E, D_r, D_c] = equilibrated(A);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(E);
+    qr.setThreshold(nothing);
+    const Index rank = qr.rank(), free = E.cols() - rank;
+    MatrixXd x = MatrixXd::Zero(E.cols(), free);
+    x.bottomRows(free).setIdentity();
+    x.topRows(rank) = -qr.matrixQR()
+                           .topLeftCorner(rank, rank)
+                           .template triangularView<Eigen::Upper>()
+                           .solve(qr.matrixQR().topRightCorner(rank, free).eval());
+    const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(E.rows(), E.rows());
+    return {D_c.asDiagonal() * (qr.colsPermutation() * x), D_r.asDiagonal() * Q.rightCols(E.rows() - rank)};
+}
+
+// Columns of size one, without what is rounding.
+void clean(MatrixXd& columns) {
+    for (Index k = 0; k < columns.cols(); ++k) {
+        columns.col(k) /= columns.col(k).norm();
+        const double least = no_part * columns.col(k).cwiseAbs().maxCoeff();
+        columns.col(k) = columns.col(k).unaryExpr([&](double x) { return std::abs(x) < least ? 0 : x; });
+    }
+}
+
+// δz of δr, δπ and δR: a quaternion turns by ½ (0, δπ) p.
+MatrixXd tangent(const System& system, const VectorXd& z) {
+    MatrixXd T = MatrixXd::Zero(system.n(), 6 * system.bodies + system.rows);
+    for (int b = 0; b < system.bodies; ++b) {
+        const int row = system.pose(b), col = 6 * b;
+        T.block<3, 3>(row, col).setIdentity();
+        const double w = z[row + 3] / 2, x = z[row + 4] / 2, y = z[row + 5] / 2, u = z[row + 6] / 2;
+        T.block<4, 3>(row + 3, col + 3) << -x, -y, -u, w, u, -y, -u, w, x, y, -x, w;
+    }
+    T.bottomRightCorner(system.rows, system.rows).setIdentity();
+    return T;
+}
+
+MatrixXd square(const std::vector<double>& J, Index n) { return Eigen::Map<const RowMajor>(J.data(), n, n); }
+
+}  // namespace
+
+std::vector<double> doubles(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+std::vector<Interval> thin(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
+    std::vector<Interval> y;
+    for (Index k = 0; k < middle.size(); ++k) y.push_back(around(middle[k], radius[k]));
+    return y;
+}
+
+Border border_at(const System& system, const VectorXd& z, double a, double nothing) {
+    const Index nb = 6 * system.bodies, m = system.rows, n = system.n();
+    Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
+    const MatrixXd T = tangent(system, z);
+    const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(nb + m) * T;
+    if (!J.allFinite() || J.size() == 0) return border;
+    if (Eigen::PartialPivLU<MatrixXd>(equilibrated(J).A).rcond() > surely_regular * nothing) return border;
+
+    // yᵀ Φ = 0: the rows y say the same, and reactions y are in balance.
+    MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.bottomLeftCorner(m, nb), nothing).left : MatrixXd(m, 0);
+    clean(y);
+    const Index k = y.cols();
+    MatrixXd bordered = MatrixXd::Zero(nb + m + k, nb + m + k);
+    bordered.topLeftCorner(nb + m, nb + m) = J;
+    bordered.block(nb, nb + m, m, k) = y;
+    bordered.block(nb + m, nb, k, m) = y.transpose();
+
+    // Motions that meet no stiffness, and what must not push them. Only their own part: how the poses go, what acts on bodies.
+    NullSpaces idle = null_spaces(bordered, nothing);
+    const Index i = std::min(idle.right.cols(), idle.left.cols());
+    MatrixXd v = T.topLeftCorner(7 * system.bodies, nb) * idle.right.topLeftCorner(nb, i),
+             u = idle.left.topLeftCorner(nb, i);
+    clean(v);
+    clean(u);
+    border.redundant = static_cast<int>(k);
+    border.U = MatrixXd::Zero(n, k + i);
+    border.g = MatrixXd::Zero(n, k + i);
+    border.U.block(nb, 0, m, k) = y;
+    border.g.block(7 * system.bodies, 0, m, k) = y;
+    border.U.topRightCorner(nb, i) = u;
+    border.g.topRightCorner(7 * system.bodies, i) = v;
+    return border;
+}
+
+namespace {
+
+// Names with at least a tenth of the largest share.
+std::string largest_named(const std::vector<double>& shares,
+                          const std::function<std::string(std::size_t)>& name) {
+    double most = 0;
+    for (const double share : shares) most = std::max(most, share);
+    std::string named;
+    for (std::size_t k = 0; k < shares.size(); ++k)
+        if (shares[k] > 0.1 * most) named += fmt::format("{}'{}'", named.empty() ? "" : ", ", name(k));
+    return named;
+}
+
+}  // namespace
+
+std::string idle_bodies(const System& system, const Border& border) {
+    std::vector<double> shares(static_cast<std::size_t>(system.bodies));
+    for (int b = 0; b < system.bodies; ++b)
+        for (int k = border.redundant; k < border.count(); ++k)
+            shares[static_cast<std::size_t>(b)] =
+                std::max({shares[static_cast<std::size_t>(b)],
+                          border.g.block<3, 1>(system.pose(b), k).norm() / system.length,
+                          border.g.block<4, 1>(system.pose(b) + 3, k).norm()});
+    return largest_named(shares, [&](std::size_t b) { return system.model->bodies[b].name; });
+}
+
+std::string redundant_joints(const System& system, const Border& border) {
+    std::vector<double> shares(system.model->joints.size());
+    for (std::size_t c = 0; c < system.values.size(); ++c)
+        for (int n = 0; n < rows(system.model->constraints[c].kind); ++n)
+            for (int k = 0; k < border.redundant; ++k) {
+                double& share = shares[static_cast<std::size_t>(system.model->constraints[c].joint)];
+                share = std::max(share, std::abs(border.U(system.closure(c) + n, k)));
+            }
+    return largest_named(shares, [&](std::size_t j) { return system.model->joints[j].name; });
+}
+
+template <class S>
+Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
+    const auto n = static_cast<std::size_t>(problem.n()),
+               k = static_cast<std::size_t>(problem.border.count()),
+               size = static_cast<std::size_t>(problem.size());
+    const S& at = problem.a_is_unknown ? y.back() : a;
+    const std::vector<S> z(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
+    Values<S> of = evaluate(problem.system, z, at, slopes);
+    const auto U = [&](std::size_t i, std::size_t j) {
+        return problem.border.U(static_cast<Index>(i), static_cast<Index>(j));
+    };
+    const auto g = [&](std::size_t i, std::size_t j) {
+        return problem.border.g(static_cast<Index>(i), static_cast<Index>(j));
+    };
+    using B = Base<S>;
+    of.E.resize(size, constant<S>(0.));
+    for (std::size_t j = 0; j < k; ++j)
+        for (std::size_t i = 0; i < n; ++i) {
+            if (U(i, j) != 0) of.E[i] = of.E[i] + y[n + j] * B(U(i, j));
+            if (g(i, j) != 0)
+                of.E[n + j] = of.E[n + j] + (z[i] - B(problem.z_g[static_cast<Index>(i)])) * B(g(i, j));
+        }
+    if (problem.a_is_unknown)
+        for (std::size_t i = 0; i < size; ++i)
+            of.E[size - 1] = of.E[size - 1] + (y[i] - B(problem.y_t[static_cast<Index>(i)])) *
+                                                  B(problem.t[static_cast<Index>(i)]);
+    if (slopes == Slopes::no) return of;
+    if (size == n) return of;
+
+    std::vector<S> J(size * size, constant<S>(0.));
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) J[i * size + j] = of.J[i * n + j];
+        for (std::size_t j = 0; j < k; ++j) {
+            J[i * size + n + j] = constant<S>(U(i, j));
+            J[(n + j) * size + i] = constant<S>(g(i, j));
+        }
+        if (problem.a_is_unknown) J[i * size + size - 1] = of.E_a[i];
+    }
+    if (problem.a_is_unknown)
+        for (std::size_t i = 0; i < size; ++i)
+            J[(size - 1) * size + i] = constant<S>(problem.t[static_cast<Index>(i)]);
+    of.J = std::move(J);
+    return of;
+}
+template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
+template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&, Slopes);
+
+MatrixXd inverse(const MatrixXd& J) {
+    const auto [A, D_r, D_c] = equilibrated(J);
+    return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
+}
+
+// Newton's method until its steps are rounding. The last two steps share an inverse.
+Approximate newton(const Problem& problem, const VectorXd& from, double a) {
+    constexpr int most = 12;
+    constexpr double close = 1e-7;  // of the model's size: steps from here on need no new inverse
+    Approximate at{from, {}};
+    const auto size_of = [&](const VectorXd& step) {
+        double size = 0;
+        for (int b = 0; b < problem.system.bodies; ++b) {
+            const int k = problem.system.pose(b);
+            size = std::max(
+                {size, step.segment<3>(k).norm() / problem.system.length, step.segment<4>(k + 3).norm()});
+        }
+        return size;
+    };
+    for (int step = 0; step < most && !at.settled; ++step) {
+        const Values<double> of = evaluate(problem, doubles(at.y), a, Slopes::yes);
+        at.Y = inverse(square(of.J, problem.size()));
+        VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
+        if (!dy.allFinite()) return at;
+        at.y += dy;
+        at.settled = size_of(dy) < close;
+    }
+    for (int step = 0; step < 2; ++step) {
+        const Values<double> of = evaluate(problem, doubles(at.y), a, Slopes::no);
+        const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
+        if (!dy.allFinite()) return at;
+        at.y += dy;
+    }
+    return at;
+}
+
+}  // namespace elastocheck::reference::certificate

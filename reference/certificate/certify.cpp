@@ -1,0 +1,386 @@
+// A point. What is claimed is fixed by the tolerance before anything is computed; then
+//
+//   Newton's method in doubles      from the state to ỹ, and Y ≈ F'(ỹ)⁻¹
+//   the smallest box that passes    [y] = ỹ ± r:  there is one in it, and its distance from the state is bounded
+//   a large box that passes         there is no other in that one
+//   all that is within tolerance    where the first fails: y·F over that box, for each row y of Y; if one of these cannot be
+//                                   zero there is none
+#include <fmt/format.h>
+
+#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/krawczyk.hpp"
+#include "reference/certificate/stability.hpp"
+#include "reference/certificate/state.hpp"
+
+namespace elastocheck::reference::certificate {
+
+const char* name(Answer answer) {
+    switch (answer) {
+        case Answer::proved: return "proved";
+        case Answer::excluded: return "excluded";
+        case Answer::open: return "open";
+    }
+    return "unknown";
+}
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Dense from here on: above this a point costs minutes.
+constexpr int most_unknowns = 2500;
+
+Near near_of(const Tolerance& tolerance) {
+    return {tolerance.length, tolerance.angle, tolerance.force, tolerance.moment};
+}
+bool within(const Extent& far, const Tolerance& tolerance) {
+    return far.length <= tolerance.length && far.angle <= tolerance.angle && far.force <= tolerance.force &&
+           far.moment <= tolerance.moment;
+}
+
+// ---- To an equilibrium near the state, in floating point
+
+// How far Newton's method may go, over the model's size, and the state's own border still be good.
+constexpr double near_enough = 1e-11, near_enough_to_ask = 1e-9;
+
+struct Approach {
+    Problem problem;
+    Approximate found;
+};
+Approach approach(const StateAt& at) {
+    const System& system = at.system;
+    const auto from = [&](const VectorXd& z, double nothing) {
+        Problem problem{system, border_at(system, z, at.state.load, nothing), at.z, false, {}, {}};
+        VectorXd y = VectorXd::Zero(problem.size());
+        y.head(system.n()) = z;
+        Approximate found = newton(problem, y, at.state.load);
+        return Approach{std::move(problem), std::move(found)};
+    };
+    Approach first = from(at.z, rounding_is_nothing);
+    const auto moved = [&](const Approach& to) {
+        double size = 0;
+        for (int b = 0; b < system.bodies; ++b) {
+            const auto d = (to.found.y.head(system.n()) - at.z).segment<7>(system.pose(b));
+            size = std::max({size, d.head<3>().norm() / system.length, d.tail<4>().norm()});
+        }
+        return size;
+    };
+    const auto count_there = [&] {
+        return border_at(system, first.found.y.head(system.n()), at.state.load).count();
+    };
+    if (first.found.settled &&
+        (moved(first) < near_enough ||
+         (moved(first) < near_enough_to_ask && count_there() == first.problem.border.count())))
+        return first;
+    // Far away what is idle is not quite, and Newton's method runs off along it: held there first.
+    Approach held = from(at.z, little_is_nothing);
+    if (!held.found.settled) return first;
+    Approach again = from(held.found.y.head(system.n()), rounding_is_nothing);
+    return again.found.settled && moved(again) <= 10 * moved(held) ? again : held;
+}
+
+// ---- The smallest box
+
+struct Box {
+    bool proved = false;
+    VectorXd r;
+    std::vector<Interval> J;  // slopes over it
+};
+Box smallest(const Problem& problem, const Approximate& at, double a) {
+    constexpr int trials = 8;
+    const VectorXd first = step(at.Y, evaluate(problem, thin(at.y), Interval(a), Slopes::no).E);
+    Box found;
+    if (!first.allFinite()) return found;
+    found.r = 1.5 * first;
+    const double least = 1e-20;
+    found.r = found.r.cwiseMax(least);
+    for (int trial = 0; trial < trials && !found.proved; ++trial) {
+        found.J = evaluate(problem, box(at.y, found.r), Interval(a), Slopes::yes).J;
+        const Contraction rest = contraction(at.Y, found.J);
+        if (!rest.finite) return found;
+        // A box that holds holds within all it was computed for: one that is smaller may pass as well.
+        VectorXd r = (first * 1.01).cwiseMax(least);
+        for (int k = 0; k < 3; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
+        if ((r.array() <= found.r.array()).all() &&
+            all_less(first + rest(r) * (1 + 1e-14), r * (1 - 1e-14))) {
+            found.r = r;
+            found.proved = true;
+        } else {
+            found.r = (2 * r).cwiseMax(found.r);
+            if (!found.r.allFinite()) return found;
+        }
+    }
+    return found;
+}
+
+// ---- A large box without another
+
+// Poses within t L and t, reactions as far as the poses make them, of a box that contracts: the largest t found.
+struct Alone {
+    double t = 0;
+    VectorXd r;
+};
+Alone alone(const Problem& problem, const Approximate& at, double a) {
+    const System& system = problem.system;
+    const int poses = 7 * system.bodies, n = problem.size();
+    constexpr int trials = 10;
+    constexpr double largest = 0.05, enough = 0.35, most = 0.9;
+    double t = 2e-3, failed = std::numeric_limits<double>::infinity();
+    Alone best;
+    const double load = std::max(1e-6, at.y.segment(poses, system.rows).size() > 0
+                                           ? at.y.segment(poses, system.rows).cwiseAbs().maxCoeff()
+                                           : 0.);
+    for (int trial = 0; trial < trials; ++trial) {
+        VectorXd r(n);
+        for (int b = 0; b < system.bodies; ++b) {
+            r.segment<3>(7 * b).setConstant(t * system.length);
+            r.segment<4>(7 * b + 3).setConstant(t);
+        }
+        r.tail(n - poses).setConstant(t * load);
+        double ratio = std::numeric_limits<double>::infinity();
+        for (int fit = 0; fit < 2; ++fit) {
+            const Contraction rest =
+                contraction(at.Y, evaluate(problem, box(at.y, r), Interval(a), Slopes::yes).J);
+            if (!rest.finite) break;
+            VectorXd moved = rest(r);
+            for (int k = 0; k < 3; ++k) {
+                // Reactions and μ enter straight: what the poses make of them is room enough.
+                r.tail(n - poses) = r.tail(n - poses).cwiseMax(1.5 * moved.tail(n - poses));
+                if (k < 2 || fit == 1) moved = rest(r);
+            }
+            ratio = (moved.array() / r.array()).maxCoeff();
+            if (fit == 1) break;
+        }
+        if (ratio < most) {
+            if (t > best.t) best = {t, r};
+            if (ratio > enough || t >= largest || t * 2 >= failed) break;
+            t = std::min({largest, t * std::min(8., 0.7 / std::max(ratio, 1e-3)), failed / 1.5});
+        } else {
+            failed = std::min(failed, t);
+            t *= std::isfinite(ratio) ? std::clamp(0.6 / ratio, 0.02, 0.7) : 0.1;
+            if (best.t >= t || t < 1e-12) break;
+        }
+    }
+    return best;
+}
+
+// The largest of ball and angle around the state, and of its wrenches, that the box about ỹ holds.
+Extent held_by(const StateAt& at, const Approximate& found, const Alone& alone) {
+    const System& system = at.system;
+    const Index n = system.n();
+    const VectorXd room = alone.r.head(n) - (found.y.head(n) - at.z).cwiseAbs();
+    Extent unique{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), 0, 0};
+    for (int b = 0; b < system.bodies; ++b) {
+        unique.length = std::min(unique.length, 0.999 * room.segment<3>(system.pose(b)).minCoeff());
+        unique.angle = std::min(unique.angle, 0.999 * 2 * room.segment<4>(system.pose(b) + 3).minCoeff());
+    }
+    // Reactions: as much of a wrench as their room has, by halves.
+    double force = std::numeric_limits<double>::infinity();
+    if (system.rows == 0) return {unique.length, unique.angle, force, force};
+    force = room.tail(system.rows).cwiseAbs().maxCoeff();
+    for (int halving = 0; halving < 60; ++halving, force /= 2) {
+        const Near near{unique.length, unique.angle, force, force * system.length};
+        if ((radii(at, near).tail(system.rows).array() <= room.tail(system.rows).array()).all())
+            return {unique.length, unique.angle, force, near.moment};
+        // With the poses' own share nothing may be left: then poses give way.
+        if (halving % 8 == 7) unique.length /= 4, unique.angle /= 4;
+    }
+    return {0, 0, 0, 0};
+}
+
+// ---- None within tolerance
+
+// Every equilibrium within tolerance has its z in z_s ± δ, and there  0 = E(z_s) + E'([z]) (z - z_s) + U μ. So for any y
+//
+//   |y E(z_s)| ≤ |y E'| δ + |y U| |μ|
+//
+// and a y that this does not hold for proves that there is none. Rows of Y are good ones: each asks for one unknown.
+bool none_within(const Problem& problem, const StateAt& at, const Tolerance& tolerance) {
+    const System& system = problem.system;
+    const Index n = system.n(), k = problem.border.count();
+    const Near near = near_of(tolerance);
+    const VectorXd delta = radii(at, near);
+    if (!delta.head(7 * system.bodies).allFinite()) return false;
+    const auto around_state = box(at.z, delta);
+    if (delta.allFinite() && wrenches_apart(at, around_state, near)) return true;
+
+    VectorXd y = VectorXd::Zero(n + k);
+    y.head(n) = at.z;
+    const Interval a = at.state.load;
+    const Values<double> here = evaluate(problem, doubles(y), at.state.load, Slopes::yes);
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::MatrixXd Y = inverse(Eigen::Map<const RowMajor>(here.J.data(), n + k, n + k));
+    if (!Y.allFinite()) return false;
+    const auto E = evaluate(system, thin(at.z), a, Slopes::no).E;
+    const auto J = evaluate(system, around_state, a, Slopes::yes).J;
+    // What an equilibrium may be held by and still be called one.
+    std::vector<Interval> mu(static_cast<std::size_t>(n));
+    for (Index i = 0; i < n && k > 0; ++i)
+        if (problem.border.U.row(i).cwiseAbs().maxCoeff() > 0) {
+            const double most = i < 6 * system.bodies ? tolerance.held : tolerance.gap;
+            mu[static_cast<std::size_t>(i)] = Interval(-most, most);
+        }
+    for (Index row = 0; row < n; ++row) {
+        Interval left, right;
+        std::vector<Interval> slopes(static_cast<std::size_t>(n));
+        for (Index i = 0; i < n; ++i) {
+            const Interval weight = Y(row, i);
+            if (is_zero(weight)) continue;
+            const auto at_i = static_cast<std::size_t>(i);
+            left += weight * (E[at_i] + mu[at_i]);
+            for (Index j = 0; j < n; ++j)
+                slopes[static_cast<std::size_t>(j)] +=
+                    weight * J[at_i * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)];
+        }
+        for (Index j = 0; j < n; ++j)
+            right += Interval(mag(slopes[static_cast<std::size_t>(j)])) * Interval(delta[j]);
+        if (mig(left) > right.hi) return true;
+    }
+    return false;
+}
+
+// The middle of the box as a state.
+Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
+    const System& system = at.system;
+    Equilibrium centre;
+    centre.load = at.state.load;
+    for (BodyId body = 0; body < system.bodies; ++body) {
+        const int k = system.pose(body);
+        centre.poses.push_back({z.segment<3>(k) + system.c,
+                                Eigen::Quaterniond(z[k + 3], z[k + 4], z[k + 5], z[k + 6]).normalized()});
+    }
+    const auto vector = [](const Vec<double>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+    for (const auto& wrench : wrenches(system, doubles(z), at.state.load))
+        centre.reactions.push_back({vector(wrench.force), vector(wrench.moment)});
+    return centre;
+}
+
+// ---- Words
+
+std::string on_knots(const System& system, const std::vector<Interval>& z, const Interval& a) {
+    std::string names;
+    const auto all = deformations(system, z, a);
+    const auto note = [&](const ScalarLaw& law, const Interval& x) {
+        const auto* curve = std::get_if<Curve>(&law);
+        return curve != nullptr && bounded(x) && over_a_knot(*curve, x);
+    };
+    for (std::size_t e = 0; e < all.size(); ++e) {
+        const bool on =
+            std::visit(overloaded{[&](const AxialSpring& spring) { return note(spring.law, all[e][0]); },
+                                  [&](const Bushing& bushing) {
+                                      const auto* law = std::get_if<PerAxis>(&bushing.law);
+                                      for (std::size_t k = 0; law != nullptr && k < 6; ++k)
+                                          if (note(law->axis[k], all[e][k])) return true;
+                                      return false;
+                                  }},
+                       system.model->elastics[e].kind);
+        if (on) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", system.model->elastics[e].name);
+    }
+    return names;
+}
+
+void say(std::string& detail, const std::string& more) {
+    if (more.empty()) return;
+    if (!detail.empty()) detail += "; ";
+    detail += more;
+}
+
+// What μ is, at most: in the balances what holds idle motions, in the rows Φ what stays open.
+void set_held(Certificate& certificate, const Problem& problem, const VectorXd& mu) {
+    const Index balances = 6 * problem.system.bodies;
+    const VectorXd all = problem.border.U.cwiseAbs() * mu * (1 + 1e-12);
+    if (all.size() == 0) return;
+    certificate.held = balances > 0 ? all.head(balances).maxCoeff() : 0;
+    certificate.gap = all.size() > balances ? all.tail(all.size() - balances).maxCoeff() : 0;
+}
+
+std::string theorem(const Problem& problem, const Certificate& certificate) {
+    std::string words;
+    const Border& border = problem.border;
+    if (border.count() > border.redundant)
+        say(words, fmt::format("idle motion of {} stands as in the state, held by at most {:.1e} N or N·m",
+                               idle_bodies(problem.system, border), certificate.held));
+    if (border.redundant > 0)
+        say(words,
+            fmt::format("joints {} hold more than once: they share as in the state, and stay open by at most "
+                        "{:.1e} m or rad",
+                        redundant_joints(problem.system, border), certificate.gap));
+    return words;
+}
+
+}  // namespace
+
+Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
+                    const Tolerance& tolerance) {
+    const System system = make_system(model, branch);
+    const StateAt at = state_at(system, state);
+    Certificate certificate;
+    certificate.unique = {0, 0, 0, 0};
+    const auto open = [&](const std::string& why) {
+        certificate.detail = why;
+        return certificate;
+    };
+    if (!arithmetic_is_as_proved())
+        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+    if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
+    if (system.n() > most_unknowns)
+        return open(fmt::format("{} unknowns are more than the {} for which a dense proof is worth its time",
+                                system.n(), most_unknowns));
+
+    const auto [problem, found] = approach(at);
+    const Interval a = state.load;
+
+    if (found.settled && found.y.allFinite()) {
+        const Box smallest_box = smallest(problem, found, state.load);
+        if (smallest_box.proved) {
+            const VectorXd& r = smallest_box.r;
+            const auto all = box(found.y, r);
+            const std::vector<Interval> z(all.begin(), all.begin() + system.n());
+            certificate.error = distance(at, z);
+            certificate.centre = centre_of(at, found.y.head(system.n()));
+            const VectorXd mu =
+                (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
+            set_held(certificate, problem, mu);
+            const bool balanced = certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
+            if (within(certificate.error, tolerance) && balanced) {
+                certificate.answer = Answer::proved;
+                certificate.unique = held_by(at, found, alone(problem, found, state.load));
+                certificate.stable = stable(problem, z, smallest_box.J);
+                say(certificate.detail, theorem(problem, certificate));
+                if (const auto knots = on_knots(system, z, a); !knots.empty())
+                    say(certificate.detail,
+                        fmt::format("{} on a knot of its curve, whose pieces are taken to meet there",
+                                    knots));
+                return certificate;
+            }
+        }
+    }
+    if (none_within(problem, at, tolerance)) {
+        certificate.answer = Answer::excluded;
+        if (std::isfinite(certificate.error.length))
+            certificate.detail =
+                fmt::format("the nearest one found is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
+                            1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
+                            certificate.error.force, certificate.error.moment);
+        if (certificate.held > tolerance.held)
+            say(certificate.detail, fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
+                                                idle_bodies(system, problem.border), certificate.held));
+        if (certificate.gap > tolerance.gap)
+            say(certificate.detail, fmt::format("joints {} stay open by {:.2g} m or rad",
+                                                redundant_joints(system, problem.border), certificate.gap));
+        return certificate;
+    }
+    if (!found.settled) return open("Newton's method settles nowhere near the state");
+    if (!std::isfinite(certificate.error.length))
+        return open(
+            "the test contracts in no box: the stiffness is too near to singular for doubles, or a law ends "
+            "here");
+    return open(fmt::format(
+        "an equilibrium is within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, which is more than "
+        "the tolerance, and none could not be shown",
+        1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
+        certificate.error.force, certificate.error.moment));
+}
+
+}  // namespace elastocheck::reference::certificate

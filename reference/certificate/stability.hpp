@@ -1,0 +1,15 @@
+// Whether every stiffness over a box is positive, by a Cholesky factorisation that is checked.
+#pragma once
+
+#include "reference/certificate/bordered.hpp"
+
+namespace elastocheck::reference::certificate {
+
+// xᵀ H x > 0 for every motion x that the joints leave free and that is not idle, H = -∂(balances)/∂(δr, δπ) anywhere in the
+// box; J by rows is the slopes of the problem over it. False: not shown.
+bool stable(const Problem& problem, const std::vector<Interval>& z, const std::vector<Interval>& J);
+
+// Whether every symmetric matrix within M ± R is positive definite.
+bool positive_definite(const Eigen::MatrixXd& M, const Eigen::MatrixXd& R);
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,207 @@
+#include "reference/certificate/state.hpp"
+
+#include <Eigen/QR>
+#include <stdexcept>
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+// The six numbers of a wrench as forces: moments over the model's length.
+template <class S>
+std::array<S, 6> stacked(const System& system, const JointWrench<S>& wrench) {
+    std::array<S, 6> w;
+    const S length = constant<S>(system.length);
+    for (std::size_t k = 0; k < 3; ++k) {
+        w[k] = wrench.force[k];
+        w[3 + k] = wrench.moment[k] / length;
+    }
+    return w;
+}
+JointWrench<Interval> given(const Equilibrium& state, std::size_t joint) {
+    const Wrench& wrench = state.reactions[joint];
+    return {constant<Interval>(wrench.force), constant<Interval>(wrench.moment)};
+}
+
+// At least √(Σ xₖ²).
+template <std::size_t n>
+double size_above(const std::array<Interval, n>& x) {
+    Interval sum;
+    for (const Interval& part : x) sum += sqr(part);
+    return sqrt(sum).hi;
+}
+
+// The angle between two orientations, q = p* p': at most, with s = |q⃗| / |q|, asin s ≤ s (1 + s²) for s ≤ ½.
+double angle_above(const Quat<Interval>& p, const Quat<Interval>& other) {
+    const Quat<Interval> q = product(conjugate(p), other);
+    const Interval sine = sqrt(squared(q.v)) / sqrt(squared(q.v) + sqr(q.w));
+    if (!(sine.hi <= 0.5)) return std::numbers::pi;
+    const Interval s = sine.hi;
+    return (Interval(2) * s * (Interval(1) + sqr(s))).hi;
+}
+
+Quat<Interval> quaternion(const System& system, const std::vector<Interval>& z, BodyId body) {
+    const auto at = [&](int k) { return z[static_cast<std::size_t>(system.pose(body) + 3 + k)]; };
+    return {at(0), {{at(1), at(2), at(3)}}};
+}
+
+// r - c as it is stored.
+Vec<Interval> place(const StateAt& at, BodyId body) {
+    Vec<Interval> r;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto i = static_cast<Index>(k);
+        r[k] = Interval(at.state.poses[static_cast<std::size_t>(body)].r[i]) - Interval(at.system.c[i]);
+    }
+    return r;
+}
+
+MatrixXd columns_at(const System& system, int joint, const VectorXd& z, double a) {
+    const auto units = unit_wrenches(system, joint, doubles(z), a);
+    MatrixXd C(6, static_cast<Index>(units.size()));
+    for (Index k = 0; k < C.cols(); ++k) {
+        const auto w = stacked(system, units[static_cast<std::size_t>(k)]);
+        for (Index i = 0; i < 6; ++i) C(i, k) = w[static_cast<std::size_t>(i)];
+    }
+    return C;
+}
+
+}  // namespace
+
+StateAt state_at(const System& system, const Equilibrium& state) {
+    if (state.poses.size() != static_cast<std::size_t>(system.bodies) ||
+        state.reactions.size() != system.model->joints.size())
+        throw std::invalid_argument(
+            "the state has not one pose a body and one reaction a joint of the model");
+    StateAt at{system, state, VectorXd::Zero(system.n()), {}};
+    for (BodyId body = 0; body < system.bodies; ++body) {
+        const Pose& pose = state.poses[static_cast<std::size_t>(body)];
+        const Eigen::Quaterniond p = pose.p.normalized();
+        at.z.segment<3>(system.pose(body)) = pose.r - system.c;
+        at.z.segment<4>(system.pose(body) + 3) << p.w(), p.x(), p.y(), p.z();
+    }
+    for (int joint = 0; joint < static_cast<int>(state.reactions.size()); ++joint) {
+        const MatrixXd C = columns_at(system, joint, at.z, state.load);
+        const auto rows = rows_of_joint(system, joint);
+        MatrixXd P(C.cols(), 6);
+        if (C.cols() > 0 && C.allFinite())
+            P = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(C).pseudoInverse();
+        const Wrench& wrench = state.reactions[static_cast<std::size_t>(joint)];
+        Vector6 w;
+        w << wrench.force, wrench.moment / system.length;
+        const VectorXd R = P * w;
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            at.z[7 * system.bodies + rows[k]] = R[static_cast<Index>(k)];
+        at.from_wrench.push_back(P);
+    }
+    return at;
+}
+
+// Poses: a unit quaternion turned by φ from another is within 2 sin(φ/4) ≤ φ/2 of it.
+//
+// Reactions: for z in the box of poses the wrench is w = C(z) R. With E = I - P C,
+//
+//   R - R₀ = P w - R₀ + E R     so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
+//
+// and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments count over L, as in w.
+VectorXd radii(const StateAt& at, const Near& near) {
+    const System& system = at.system;
+    VectorXd r = VectorXd::Zero(system.n());
+    for (BodyId body = 0; body < system.bodies; ++body) {
+        const int k = system.pose(body);
+        const Vec<Interval> place_of = place(at, body);
+        const Quat<Interval> p = direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p);
+        for (int i = 0; i < 3; ++i)
+            r[k + i] = (Interval(near.length) +
+                        Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(at.z[k + i]))))
+                           .hi;
+        const std::array<Interval, 4> parts{p.w, p.v[0], p.v[1], p.v[2]};
+        for (int i = 0; i < 4; ++i)
+            r[k + 3 + i] = (Interval(near.angle) * Interval(0.5) +
+                            Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(at.z[k + 3 + i]))))
+                               .hi;
+    }
+    const auto poses = box(at.z, r);
+    const Interval length = system.length;
+    for (int joint = 0; joint < static_cast<int>(at.from_wrench.size()); ++joint) {
+        const MatrixXd& P = at.from_wrench[static_cast<std::size_t>(joint)];
+        const auto units = unit_wrenches(system, joint, poses, Interval(at.state.load));
+        const auto rows = rows_of_joint(system, joint);
+        const auto w0 = stacked(system, given(at.state, static_cast<std::size_t>(joint)));
+        const std::size_t q = rows.size();
+        std::vector<Interval> R0;
+        for (const int row : rows) R0.push_back(at.z[7 * system.bodies + row]);
+        // In newtons: a row of direction is counted over L.
+        double most = 0, norm = 0;
+        std::vector<bool> moment;
+        for (const auto& constraint : system.model->constraints)
+            if (constraint.joint == joint)
+                for (int n = 0; n < elastocheck::rows(constraint.kind); ++n)
+                    moment.push_back(is_direction(constraint.kind));
+        const auto in_newtons = [&](const Interval& x, std::size_t i) { return moment[i] ? x / length : x; };
+        for (std::size_t i = 0; i < q; ++i) {
+            Interval sum = -R0[i], spread, rest_norm;
+            for (std::size_t k = 0; k < 6; ++k) {
+                const Interval p = P(static_cast<Index>(i), static_cast<Index>(k));
+                sum += p * w0[k];
+                spread += Interval(mag(p)) * (k < 3 ? Interval(near.force) : Interval(near.moment) / length);
+            }
+            for (std::size_t j = 0; j < q; ++j) {
+                Interval E = i == j ? Interval(1) : Interval(0);
+                const auto column = stacked(system, units[j]);
+                for (std::size_t k = 0; k < 6; ++k)
+                    E -= Interval(P(static_cast<Index>(i), static_cast<Index>(k))) * column[k];
+                spread += Interval(mag(E)) * Interval(mag(R0[j]));
+                // of R_j in newtons
+                const Interval scaled = moment[j] ? Interval(mag(E)) * length : Interval(mag(E));
+                rest_norm += in_newtons(scaled, i);
+            }
+            const Interval all = Interval(mag(sum)) + spread;
+            most = std::max(most, mag(in_newtons(all, i)));
+            norm = std::max(norm, mag(rest_norm));
+        }
+        const double within = norm < 1 ? (Interval(most) / (Interval(1) - Interval(norm))).hi
+                                       : std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < q; ++i)
+            r[7 * system.bodies + rows[i]] = moment[i] ? (Interval(within) * length).hi : within;
+    }
+    return r;
+}
+
+Extent distance(const StateAt& at, const std::vector<Interval>& z) {
+    Extent far{0, 0, 0, 0};
+    for (BodyId body = 0; body < at.system.bodies; ++body) {
+        const Vec<Interval> from = place(at, body);
+        const auto k = static_cast<std::size_t>(at.system.pose(body));
+        far.length = std::max(far.length,
+                              size_above(std::array{z[k] - from[0], z[k + 1] - from[1], z[k + 2] - from[2]}));
+        far.angle = std::max(
+            far.angle, angle_above(direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p),
+                                   quaternion(at.system, z, body)));
+    }
+    const auto all = wrenches(at.system, z, Interval(at.state.load));
+    for (std::size_t joint = 0; joint < all.size(); ++joint) {
+        const auto w = given(at.state, joint);
+        const auto df = all[joint].force - w.force, dm = all[joint].moment - w.moment;
+        far.force = std::max(far.force, size_above(df.x));
+        far.moment = std::max(far.moment, size_above(dm.x));
+    }
+    return far;
+}
+
+bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Near& near) {
+    const auto all = wrenches(at.system, z, Interval(at.state.load));
+    for (std::size_t joint = 0; joint < all.size(); ++joint) {
+        const auto w = given(at.state, joint);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (mig(all[joint].force[k] - w.force[k]) > near.force ||
+                mig(all[joint].moment[k] - w.moment[k]) > near.moment)
+                return true;
+    }
+    return false;
+}
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,163 @@
+#include "reference/certificate/system.hpp"
+
+#include <stdexcept>
+
+#include "models/branch.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+double value_of(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
+                                 [](const PointInPlane& c) { return c.offset; },
+                                 [](const PerpendicularDirections&) { return 0.0; },
+                                 [](const DistanceBetween& c) { return c.length; },
+                                 [](const DirectionAtAngle& c) { return c.angle; }},
+                      kind);
+}
+
+ElementPath undriven(const ElasticKind& kind) {
+    ElementPath path;
+    std::visit(overloaded{[&](const AxialSpring& spring) { path.free_length.start = spring.free_length; },
+                          [&](const Bushing& bushing) {
+                              for (std::size_t k = 0; k < 6; ++k)
+                                  path.preload[k].start = bushing.preload[static_cast<int>(k)];
+                          }},
+               kind);
+    return path;
+}
+
+// start + rate·a of a driver, `times` what it moves.
+void add(Affine& to, const Driver& driver, double times) {
+    to.start += Interval(times) * Interval(driver.start);
+    to.rate += Interval(times) * Interval(driver.rate);
+}
+
+template <class Kind>
+void expect_kind(const Model& model, int elastic, const char* has_no) {
+    const auto& element = model.elastics.at(static_cast<std::size_t>(elastic));
+    if (!std::holds_alternative<Kind>(element.kind))
+        throw std::invalid_argument("element '" + element.name + "' has no " + has_no + " to be driven");
+}
+
+void set_paths(System& system) {
+    const Model& model = *system.model;
+    for (const auto& constraint : model.constraints) {
+        system.values.push_back({value_of(constraint.kind), 0.});
+        system.first_row.push_back(system.rows);
+        system.rows += rows(constraint.kind);
+    }
+    for (const auto& elastic : model.elastics) system.elements.push_back(undriven(elastic.kind));
+    for (const auto& load : model.static_loads) system.loads.push_back({load.kind, {1., 0.}});
+    for (const auto& driver : system.branch->drivers)
+        std::visit(overloaded{[&](const Load& load) {
+                                  system.loads.push_back({load.kind, {driver.start, driver.rate}});
+                              },
+                              [&](const Motion& motion) {
+                                  const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
+                                  if (joint.driven < 0)
+                                      throw std::invalid_argument("joint '" + joint.name +
+                                                                  "' has no offset to be driven");
+                                  add(system.values[static_cast<std::size_t>(joint.driven)], driver, 1);
+                              },
+                              [&](const FreeLength& length) {
+                                  expect_kind<AxialSpring>(model, length.elastic, "free length");
+                                  add(system.elements[static_cast<std::size_t>(length.elastic)].free_length,
+                                      driver, 1);
+                              },
+                              [&](const Preload& preload) {
+                                  expect_kind<Bushing>(model, preload.elastic, "preload");
+                                  auto& path = system.elements[static_cast<std::size_t>(preload.elastic)];
+                                  for (std::size_t k = 0; k < 6; ++k)
+                                      add(path.preload[k], driver, preload.direction[static_cast<int>(k)]);
+                              }},
+                   driver.what);
+}
+
+bool resists_rotation(const SpatialLaw& law) {
+    return std::visit(overloaded{[](const LinearStiffness& u) {
+                                     return (u.K.bottomRows<3>().array() != 0).any() ||
+                                            (u.K.rightCols<3>().array() != 0).any();
+                                 },
+                                 [](const PerAxis& u) {
+                                     return !(is_zero(u.axis[3]) && is_zero(u.axis[4]) && is_zero(u.axis[5]));
+                                 }},
+                      law);
+}
+
+bool has_energy(const LoadKind& load) {
+    return std::visit(
+        overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
+                   [](const FollowerForce&) { return false; }, [](const FollowerMoment&) { return false; }},
+        load);
+}
+
+void set_formulations(System& system) {
+    for (const auto& load : system.loads)
+        if (body_of(load.kind) != ground && !has_energy(load.kind)) system.conservative = false;
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        const auto& elastic = system.model->elastics[e];
+        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr) continue;
+        ElementPath& path = system.elements[e];
+        path.rotational = resists_rotation(bushing->law);
+        for (std::size_t k = 3; k < 6; ++k)
+            path.rotational |= !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate);
+        const Formulation& f = bushing->formulation;
+        if (f.frame == Formulation::Frame::on_j || (f.frame == Formulation::Frame::middle && !f.conjugate))
+            throw std::invalid_argument("bushing '" + elastic.name +
+                                        "' has a frame that this leg has no law for");
+        if (!elastocheck::has_energy(f)) system.conservative = false;
+    }
+}
+
+// Where everything is counted from, and how large the model is. Neither changes what is proved.
+void set_size(System& system) {
+    std::vector<Vector3d> points;
+    const auto add = [&](BodyId body, const Vector3d& s_local) {
+        if (body == ground) return points.push_back(s_local);
+        const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
+        points.push_back(pose.r + pose.p * s_local);
+    };
+    const auto add_end =
+        overloaded{[&](const Point& p) { add(p.body, p.s_local); },
+                   [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
+    const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
+    for (const auto& body : system.model->bodies) points.push_back(body.design.r);
+    for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
+    for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
+    for (const auto& p : points) system.c += p / static_cast<double>(points.size());
+    double radius = 0;
+    for (const auto& p : points) radius = std::max(radius, (p - system.c).norm());
+    if (std::isfinite(radius) && radius > 0) system.length = radius;
+    if (!system.c.allFinite()) system.c.setZero();
+}
+
+}  // namespace
+
+System make_system(const Model& model, const Branch& branch) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("branch '" + branch.name +
+                                    "' wants one way from 0, and the model as it stands there (on_branch)");
+    System system;
+    system.model = &model;
+    system.branch = &branch;
+    system.bodies = static_cast<int>(model.bodies.size());
+    set_paths(system);
+    set_formulations(system);
+    set_size(system);
+    return system;
+}
+
+std::vector<int> rows_of_joint(const System& system, int joint) {
+    std::vector<int> all;
+    for (std::size_t c = 0; c < system.values.size(); ++c)
+        if (system.model->constraints[c].joint == joint)
+            for (int n = 0; n < rows(system.model->constraints[c].kind); ++n)
+                all.push_back(system.first_row[c] + n);
+    return all;
+}
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,184 @@
+// Points of the shipped scenes, by every leg: the right ones are proved, wrong ones are not.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "compare/legs.hpp"
+#include "compare/trim.hpp"
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "reference/certificate/certificate.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+// A model, one way of it, and what a leg found there.
+struct Walked {
+    compare::Way way;
+    compare::Leg leg;
+    std::vector<Equilibrium> points;
+};
+std::vector<Walked> walked(const std::string& scene, int points, const std::vector<compare::Leg>& legs) {
+    const Model model = compile(compare::trim(support::scene(scene)).scene);
+    std::vector<Walked> all;
+    for (const auto& branch : model.branches)
+        for (const auto& way : compare::ways_of(model, branch, points))
+            for (const auto leg : legs) {
+                compare::Gait gait;
+                gait.leg = leg;
+                const EquilibriumPath path = compare::walk(way, gait);
+                if (compare::is_not_asked(path.outcome)) continue;
+                EXPECT_EQ(path.outcome, Outcome::converged) << scene << " " << way.name << " " << path.detail;
+                all.push_back({way, leg, path.points});
+            }
+    return all;
+}
+const std::vector<compare::Leg> exact_legs{compare::Leg::equilibrium, compare::Leg::energy,
+                                           compare::Leg::series};
+
+std::string at(const std::string& scene, const Walked& walk, const Equilibrium& state, const Certificate& c) {
+    return fmt::format("{} '{}' by {} at {}: {}: {}", scene, walk.way.name, compare::name(walk.leg),
+                       state.load, name(c.answer), c.detail);
+}
+
+// The legs' own equations at the centre of the box, over what acts: nobody's fault is inherited, and none is made.
+void expect_met(const Residuals& r, double force, double length, const std::string& where) {
+    EXPECT_LE(r.length, 1e-11 * length) << where;
+    EXPECT_LE(r.direction, 1e-11) << where;
+    EXPECT_LE(r.force, 1e-9 * force) << where;
+    EXPECT_LE(r.moment, 1e-9 * force * length) << where;
+}
+
+TEST(Certificate, EveryPointOfEveryBuiltInSceneIsProvedWhicheverLegFoundIt) {
+    int proved = 0;
+    for (const auto& scene : support::scene_names())
+        for (const auto& walk : walked(scene, 1, exact_legs))
+            for (const auto& state : walk.points) {
+                const Certificate c = certify(walk.way.model, walk.way.branch, state);
+                ASSERT_EQ(c.answer, Answer::proved) << at(scene, walk, state, c);
+                EXPECT_LE(c.error.length, 1e-9) << at(scene, walk, state, c);
+                EXPECT_GT(c.unique.length, c.error.length) << at(scene, walk, state, c);
+                EXPECT_GT(c.unique.angle, c.error.angle) << at(scene, walk, state, c);
+                EXPECT_TRUE(c.stable) << at(scene, walk, state, c);
+                ++proved;
+            }
+    EXPECT_GT(proved, 700);
+}
+
+TEST(Certificate, TheOtherLegsEquationsHoldAtTheCentreOfTheBox) {
+    for (const auto& scene : support::scene_names())
+        for (const auto& walk : walked(scene, 1, {compare::Leg::equilibrium}))
+            for (const auto& state : walk.points) {
+                const Certificate c = certify(walk.way.model, walk.way.branch, state);
+                const auto where = at(scene, walk, state, c);
+                ASSERT_EQ(c.centre.poses.size(), state.poses.size()) << where;
+                // Rounding of the stiffest element over the model: some 1e10 N/m times an ulp of a metre.
+                expect_met(equilibrium::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
+                if (!support::has_potential(support::scene(scene))) continue;
+                expect_met(energy::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
+            }
+}
+
+// ---- Wrong points
+
+struct Point {
+    Model model;
+    Branch branch;
+    Equilibrium state;
+};
+Point mcpherson(double share) {
+    const Model model = compile(support::scene("mcpherson"));
+    const Branch way = ways(model.branches.front()).front();
+    Model on = on_branch(model, way);
+    const double a = share * way.to;
+    auto path = equilibrium::solve(on, way, std::span(&a, 1));
+    return {std::move(on), way, path.points.at(0)};
+}
+
+TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
+    const Point p = mcpherson(0.4);
+    ASSERT_EQ(certify(p.model, p.branch, p.state).answer, Answer::proved);
+    const auto excluded = [&](const std::string& what, const auto& change) {
+        Equilibrium wrong = p.state;
+        change(wrong);
+        const Certificate c = certify(p.model, p.branch, wrong);
+        EXPECT_EQ(c.answer, Answer::excluded) << what << ": " << name(c.answer) << " " << c.detail;
+        return c;
+    };
+    for (std::size_t body = 0; body < 3; ++body) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const double by : {1e-3, 1e-6, 1e-8}) {
+                const auto c = excluded(fmt::format("body {} moved by {} m along {}", body, by, axis),
+                                        [&](Equilibrium& s) { s.poses[body].r[axis] += by; });
+                if (by < 1e-3) {
+                    EXPECT_NE(c.detail.find("away"), std::string::npos) << c.detail;
+                }
+            }
+            if (body != 2)  // the strut's own spin is idle
+                excluded(fmt::format("body {} turned by 1e-3 about {}", body, axis), [&](Equilibrium& s) {
+                    s.poses[body].p =
+                        Eigen::Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::Unit(axis))) * s.poses[body].p;
+                });
+        }
+    }
+    for (std::size_t joint = 0; joint < p.state.reactions.size(); ++joint)
+        for (int axis = 0; axis < 3; ++axis) {
+            excluded(fmt::format("1 N of joint {} along {}", joint, axis),
+                     [&](Equilibrium& s) { s.reactions[joint].force[axis] += 1; });
+            excluded(fmt::format("1 N·m of joint {} about {}", joint, axis),
+                     [&](Equilibrium& s) { s.reactions[joint].moment[axis] += 1; });
+        }
+    for (const double by : {1., -1., 1e-2})
+        excluded(fmt::format("judged at {} N more", by), [&](Equilibrium& s) { s.load += by; });
+}
+
+// A spun strut is an equilibrium as well as the other; what pushes the spin is none.
+TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
+    const Point p = mcpherson(0.4);
+    const Certificate before = certify(p.model, p.branch, p.state);
+    EXPECT_NE(before.detail.find("idle motion of 'strut'"), std::string::npos) << before.detail;
+    EXPECT_GT(before.held, 0);
+    EXPECT_LT(before.held, 1e-9);
+    // About the axis of its tube, which goes through its origin, the top.
+    Equilibrium spun = p.state;
+    Pose& strut = spun.poses[2];
+    for (const auto& constraint : p.model.constraints)
+        if (const auto* row = std::get_if<PerpendicularDirections>(&constraint.kind)) {
+            if (row->i.body != 2 && row->j.body != 2) continue;
+            // axis_i ⟂ two directions across it on the strut: their cross product on the strut is the axis.
+            static std::vector<Vector3d> across;
+            across.push_back((row->i.body == 2 ? row->i : row->j).u_local);
+            if (across.size() < 2) continue;
+            strut.p =
+                strut.p * Eigen::Quaterniond(Eigen::AngleAxisd(0.3, across[0].cross(across[1]).normalized()));
+        }
+    EXPECT_GT(strut.p.angularDistance(p.state.poses[2].p), 0.29);
+    const Certificate after = certify(p.model, p.branch, spun);
+    EXPECT_EQ(after.answer, Answer::proved) << after.detail;
+
+    Model pushed = p.model;
+    pushed.static_loads.push_back({"push", FollowerMoment{2, Vector3d(0.1, 0.1, 0.1)}});
+    const Certificate c = certify(pushed, p.branch, p.state);
+    EXPECT_EQ(c.answer, Answer::excluded) << c.detail;
+    EXPECT_NE(c.detail.find("is pushed by"), std::string::npos) << c.detail;
+}
+
+TEST(Certificate, AStateThatIsNotOfTheModelIsRefusedAndNaNIsOpen) {
+    const Point p = mcpherson(0.1);
+    Equilibrium short_of = p.state;
+    short_of.poses.pop_back();
+    EXPECT_THROW(certify(p.model, p.branch, short_of), std::invalid_argument);
+    Equilibrium nan = p.state;
+    nan.poses[0].r[1] = std::nan("");
+    EXPECT_EQ(certify(p.model, p.branch, nan).answer, Answer::open);
+    nan = p.state;
+    nan.reactions[0].force[0] = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(certify(p.model, p.branch, nan).answer, Answer::open);
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::certificate
