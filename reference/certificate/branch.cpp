@@ -351,6 +351,20 @@ Extent distance(const Piece& piece, const StateAt& at) {
     return distance(at, z);
 }
 
+// What holds idle motions over the tube, what redundant rows stay open by.
+struct Held {
+    double held = 0, gap = 0;
+};
+Held held_over(const Walk& walk, const Piece& piece) {
+    const Index k = walk.border.count(), n = walk.system.n(), balances = 6 * walk.system.bodies;
+    if (k == 0) return {};
+    VectorXd mu = piece.r.tail(k);
+    for (Index i = 0; i < k; ++i) mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
+    const VectorXd all = walk.border.U.cwiseAbs() * mu * (1 + 1e-12);
+    return {balances > 0 ? all.head(balances).maxCoeff() : 0,
+            walk.system.rows > 0 ? all.segment(balances, walk.system.rows).maxCoeff() : 0};
+}
+
 }  // namespace
 
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
@@ -381,7 +395,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
 
     // As long as it goes; half of it where it does not, three fifths more where it did.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    double h = first_share * way, held = 0, gap = 0;
+    double h = first_share * way;
+    Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;
     if (!from.found) return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
     enclose(walk, from);
@@ -392,14 +407,22 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     while (tube.to != end) {
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
-        if (a1 == tube.to || std::abs(h) < shortest * std::abs(way))
+        if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
+            if (pushed.held > tolerance.held)
+                return open(fmt::format("past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m", tube.to,
+                                        idle_bodies(system, walk.border), pushed.held));
+            if (pushed.gap > tolerance.gap)
+                return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad", tube.to,
+                                        redundant_joints(system, walk.border), pushed.gap));
             return open(fmt::format("no piece is proved past {:.12g}: the branch turns back, divides, or meets a law that "
                                     "ends",
                                     tube.to));
+        }
         to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
         middle_node = walk.node(tube.to / 2 + a1 / 2);
         Piece piece;
         bool proved = false;
+        Held of_piece;
         // The boxes at both ends, within the tube.
         const auto joined = [&] { return all_less(from.box, piece.r) && all_less(to.box, piece.r); };
         const auto attempt = [&](const VectorXd& joint) {
@@ -415,6 +438,13 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         attempt(none);
         if (proved) enclose(walk, to);
         if (proved && to.box.size() > 0 && !joined()) attempt(1.1 * from.box.cwiseMax(to.box));
+        if (proved) {
+            of_piece = held_over(walk, piece);
+            if (of_piece.held > tolerance.held || of_piece.gap > tolerance.gap) {
+                pushed = of_piece;
+                proved = false;
+            }
+        }
         if (!proved || to.box.size() == 0 || !joined()) {
             h /= 2;
             halved = true;
@@ -430,26 +460,15 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
             width.angle = std::max(width.angle, 2 * piece.r.segment<4>(system.pose(b) + 3).norm());
         }
         raise(tube.width, width);
-        const Index k = walk.border.count();
-        if (k > 0) {
-            VectorXd mu = piece.r.tail(k);
-            for (Index i = 0; i < k; ++i)
-                mu[i] += mag(along<0>(piece, Interval(-1, 1), nullptr)[static_cast<std::size_t>(system.n() + i)].c[0]);
-            const VectorXd all = walk.border.U.cwiseAbs() * mu * (1 + 1e-12);
-            held = std::max(held, all.head(6 * system.bodies).maxCoeff());
-            if (system.rows > 0) gap = std::max(gap, all.segment(6 * system.bodies, system.rows).maxCoeff());
-        }
+        held.held = std::max(held.held, of_piece.held);
+        held.gap = std::max(held.gap, of_piece.gap);
+        pushed = {};
         ++tube.pieces;
         tube.to = a1;
         from = to;
         h *= 1.6;
         if (std::abs(h) > std::abs(way)) h = way;
     }
-    if (held > tolerance.held)
-        return open(fmt::format("the idle motion of {} is pushed by up to {:.2g} N or N·m",
-                                idle_bodies(system, walk.border), held));
-    if (gap > tolerance.gap)
-        return open(fmt::format("joints {} stay open by up to {:.2g} m or rad", redundant_joints(system, walk.border), gap));
     const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&
                       tube.width.force <= tolerance.force && tube.width.moment <= tolerance.moment;
     if (!near)
@@ -460,11 +479,11 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     tube.answer = Answer::proved;
     if (walk.border.count() > walk.border.redundant)
         tube.detail = fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
-                                  idle_bodies(system, walk.border), held);
+                                  idle_bodies(system, walk.border), held.held);
     if (walk.border.redundant > 0)
         tube.detail += fmt::format("{}joints {} hold more than once: they share as in the states, and stay open by at most "
                                    "{:.1e} m or rad",
-                                   tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), gap);
+                                   tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
     return tube;
 }
 

@@ -101,13 +101,14 @@ Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, do
     const VectorXd first = step(Y, F);
     Segment of;
     if (!first.allFinite()) return of;
-    const double least = delta > 0 ? 1e-22 : 1e-25;  // a point's box is to fit into a segment's
+    // A point's box is to fit into a segment's, even where both are only rounding.
+    const double least = delta > 0 ? 1e-22 : 1e-25, wider = delta > 0 ? 1.3 : 1.01;
     VectorXd r = (first * 1.5).cwiseMax(least);
     for (int trial = 0; trial < 8; ++trial) {
         of.rest = contraction(Y, evaluate(problem, box(y, r), Interval(0), Slopes::yes).J);
         if (!of.rest.finite) return of;
-        VectorXd next = (first * 1.01).cwiseMax(least);
-        for (int k = 0; k < 3; ++k) next = ((first + of.rest(next)) * 1.01).cwiseMax(least);
+        VectorXd next = (first * wider).cwiseMax(least);
+        for (int k = 0; k < 3; ++k) next = ((first + of.rest(next)) * wider).cwiseMax(least);
         if ((next.array() <= r.array()).all() && all_less((first + of.rest(next)) * (1 + 1e-14), next)) {
             of.r = next;
             of.proved = true;
@@ -169,8 +170,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
                 mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
                 all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
             const SlopeOf slope = slope_of_a(end.Y, point.rest);
-                if (getenv("DBG")) fmt::print("  side {} on {} sigma {} {} slope {} +- {} inside {} {}\n", side, on_segment, sigma.lo, sigma.hi, slope.middle, slope.radius, ((end.y-top.y).cwiseAbs()+point.r).cwiseQuotient(all.r).maxCoeff(), [&]{ Index w; ((end.y-top.y).cwiseAbs()+point.r).cwiseQuotient(all.r).maxCoeff(&w); return fmt::format("{} {} {} {}", w, end.y[w]-top.y[w], point.r[w], all.r[w]); }());
-            if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
+                if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
             sign[side] = slope.middle > 0 ? 1 : -1;
             a[side] = around(end.y[n - 1], point.r[n - 1]);
         }
