@@ -50,6 +50,20 @@ std::vector<Compliance> compliance_of(const Model& model, const Way& way, const 
     return list;
 }
 
+// Of a path that ended too early the points that there are: they are none the less equilibria, or not.
+Tally proved(const Way& way, const LegRun& run) {
+    Tally tally;
+    std::vector<double> done;
+    const auto& [front, start, middle, back] = run.landmarks;
+    for (const auto* state : {&start, &middle, &front, &back}) {
+        if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
+        done.push_back((*state)->load);
+        tally.add((*state)->load, run.curve.unit,
+                  reference::certificate::certify(way.model, way.branch, **state));
+    }
+    return tally;
+}
+
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
            const std::vector<Way>& ways, const Gait& gait) {
     LegRun run;
@@ -198,6 +212,10 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                             channels[c].name, off, symbol(channels[c].unit), bound),
                 part);
     }
+    for (const LegRun* run : {&equilibrium, &second})
+        if (run->proved.excluded > 0)
+            objections.add(fmt::format("the {} leg's point is provably no equilibrium: {}", name(run->leg),
+                                       run->proved.not_proved));
     // Whoever can judge states without having made them: the series is of the recursive leg's equations.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge}, {&second, Leg::equilibrium}};
@@ -271,6 +289,10 @@ Comparison compare(const Model& model, const Options& options) {
             if (options.progress) options.progress(fmt::format("{}: series", branch.name));
             b.runs.push_back(
                 run(model, result.channels, branch, ways[k], {.leg = Leg::series, .every = options.every}));
+        }
+        if (options.prove) {
+            if (options.progress) options.progress(fmt::format("{}: proofs", branch.name));
+            for (LegRun& run : b.runs) run.proved = proved(ways[k].front(), run);
         }
         for (std::size_t c = 0; c < result.channels.size(); ++c)
             b.determined[c] = b.determined[c] && !is_undefined_somewhere(result.channels[c], c, b.runs);

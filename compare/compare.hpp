@@ -14,6 +14,7 @@
 #include "compare/curve.hpp"
 #include "compare/deviation.hpp"
 #include "compare/legs.hpp"
+#include "compare/proof.hpp"
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
 #include "recursive/solve.hpp"
@@ -43,6 +44,7 @@ struct LegRun : Walked {
         // forces are NaN by the energy leg's where there is no energy
     Scale scale = {};  // of what acts over the points
     Landmarks landmarks = {};
+    Tally proved = {};  // of the landmarks; none where nobody asked
     std::vector<Compliance> compliance =
         {};  // at front, start and back, as far as they are apart; of a scene with wheels
 };
@@ -115,7 +117,9 @@ struct Options {
     recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
     int every = 1;                      // of its steps, each of which is compared (Gait)
     Agreement agreement;
-    std::string abscissa = {};                            // name of a channel; empty: default_abscissa
+    std::string abscissa = {};  // name of a channel; empty: default_abscissa
+    bool prove =
+        true;  // that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; one that provably is none objects
     std::function<void(std::string_view)> progress = {};  // told what is being solved
 };
 

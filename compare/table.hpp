@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "compare/certify.hpp"
 #include "compare/compare.hpp"
 #include "compare/elements.hpp"
 #include "compare/findings.hpp"
@@ -53,5 +54,6 @@ Table order_table(const std::vector<BranchOrders>& orders);
 Table precision_table(const PrecisionStudy& study);
 Table floor_table(const PrecisionStudy& study);  // where more steps stop helping
 Table trade_table(const Trade& trade);
+Table certify_table(const CertifyStudy& study);  // per way and solver
 
 }  // namespace elastocheck::compare

@@ -13,6 +13,7 @@
 #include "models/reader/scene_file.hpp"
 #include "models/reader/words.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/certify_command.hpp"
 #include "reports/command/completion.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/documentation.hpp"
@@ -118,6 +119,7 @@ int run(int argc, char** argv) {
     std::string template_name;
     new_command->add_option("NAME", template_name, "of the scene to print")->check(such_as(templates()));
     const GateCommand gate_command = add_gate(app, progress);
+    const CertifyCommand certify_command = add_certify(app);
     auto* completion_command =
         app.add_subcommand("completion", "Print the completion of this command for a shell")->group("");
     std::string shell;
@@ -246,6 +248,7 @@ int run(int argc, char** argv) {
             return solve(scene, settings, solve_request, delivery);
         }
         if (*gate_command.parsed) return gate_command.run();
+        if (*certify_command.parsed) return certify_command.run(command);
         if (*converge_command) return converge(scene, settings, rungs, levels, delivery);
         return trade(scene, settings, tolerance, delivery);
     } catch (const CLI::Success& done) {

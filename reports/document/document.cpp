@@ -1,5 +1,8 @@
 #include "reports/document/document.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "compare/findings.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
@@ -88,6 +91,25 @@ json curve_json(const compare::Curve& curve, const std::vector<double>& constrai
     return {{"a", curve.a}, {"constraint_error", constraint_error}, {"values", values}};
 }
 
+json proof_json(const compare::Tally& tally) {
+    const bool any = tally.proved > 0;
+    const auto number = [&](double value) {
+        return any && std::isfinite(value) ? json(value) : json(nullptr);
+    };
+    constexpr double degrees = 180 / std::numbers::pi;
+    return {{"points", tally.points},
+            {"proved", tally.proved},
+            {"excluded", tally.excluded},
+            {"stable", tally.stable},
+            {"off_at_most_mm", number(1e3 * tally.error.length)},
+            {"off_at_most_deg", number(degrees * tally.error.angle)},
+            {"off_at_most_N", number(tally.error.force)},
+            {"off_at_most_Nm", number(tally.error.moment)},
+            {"alone_within_mm", number(1e3 * tally.unique.length)},
+            {"not_proved", tally.not_proved},
+            {"says_also", tally.theorem}};
+}
+
 json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& channels) {
     json judged = json::object();
     for (const Leg by : compare::legs)
@@ -99,6 +121,7 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
             {"counts", counts_json(run.counts)},
             {"seconds", run.seconds},
             {"residuals_by", judged},
+            {"proof", run.proved.points > 0 ? proof_json(run.proved) : json(nullptr)},
             {"curve", curve_json(run.curve, run.constraint_error, channels)}};
 }
 

@@ -2,21 +2,26 @@
 # Alarms that are shown to ring: puts each fault of faults.txt into a copy of the tree, rebuilds what changed, runs
 # the alarms (every GoogleTest suite, the gate on every scene) and writes the matrix fault × alarm.
 #
-#   mutate.sh [-n] [-s] [-o DIR] [-w WORK] [FAULT...]
+#   mutate.sh [-n] [-o DIR] [-w WORK] [FAULT...]
+#   mutate.sh -s [-w WORK]
 #
-# FAULT: names from faults.txt, default all, with -s the sample; -n only looks whether each still has its place in
-# the code. DIR gets results.md and results.csv (default: here). WORK keeps the copy, its build and what was found
-# between runs (default: build/mutation). Exit code 1: a fault survived, or an alarm rings without a fault.
+# FAULT: names from faults.txt, default all; -n only looks whether each still has its place in the code. DIR gets
+# results.md and results.csv (default: here). WORK keeps the copy, its build and what was found between runs (default:
+# build/mutation). Exit code 1: a fault survived, or an alarm rings without a fault.
+#
+# -s: the sample, in minutes: no copy, but this checkout and its release build, right after its tests have passed. Each
+# fault is put into its file, only the suite named beside it (`sample SUITE`) is built and run, and the file is put back,
+# also when this is interrupted; after a kill the next run does so first.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 output=$here
 work=$root/build/mutation
-dry='' chosen=''
+dry='' chosen='' root_is_mutated=''
 while getopts nso:w: option; do
     case $option in
     n) dry=yes ;;
-    s) chosen=sample ;;
+    s) chosen=sample root_is_mutated=yes ;;
     o) output=$OPTARG ;;
     w) work=$OPTARG ;;
     *) exit 2 ;;
@@ -26,6 +31,10 @@ shift $((OPTIND - 1))
 faults=$here/faults.txt
 tree=$work/tree
 build=$work/build
+if [ "$root_is_mutated" ]; then
+    tree=$root
+    build=$root/build/release
+fi
 unset CI GITHUB_ACTIONS  # the copy's baselines are not committed anywhere
 
 # field FAULT KEY: its value in faults.txt
@@ -59,6 +68,7 @@ files() { field "$1" file && field "$1" also-file; }
 # The sound files are kept, so that the tree may be worked on meanwhile.
 apply() {
     rm -rf "$work/kept"
+    mkdir -p "$work/kept"
     for file in $(files "$1" | sort -u); do
         mkdir -p "$(dirname "$work/kept/$file")" && cp -p "$tree/$file" "$work/kept/$file"
     done
@@ -66,7 +76,10 @@ apply() {
     [ -z "$(field "$1" also-file)" ] || replace "$1" also-
 }
 # Newer than what was built from the fault.
-revert() { for file in $(files "$1" | sort -u); do cp "$work/kept/$file" "$tree/$file"; done; }
+revert() {
+    for file in $(files "$1" | sort -u); do cp "$work/kept/$file" "$tree/$file"; done
+    rm -rf "$work/kept"
+}
 
 # The alarms one by one, as "suite" lines of what is run, in the order in which they are asked.
 alarms() {
@@ -112,6 +125,35 @@ if [ $# -eq 0 ]; then set -- $(names); fi
 for fault in "$@"; do
     [ -n "$(field "$fault" file)" ] || { echo "mutate: no fault '$fault' in faults.txt" >&2; exit 2; }
 done
+
+if [ "$root_is_mutated" ]; then
+    # put_back: what a fault, of this run or of one that was killed, has left in the checkout.
+    put_back() {
+        [ ! -d "$work/kept" ] || (cd "$work/kept" && find . -type f) | while read -r file; do
+            cp "$work/kept/$file" "$root/$file"
+        done
+        rm -rf "$work/kept"
+    }
+    put_back
+    trap put_back EXIT
+    trap 'exit 130' INT TERM HUP
+    survived=0
+    for fault in "$@"; do
+        suite=$(field "$fault" sample)
+        apply "$fault" || exit 2
+        cmake --build "$build" --target "$(basename "$suite")" >"$work/build.log" 2>&1 || {
+            echo "mutate: $fault does not compile" >&2
+            tail -5 "$work/build.log" >&2
+            exit 2
+        }
+        timeout 400 "$build/tests/$suite" --gtest_brief=1 >"$work/sample.log" 2>&1 || echo "exit $?" >>"$work/sample.log"
+        revert "$fault"
+        first=$(awk -v run="$(basename "$suite")" -f "$here/tests_that_rang.awk" "$work/sample.log" | head -1 | cut -f2)
+        echo "$fault: ${first:-SURVIVED}"
+        [ "$first" ] || survived=1
+    done
+    exit "$survived"
+fi
 
 # What differs gets a new time, older sources included and what an interrupted run left: a build goes by times.
 mkdir -p "$tree" "$output"

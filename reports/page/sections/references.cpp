@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
@@ -35,11 +36,24 @@ std::optional<Section> references_section(const Field& scene) {
                            {"factorisations"},
                            {"iterations"},
                            {"evaluations"}}};
+    Table proofs{
+        .caption =
+            "What is proved by interval arithmetic, of the points at the start, the middle and the ends",
+        .columns = {{"branch", true},
+                    {"points of", true},
+                    {"proved"},
+                    {"off at most [mm]"},
+                    {"at most [deg]"},
+                    {"at most [N]"},
+                    {"alone within [mm]"},
+                    {"stable"},
+                    {"remark", true}}};
     bool times = false;
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
     if (times) work.columns.push_back({"time [ms]"});
     const auto channels = channels_of(scene);
+    std::set<std::string> said;
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
         const Field apart = branch["reference_uncertainty"]["at_equal_parameter"];
@@ -66,6 +80,24 @@ std::optional<Section> references_section(const Field& scene) {
                                            number(residuals["force_N"].number(), 2),
                                            number(residuals["moment_Nm"].number(), 2),
                                            number(residuals["constraint_mm"].number(), 2)});
+            if (const auto proof = leg.find("proof")) {
+                const int points = (*proof)["points"].whole(), proved = (*proof)["proved"].whole(),
+                          excluded = (*proof)["excluded"].whole();
+                const std::string remark = excluded == points && points > 0
+                                               ? std::string("provably off by more")
+                                               : (*proof)["not_proved"].text();
+                const auto size = [&](const char* key) {
+                    return proved > 0 ? number((*proof)[key].number(), 2) : std::string("–");
+                };
+                proofs.rows.push_back(
+                    {name, leg["leg"].text(), fmt::format("{} of {}", proved, points), size("off_at_most_mm"),
+                     size("off_at_most_deg"), size("off_at_most_N"), size("alone_within_mm"),
+                     proved > 0 ? fmt::format("{} of {}", (*proof)["stable"].whole(), proved)
+                                : std::string("–"),
+                     remark});
+                if (proved > 0) section.words["proofs"] = true;
+                if (const std::string also = (*proof)["says_also"].text(); !also.empty()) said.insert(also);
+            }
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
                 name, leg["leg"].text(),
@@ -98,7 +130,8 @@ std::optional<Section> references_section(const Field& scene) {
         agreement.caption =
             "How far the second reference is from the one by equilibrium, worst over the branch";
     judged.folded = true;
-    section.tables = {agreement, judged, work};
+    for (const auto& theorem : said) section.words["says_also"].push_back(theorem);
+    section.tables = {agreement, proofs, judged, work};
     return section;
 }
 

@@ -1,0 +1,25 @@
+// Proofs, as people read them on a terminal and as a part of result.json.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "compare/certify.hpp"
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+
+extern const std::vector<Shown> certify_columns;  // of compare::certify_table, on the terminal and the page
+
+// What is claimed of a proved point, and what is not: one paragraph, for text and page alike.
+std::string what_is_proved(const compare::CertifyStudy& study);
+
+// "63 of 63 points proved: ..." or what is not.
+std::string sentence(const compare::CertifyStudy& study);
+
+std::string certify_text(const compare::CertifyStudy& study);
+
+// {tolerance, proved, points, says, ways}: the table of compare::certify_table.
+nlohmann::ordered_json certify_json(const compare::CertifyStudy& study);
+
+}  // namespace elastocheck::reports

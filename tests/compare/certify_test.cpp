@@ -1,0 +1,90 @@
+// What of a path is proved, and what a comparison makes of it.
+#include <gtest/gtest.h>
+
+#include "compare/certify.hpp"
+#include "compare/compare.hpp"
+#include "models/compile.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+CertifyOptions by(Leg leg, int points = 4) {
+    CertifyOptions options;
+    options.tolerance = parse_tolerance(claimed_accuracy);
+    options.solvers = {{.leg = leg}};
+    options.points = points;
+    return options;
+}
+
+TEST(Certify, EveryWayOfEveryBranchIsProvedByEachReference) {
+    const Model model = compile(support::scene("mcpherson"));
+    for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
+        const CertifyStudy study = certify(model, by(leg));
+        std::size_t ways = 0;
+        for (const Branch& branch : model.branches) ways += ways_of(model, branch).size();
+        ASSERT_EQ(study.ways.size(), ways);
+        EXPECT_TRUE(study.conclusive());
+        for (const CertifiedWay& way : study.ways) {
+            EXPECT_GE(way.tally.points, 5) << way.branch;
+            EXPECT_EQ(way.tally.proved, way.tally.points) << way.branch << ": " << way.tally.not_proved;
+            EXPECT_LE(way.tally.error.length, 1e-9) << way.branch;
+            EXPECT_GT(way.tally.unique.length, way.tally.error.length) << way.branch;
+        }
+    }
+}
+
+TEST(Certify, WhatThePublishedRecursionFindsIsExcluded) {
+    CertifyOptions options = by(Leg::recursive);
+    const CertifyStudy study = certify(compile(support::scene("mcpherson")), options);
+    EXPECT_TRUE(study.excluded());
+    EXPECT_FALSE(study.conclusive());
+}
+
+TEST(Certify, NothingProvedIsNotConclusive) { EXPECT_FALSE(CertifyStudy{}.conclusive()); }
+
+TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
+    CertifyStudy study;
+    CertifiedWay& way = study.ways.emplace_back();
+    way.unit = Unit::newton;
+    Certificate proved;
+    proved.answer = Answer::proved;
+    proved.error = {1e-12, 1e-12, 1e-9, 1e-9};
+    proved.unique = {1e-4, 1e-4, 1, 1};
+    way.tally.add(0, way.unit, proved);
+    EXPECT_TRUE(study.conclusive());
+    Certificate open;
+    open.detail = "the box is too wide";
+    way.tally.add(120, way.unit, open);
+    EXPECT_FALSE(study.conclusive());
+    EXPECT_FALSE(study.excluded());
+    EXPECT_EQ(way.tally.not_proved, "open at 120 N: the box is too wide");
+    EXPECT_EQ(way.tally.error.length, 1e-12);  // of the proved alone
+}
+
+TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
+    Scene scene = support::scene("pinned_bar");
+    scene.branches.resize(1);
+    const Model model = compile(scene);
+    Comparison found = compare(model);
+    ASSERT_TRUE(found.conclusive());
+    BranchComparison& branch = found.branches[0];
+    EXPECT_GT(branch.runs[1].proved.points, 0);
+    EXPECT_EQ(branch.runs[1].proved.proved, branch.runs[1].proved.points);
+    branch.runs[1].proved.excluded = 1;
+    branch.runs[1].proved.not_proved = "excluded at 3 N";
+    const Objections objections = disagreements(model, found.channels, model.branches[0], branch);
+    ASSERT_FALSE(objections.empty());
+    EXPECT_NE(objections.worst.front().what.find("provably no equilibrium: excluded at 3 N"),
+              std::string::npos)
+        << objections.worst.front().what;
+}
+
+TEST(Certify, AComparisonProvesNothingWhereNobodyAsks) {
+    Options options;
+    options.prove = false;
+    EXPECT_EQ(compare(compile(support::scene("pinned_bar")), options).branches[0].runs[1].proved.points, 0);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
