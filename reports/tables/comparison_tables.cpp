@@ -122,6 +122,20 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     }
 }
 
+// What interval arithmetic proves of the points at the start, the middle and the ends.
+void proofs(const compare::BranchComparison& branch, std::string& text) {
+    std::string line;
+    for (const auto& run : branch.runs) {
+        const compare::Tally& t = run.proved;
+        if (t.points == 0) continue;
+        line += fmt::format("{} {} {} of {}", line.empty() ? "  proved:" : ",", name(run.leg), t.proved,
+                            t.points);
+        if (t.proved > 0) line += fmt::format(" within {:.1e} mm", 1e3 * t.error.length);
+        if (t.excluded > 0) line += fmt::format(" ({} provably off by more than 1e-6 mm or deg)", t.excluded);
+    }
+    if (!line.empty()) text += line + '\n';
+}
+
 // The wheel rates, and with a tyre the ride rates, of the branches that lift a wheel.
 void rates(const std::vector<compare::RateError>& errors, const compare::BranchComparison& branch,
            std::string& text) {
@@ -209,6 +223,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         rates(errors, branch, text);
         fmt::format_to(out, "\n");
         legs_table(branch, text);
+        proofs(branch, text);
         if (!branch.not_asked.empty()) text += not_asked(branch);
         fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())

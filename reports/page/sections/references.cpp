@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
 
 #include "reports/page/numbers.hpp"
 #include "reports/page/sections/common.hpp"
@@ -53,7 +52,7 @@ std::optional<Section> references_section(const Field& scene) {
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
     if (times) work.columns.push_back({"time [ms]"});
     const auto channels = channels_of(scene);
-    std::set<std::string> said;
+    bool said = false;  // of the theorem
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
         const Field apart = branch["reference_uncertainty"]["at_equal_parameter"];
@@ -81,11 +80,7 @@ std::optional<Section> references_section(const Field& scene) {
                                            number(residuals["moment_Nm"].number(), 2),
                                            number(residuals["constraint_mm"].number(), 2)});
             if (const auto proof = leg.find("proof")) {
-                const int points = (*proof)["points"].whole(), proved = (*proof)["proved"].whole(),
-                          excluded = (*proof)["excluded"].whole();
-                const std::string remark = excluded == points && points > 0
-                                               ? std::string("provably off by more")
-                                               : (*proof)["not_proved"].text();
+                const int points = (*proof)["points"].whole(), proved = (*proof)["proved"].whole();
                 const auto size = [&](const char* key) {
                     return proved > 0 ? number((*proof)[key].number(), 2) : std::string("–");
                 };
@@ -94,9 +89,11 @@ std::optional<Section> references_section(const Field& scene) {
                      size("off_at_most_deg"), size("off_at_most_N"), size("alone_within_mm"),
                      proved > 0 ? fmt::format("{} of {}", (*proof)["stable"].whole(), proved)
                                 : std::string("–"),
-                     remark});
+                     (*proof)["not_proved"].text()});
                 if (proved > 0) section.words["proofs"] = true;
-                if (const std::string also = (*proof)["says_also"].text(); !also.empty()) said.insert(also);
+                const std::string also = (*proof)["says_also"].text();
+                if (!said && !also.empty()) section.words["says_also"].push_back(also);
+                said = said || !also.empty();
             }
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
@@ -130,7 +127,6 @@ std::optional<Section> references_section(const Field& scene) {
         agreement.caption =
             "How far the second reference is from the one by equilibrium, worst over the branch";
     judged.folded = true;
-    for (const auto& theorem : said) section.words["says_also"].push_back(theorem);
     section.tables = {agreement, proofs, judged, work};
     return section;
 }
