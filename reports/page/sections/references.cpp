@@ -62,7 +62,9 @@ std::optional<Section> references_section(const Field& scene) {
             double worst = -1;
             for (const auto& channel : channels) {
                 const auto d = apart["channels"].find(channel.name);
-                if (channel.unit != unit || !d) continue;
+                // What is a length and no position, as a swing arm near endless, has a size of its own.
+                const bool place = channel.unit == "mm" || channel.unit == "deg";
+                if (channel.unit != unit || !d || (place && !channel.kinematic)) continue;
                 compared += (*d)["compared"].whole();
                 const double max = (*d)["max"].number();
                 if (std::isnan(max) || max > worst) worst = max;
