@@ -70,9 +70,10 @@ std::string certify_text(const compare::CertifyStudy& study) {
             const char* unit = symbol(way.unit);
             if (way.curve && way.curve->answer == compare::Answer::proved)
                 fmt::format_to(out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}\n",
-                               in_unit(way.unit) * way.curve->from, in_unit(way.unit) * way.curve->to, unit);
+                               in_unit(way.unit) * way.curve->from + 0.0, in_unit(way.unit) * way.curve->to,
+                               unit);
             if (way.limit && way.limit->answer == compare::Answer::proved)
-                fmt::format_to(out, "  the limit point is proved to lie between {:.16g} and {:.16g} {}\n",
+                fmt::format_to(out, "  a limit point is proved, between {:.16g} and {:.16g} {}\n",
                                in_unit(way.unit) * way.limit->from, in_unit(way.unit) * way.limit->to, unit);
             for (const std::string& what : {way.detail, way.tally.not_proved,
                                             way.curve && way.curve->answer != compare::Answer::proved
