@@ -72,7 +72,8 @@ std::vector<Task> tasks(const GateOptions& options) {
                                         (folder / for_terminal(entry.path().filename().string())).string(),
                                         wrong));
         try {
-            const BaselineFile file = parse_baseline(read_whole(entry.path()), entry.path().string());
+            const BaselineFile file =
+                parse_baseline(read_whole(entry.path(), largest_baseline), entry.path().string());
             all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
         } catch (const std::runtime_error& error) {  // BaselineError, FileError
             all.push_back({entry.path(), entry.path(), error.what()});
@@ -85,9 +86,20 @@ std::vector<Task> tasks(const GateOptions& options) {
     return all;
 }
 
+// The scene as its baseline names it: the way there, which may lead through folders with names that nobody can write down.
+std::string name_beside(const Task& task) {
+    // Absolute: of a folder that is not there yet, relative() does not know where it is.
+    const fs::path folder = fs::absolute(task.baseline).parent_path();
+    std::string name = fs::relative(fs::absolute(task.scene), folder).generic_string();
+    if (const std::string wrong = flaw(name); !wrong.empty())
+        throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text", name, wrong));
+    return name;
+}
+
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
-    if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
+    if (!options.from.empty())
+        return parse_baseline(read_whole(options.from, largest_baseline), options.from);
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
@@ -97,11 +109,9 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
             options.progress(fmt::format("{}: {}", task.scene.filename().string(), what));
         };
     BaselineFile file;
+    file.scene_file = name_beside(task);
     file.baseline.accepted = compare::measure(model, compare::compare(model, how));
     if (options.progress) options.progress("");
-    file.scene_file =
-        fs::relative(task.scene, task.baseline.parent_path().empty() ? "." : task.baseline.parent_path())
-            .generic_string();
     file.input_hash = input_hash(read_whole(task.scene));
     file.numbers = loaded.scene.numbers;
     file.provenance = provenance();
@@ -132,7 +142,8 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         return std::nullopt;
     }
     try {
-        BaselineFile file = parse_baseline(read_whole(task.baseline), task.baseline.string());
+        BaselineFile file =
+            parse_baseline(read_whole(task.baseline, largest_baseline), task.baseline.string());
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;
