@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -21,6 +22,8 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+using Construction = Variant::Construction;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -116,7 +119,15 @@ struct WayRun {
 
 struct TrialRun {
     std::vector<WayRun> ways;
+    double seconds = 0;  // of processor time
 };
+
+// Of this thread. Other jobs of the machine do not count.
+double processor_time() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 // Exact but for rounding.
 ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
@@ -172,9 +183,9 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
     std::vector<Equilibrium> states;
     for (const auto& solver : solvers) {
         Found& found = run.found.emplace_back();
-        if (variant.many_steps && !is_reference(solver) && !has_steps(solver.gait.recursion.method) &&
-            way.branch.steps > 1000)
-            continue;  // its steps are its own: asked elsewhere
+        if (!variant.asked.empty() && !is_reference(solver) &&
+            std::ranges::find(variant.asked, solver.name) == variant.asked.end())
+            continue;
         Gait gait = solver.gait;
         gait.every = every;
         try {
@@ -195,18 +206,25 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
     run.reach = run.size;
     for (const auto& body : way.model.bodies)
         run.reach = std::max(run.reach, body.design.r.cwiseAbs().maxCoeff());
-    for (std::size_t k = 0; k < run.points; ++k) run.known.push_back(agreed(solvers, run, k));
+    for (std::size_t k = 0; k < run.points; ++k)
+        run.known.push_back(variant.known == Construction::nothing_moves
+                                ? Known{Knowledge::construction,
+                                        stand(way.model, run.places, design_state(way.model)),
+                                        {eps * run.reach, eps}}
+                                : agreed(solvers, run, k));
     return run;
 }
 
 TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
     TrialRun result;
+    const double start = processor_time();
     const Model model = compile(trial.variant.scene);
     for (const auto& branch : model.branches)
         for (const auto& way : ways_of(model, branch)) {
             if (way.branch.drivers.empty()) continue;
             result.ways.push_back(walk_all(trial.variant, way, solvers));
         }
+    result.seconds = processor_time() - start;
     return result;
 }
 
@@ -370,7 +388,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     const std::string end = ended(solvers, run);
     if (found.stands.size() < run.points)
         cell.verdict = Verdict::wrong, cell.why = "converged, and points are missing";
-    else if (trial.variant.impossible)
+    else if (trial.variant.known == Construction::no_equilibrium)
         cell.verdict = Verdict::wrong, cell.why = "converged where by construction nothing is in equilibrium";
     else if (!end.empty())
         cell.verdict = Verdict::wrong, cell.why = "converged where both references say: " + end;
@@ -404,6 +422,7 @@ std::vector<std::string> distinct(std::span<const T> all, std::string T::*member
 const char* name(Knowledge knowledge) {
     switch (knowledge) {
         case Knowledge::none: return "none";
+        case Knowledge::construction: return "construction";
         case Knowledge::references: return "references";
         case Knowledge::retold: return "the scene itself";
     }
@@ -479,6 +498,9 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
 
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];
+        survival.seconds += runs[t].seconds;
+        if (runs[t].seconds > survival.dearest.seconds)
+            survival.dearest = {trial.scene, trial.variant.label, runs[t].seconds};
         if (!trial.variant.skipped.empty())
             survival.skipped.push_back(
                 {trial.scene, trial.sweep, trial.variant.label, trial.variant.skipped});
@@ -501,12 +523,14 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
 }
 
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
-          const std::string& solver) {
+          const std::string& solver, const std::string& variant) {
     char result = '.';
     double digits = std::numeric_limits<double>::infinity();
     bool unjudged = false;
     for (const auto& cell : survival.cells) {
-        if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver) continue;
+        if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver ||
+            (!variant.empty() && cell.variant != variant))
+            continue;
         if (cell.verdict == Verdict::wrong) return 'X';
         if (result == '.') result = '!';
         unjudged |= cell.verdict == Verdict::unjudged;

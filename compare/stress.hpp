@@ -43,9 +43,10 @@ struct Variant {
     std::string label;                     // "as it is", "rates of 'coil' times 1e+06"
     Scene scene;                           // without a trim
     std::optional<Retelling> retold = {};  // of the scene as it is: whatever is found is the same
-    bool impossible = false;   // by construction there is no equilibrium: whoever finds one is wrong
-    bool many_steps = false;   // asked of the methods that take as many steps as they are told
-    std::string skipped = {};  // why nobody is asked
+    // What is known of it by construction, whoever solves it.
+    enum class Construction { nothing, no_equilibrium, nothing_moves } known = Construction::nothing;
+    std::vector<std::string> asked = {};  // solvers beside the references; none: all
+    std::string skipped = {};             // why nobody is asked
 };
 
 // A name, and what it makes of a scene. Every branch of the scene as it is; of all else the first.
@@ -55,12 +56,13 @@ struct Sweep {
 };
 
 struct Trial {
-    std::string scene;  // whose row it is in
-    std::string sweep;  // ... and column
+    std::string scene;  // whose row of the map it is in
+    std::string sweep;  // ... and column; of the sweep `extreme` each variant has a row of its own
     Variant variant;
 };
 
 inline constexpr std::string_view as_it_is = "as it is";  // the sweep that has only the scene itself
+inline constexpr std::string_view extreme = "extreme";    // scenes that are so by their making
 std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps);
 
 // The sweeps that any scene stands: sweeps.cpp.
@@ -77,8 +79,9 @@ std::vector<Solver> solvers();
 
 enum class Knowledge {
     none,
-    references,  // two that share no equation are within their claims of each other
-    retold,      // the same mechanism as it was drawn, whose state is known
+    construction,  // of the scene: Variant::known
+    references,    // two that share no equation are within their claims of each other
+    retold,        // the same mechanism as it was drawn, whose state is known
 };
 const char* name(Knowledge knowledge);
 
@@ -113,6 +116,11 @@ struct Survival {
         std::string scene, sweep, variant, why;
     };
     std::vector<Skipped> skipped;
+    double seconds = 0;  // of processor time, all threads
+    struct Dearest {
+        std::string scene, variant;
+        double seconds = 0;
+    } dearest;  // trial
     int count(Verdict verdict) const;
     int judged() const;  // right, unpromised, honest or wrong
 };
@@ -130,6 +138,6 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options = {}
 //   ?  converged, and nothing is known                                .  not asked
 //   X  wrong
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
-          const std::string& solver);
+          const std::string& solver, const std::string& variant = {});  // of one variant alone
 
 }  // namespace elastocheck::compare
