@@ -11,7 +11,7 @@
 // The true error of a state lies between |x - x_T| - e and |x - x_T| + e, x_T a state that is known to within e. A claim is
 // broken where the lower end is above it. What is known, and how: Knowledge. Wrong is as well who converges where both
 // references say that the branch ends, who answers otherwise when the same mechanism is told otherwise, and a reference that
-// says then that the branch ends, when it does not.
+// says that the branch ends where another's states are proved at every point, or where it goes on when told otherwise.
 //
 // A body that an idle mode moves is anywhere along it, so such bodies are not looked at.
 #pragma once
@@ -80,6 +80,7 @@ std::vector<Solver> solvers();
 enum class Knowledge {
     none,
     construction,  // of the scene: Variant::known
+    proved,        // by the certificate, from the state of a reference or of the series
     references,    // two that share no equation are within their claims of each other
     retold,        // the same mechanism as it was drawn, whose state is known
 };
@@ -89,6 +90,7 @@ enum class Verdict {
     right,       // converged, within what is claimed
     unpromised,  // converged, and claims nothing: its digits
     honest,      // another outcome, or an account that says that no digit is right
+    elsewhere,   // converged, at another equilibrium of the same load that is proved as well
     unjudged,    // converged, and nothing is known
     wrong,
 };
@@ -122,7 +124,7 @@ struct Survival {
         double seconds = 0;
     } dearest;  // trial
     int count(Verdict verdict) const;
-    int judged() const;  // right, unpromised, honest or wrong
+    int judged() const;  // all but the unjudged
 };
 
 struct StressOptions {
@@ -135,7 +137,8 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options = {}
 // ---- The map: what a solver came to in all trials of a scene and a sweep, one sign.
 //
 //   0 ... 9  digits of the worst that converged (9: nine or more)     !  every outcome was honest
-//   ?  converged, and nothing is known                                .  not asked
+//   ~  another equilibrium than that of the branch                    .  not asked
+//   ?  converged, and nothing is known
 //   X  wrong
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
           const std::string& solver, const std::string& variant = {});  // of one variant alone

@@ -16,8 +16,8 @@ using json = nlohmann::ordered_json;
 using compare::Survival;
 using compare::Verdict;
 
-constexpr std::array verdicts{Verdict::right, Verdict::unpromised, Verdict::honest, Verdict::unjudged,
-                              Verdict::wrong};
+constexpr std::array verdicts{Verdict::right,     Verdict::unpromised, Verdict::honest,
+                              Verdict::elsewhere, Verdict::unjudged,   Verdict::wrong};
 constexpr std::size_t width = 118;  // of a terminal
 
 compare::Column words(std::string name, std::string description = {}) {
@@ -120,7 +120,8 @@ std::string stress_text(const Survival& survival) {
         ", the worst of all variants of a sweep:\n"
         "  0 ... 9  digits of the range of motion that are right (9: nine or more)    !  an honest outcome, "
         "each time\n"
-        "  ?  converged, and nothing is known    X  WRONG    .  not asked\n";
+        "  ~  at another equilibrium, proved as well    ?  converged, and nothing is known    X  WRONG    .  "
+        "not asked\n";
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
