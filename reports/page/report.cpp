@@ -17,6 +17,7 @@
 #include "reports/page/plot.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
+#include "reports/page/survival.hpp"
 #include "reports/page/svg.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
@@ -304,6 +305,7 @@ std::vector<std::string> write_report(const json& result, const std::string& fil
         {"summary", table_json(summary(parts))},
         {"provenance", provenance(root)},
         {"reproduce", for_terminal(root["reproduce"].text())},
+        {"stress", survival(root)},
         {"alarms", alarms(root)},
         {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);

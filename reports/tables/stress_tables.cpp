@@ -148,11 +148,20 @@ json stress_json(const Survival& survival) {
     for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
     for (const auto& s : survival.skipped)
         skipped.push_back({{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
+    json wrong = json::array();
+    for (const auto& c : survival.cells)
+        if (c.verdict == Verdict::wrong)
+            wrong.push_back({{"scene", c.scene},
+                             {"variant", c.variant},
+                             {"way", c.way},
+                             {"solver", c.solver},
+                             {"why", c.why}});
     return {{"solvers", survival.solvers},
             {"sweeps", rows.sweeps},
             {"map", map},
             {"extremes", extremes},
             {"counts", counts},
+            {"wrong", wrong},
             {"skipped", skipped},
             {"cells", table_json(cell_table(survival))}};
 }
