@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -15,12 +16,15 @@
 #include "models/compile.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis.hpp"
+#include "reference/certificate/certificate.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+using Construction = Variant::Construction;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -96,6 +100,7 @@ struct Found {
     bool threw = false;  // a bug, told in `detail`
     std::vector<Stand> stands;
     std::vector<ErrorBound> accounts;  // as given, per point
+    std::vector<bool> elsewhere;       // per point: off, and itself proved
 };
 
 // What is known of one point: x_T and e.
@@ -116,7 +121,15 @@ struct WayRun {
 
 struct TrialRun {
     std::vector<WayRun> ways;
+    double seconds = 0;  // of processor time
 };
+
+// Of this thread. Other jobs of the machine do not count.
+double processor_time() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 // Exact but for rounding.
 ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
@@ -141,13 +154,15 @@ ErrorBound claim_of(const Solver& solver, const ErrorBound& account, double size
                       solver.gait.recursion.method.kind);
 }
 
+std::size_t index_of(const std::vector<Solver>& solvers, std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(solvers, name, &Solver::name) - solvers.begin());
+}
+
 // Where two that share no equation stand within their claims of each other. The series is asked last: it makes no
 // independent statement of what a bushing measures.
 Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t point) {
     std::vector<std::size_t> witnesses;
-    for (const char* name : {"equilibrium", "energy", "series"})
-        witnesses.push_back(
-            static_cast<std::size_t>(std::ranges::find(solvers, name, &Solver::name) - solvers.begin()));
+    for (const char* name : {"equilibrium", "energy", "series"}) witnesses.push_back(index_of(solvers, name));
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
         const auto i = witnesses[static_cast<std::size_t>(a)], j = witnesses[static_cast<std::size_t>(b)];
         const Found &one = run.found[i], &other = run.found[j];
@@ -163,25 +178,61 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
     return {};
 }
 
+// A state is proved to within a share of the scene and of what acts on it that says something, whatever its units.
+reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) {
+    const double length = std::max(1e-9 * run.size, 1e3 * eps * run.reach),
+                 share = 1e-6 * std::max(force, 1e-9);
+    return {.length = length,
+            .angle = 1.7453292520e-8,
+            .force = share,
+            .moment = share * run.size,
+            .held = share,
+            .gap = length};
+}
+
+// By proof, from the first state of those that should be exact for which it succeeds.
+Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Equilibrium>>& states,
+             std::size_t point, const reference::certificate::Tolerance& tolerance) {
+    double lever = 0;  // of a place about the origin of its body
+    for (const auto& place : run.places) lever = std::max(lever, place.at.s_local.norm());
+    for (const auto& path : states) {
+        if (point >= path.size()) continue;
+        const auto certificate =
+            reference::certificate::certify(way.model, way.branch, path[point], tolerance);
+        if (certificate.answer == reference::certificate::Answer::proved)
+            return {Knowledge::proved,
+                    stand(way.model, run.places, path[point]),
+                    {certificate.error.length + lever * certificate.error.angle, certificate.error.angle}};
+    }
+    return {};
+}
+
+bool keeps(const ErrorBound& claim, const ErrorBound& distance, const ErrorBound& known_within) {
+    return distance.length - known_within.length <= claim.length &&
+           distance.angle - known_within.angle <= claim.angle;
+}
+
 WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver>& solvers) {
     WayRun run;
     run.name = way.name;
     run.places = places_of(way.model);
     const int every = std::max(1, (way.branch.steps + 1) / 2);  // the start, about the middle, the end
     run.points = asked_for({way}, every).size();
-    std::vector<Equilibrium> states;
-    for (const auto& solver : solvers) {
+    std::vector<std::vector<Equilibrium>> states(solvers.size());
+    for (std::size_t s = 0; s < solvers.size(); ++s) {
+        const Solver& solver = solvers[s];
         Found& found = run.found.emplace_back();
-        if (variant.many_steps && !is_reference(solver) && !has_steps(solver.gait.recursion.method) &&
-            way.branch.steps > 1000)
-            continue;  // its steps are its own: asked elsewhere
+        found.elsewhere.resize(run.points);
+        if (!variant.asked.empty() && !is_reference(solver) &&
+            std::ranges::find(variant.asked, solver.name) == variant.asked.end())
+            continue;
         Gait gait = solver.gait;
         gait.every = every;
         try {
             const EquilibriumPath path = walk(way, gait, [&](const Equilibrium& state) {
                 found.stands.push_back(stand(way.model, run.places, state));
                 found.accounts.push_back(state.bound);
-                if (solver.gait.leg == Leg::equilibrium) states.push_back(state);
+                states[s].push_back(state);
             });
             found.outcome = path.outcome;
             found.detail = path.detail;
@@ -190,23 +241,49 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
             found.detail = error.what();
         }
     }
-    if (states.empty()) states.push_back(design_state(way.model));
-    run.size = scale_of(way.model, way.branch, states).length;
+    std::vector<std::vector<Equilibrium>> exactly;
+    for (const char* name : {"equilibrium", "energy", "series"})
+        exactly.push_back(states[index_of(solvers, name)]);
+    const Equilibrium drawn = design_state(way.model);
+    const Scale scale = scale_of(
+        way.model, way.branch,
+        exactly.front().empty() ? std::span(&drawn, 1) : std::span<const Equilibrium>(exactly.front()));
+    run.size = scale.length;
     run.reach = run.size;
     for (const auto& body : way.model.bodies)
         run.reach = std::max(run.reach, body.design.r.cwiseAbs().maxCoeff());
-    for (std::size_t k = 0; k < run.points; ++k) run.known.push_back(agreed(solvers, run, k));
+    const auto tolerance = tolerance_of(run, scale.force);
+    for (std::size_t k = 0; k < run.points; ++k) {
+        Known known;
+        if (variant.known == Construction::nothing_moves)
+            known = {Knowledge::construction, stand(way.model, run.places, drawn), {eps * run.reach, eps}};
+        if (known.how == Knowledge::none) known = proved(way, run, exactly, k, tolerance);
+        if (known.how == Knowledge::none) known = agreed(solvers, run, k);
+        run.known.push_back(known);
+        if (known.how != Knowledge::proved) continue;
+        for (std::size_t s = 0; s < solvers.size(); ++s) {
+            Found& found = run.found[s];
+            if (k >= found.stands.size()) continue;
+            const ErrorBound claim = claim_of(solvers[s], found.accounts[k], run.size);
+            found.elsewhere[k] =
+                (!keeps(claim, apart(found.stands[k], known.where), known.within) &&
+                 reference::certificate::certify(way.model, way.branch, states[s][k], tolerance).answer ==
+                     reference::certificate::Answer::proved);
+        }
+    }
     return run;
 }
 
 TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
     TrialRun result;
+    const double start = processor_time();
     const Model model = compile(trial.variant.scene);
     for (const auto& branch : model.branches)
         for (const auto& way : ways_of(model, branch)) {
             if (way.branch.drivers.empty()) continue;
             result.ways.push_back(walk_all(trial.variant, way, solvers));
         }
+    result.seconds = processor_time() - start;
     return result;
 }
 
@@ -252,8 +329,13 @@ bool says_that_it_ends(Outcome outcome) {
     return false;
 }
 
-// Where both references say that the branch ends; empty where one does not.
+bool all_proved(const WayRun& run) {
+    return std::ranges::all_of(run.known, [](const Known& known) { return known.how == Knowledge::proved; });
+}
+
+// Where both references say that the branch ends, and no state past that is proved; empty where one does not.
 std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
+    if (all_proved(run)) return {};
     std::string why;
     for (std::size_t s = 0; s < solvers.size(); ++s) {
         if (!is_reference(solvers[s])) continue;
@@ -281,7 +363,7 @@ double range_of(const WayRun& run) {
 
 void judge_points(const Solver& solver, const Found& found, const WayRun& run, StressCell& cell) {
     double worst = 0;
-    bool any_unknown = false, breaks = false, no_digit = false, promises = true;
+    bool any_unknown = false, breaks = false, elsewhere = false, no_digit = false, promises = true;
     for (std::size_t k = 0; k < found.stands.size(); ++k) {
         if (!is_finite(found.stands[k])) {
             cell.verdict = Verdict::wrong;
@@ -300,9 +382,8 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         if (cell.knowledge == Knowledge::none || known.how == Knowledge::retold) cell.knowledge = known.how;
         const ErrorBound d = apart(found.stands[k], known.where);
         worst = std::max(worst, d.length + known.within.length);
-        if (!(d.length - known.within.length <= claim.length &&
-              d.angle - known.within.angle <= claim.angle)) {
-            breaks = true;
+        if (!keeps(claim, d, known.within)) {
+            (found.elsewhere[k] ? elsewhere : breaks) = true;
             cell.why = fmt::format("off by {:.2e} mm and {:.2e} rad, and claims {:.2e} mm and {:.2e} rad",
                                    1e3 * d.length, d.angle, 1e3 * claim.length, claim.angle);
         }
@@ -315,6 +396,9 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         cell.verdict = Verdict::wrong;
     else if (found.outcome != Outcome::converged)
         cell.verdict = Verdict::honest, cell.digits = nan;
+    else if (elsewhere)
+        cell.verdict = Verdict::elsewhere,
+        cell.why = "at another equilibrium, which is proved as well: " + cell.why;
     else if (no_digit)
         cell.verdict = Verdict::honest, cell.why = "its own account says that no digit is right";
     else if (any_unknown)
@@ -363,14 +447,21 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     }
     judge_points(solvers[s], found, run, cell);
     if (cell.verdict == Verdict::wrong) return cell;
-    if (is_reference(solvers[s]) && says_that_it_ends(found.outcome) && base != nullptr && all_known(*base))
-        cell.verdict = Verdict::wrong,
-        cell.why = "says that no equilibrium continues the branch, where one is known";
+    if (is_reference(solvers[s]) && says_that_it_ends(found.outcome)) {
+        if (base != nullptr && all_known(*base))
+            cell.verdict = Verdict::wrong,
+            cell.why =
+                "says that no equilibrium continues the branch; told otherwise, the same scene has one";
+        else if (all_proved(run))
+            cell.verdict = Verdict::wrong,
+            cell.why =
+                "says that no equilibrium continues the branch, where the states of another are proved";
+    }
     if (found.outcome != Outcome::converged) return cell;
     const std::string end = ended(solvers, run);
     if (found.stands.size() < run.points)
         cell.verdict = Verdict::wrong, cell.why = "converged, and points are missing";
-    else if (trial.variant.impossible)
+    else if (trial.variant.known == Construction::no_equilibrium)
         cell.verdict = Verdict::wrong, cell.why = "converged where by construction nothing is in equilibrium";
     else if (!end.empty())
         cell.verdict = Verdict::wrong, cell.why = "converged where both references say: " + end;
@@ -404,6 +495,8 @@ std::vector<std::string> distinct(std::span<const T> all, std::string T::*member
 const char* name(Knowledge knowledge) {
     switch (knowledge) {
         case Knowledge::none: return "none";
+        case Knowledge::construction: return "construction";
+        case Knowledge::proved: return "proof";
         case Knowledge::references: return "references";
         case Knowledge::retold: return "the scene itself";
     }
@@ -415,6 +508,7 @@ const char* name(Verdict verdict) {
         case Verdict::right: return "right";
         case Verdict::unpromised: return "unpromised";
         case Verdict::honest: return "honest";
+        case Verdict::elsewhere: return "elsewhere";
         case Verdict::unjudged: return "unjudged";
         case Verdict::wrong: return "wrong";
     }
@@ -479,6 +573,9 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
 
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];
+        survival.seconds += runs[t].seconds;
+        if (runs[t].seconds > survival.dearest.seconds)
+            survival.dearest = {trial.scene, trial.variant.label, runs[t].seconds};
         if (!trial.variant.skipped.empty())
             survival.skipped.push_back(
                 {trial.scene, trial.sweep, trial.variant.label, trial.variant.skipped});
@@ -501,19 +598,23 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
 }
 
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
-          const std::string& solver) {
+          const std::string& solver, const std::string& variant) {
     char result = '.';
     double digits = std::numeric_limits<double>::infinity();
-    bool unjudged = false;
+    bool unjudged = false, elsewhere = false;
     for (const auto& cell : survival.cells) {
-        if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver) continue;
+        if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver ||
+            (!variant.empty() && cell.variant != variant))
+            continue;
         if (cell.verdict == Verdict::wrong) return 'X';
         if (result == '.') result = '!';
         unjudged |= cell.verdict == Verdict::unjudged;
+        elsewhere |= cell.verdict == Verdict::elsewhere;
         if (cell.verdict == Verdict::right || cell.verdict == Verdict::unpromised)
             digits = std::min(digits, cell.digits);
     }
     if (unjudged) return '?';
+    if (elsewhere) return '~';
     return std::isfinite(digits) ? static_cast<char>('0' + std::clamp(static_cast<int>(digits), 0, 9))
                                  : result;
 }

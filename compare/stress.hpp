@@ -11,7 +11,7 @@
 // The true error of a state lies between |x - x_T| - e and |x - x_T| + e, x_T a state that is known to within e. A claim is
 // broken where the lower end is above it. What is known, and how: Knowledge. Wrong is as well who converges where both
 // references say that the branch ends, who answers otherwise when the same mechanism is told otherwise, and a reference that
-// says then that the branch ends, when it does not.
+// says that the branch ends where another's states are proved at every point, or where it goes on when told otherwise.
 //
 // A body that an idle mode moves is anywhere along it, so such bodies are not looked at.
 #pragma once
@@ -43,9 +43,10 @@ struct Variant {
     std::string label;                     // "as it is", "rates of 'coil' times 1e+06"
     Scene scene;                           // without a trim
     std::optional<Retelling> retold = {};  // of the scene as it is: whatever is found is the same
-    bool impossible = false;   // by construction there is no equilibrium: whoever finds one is wrong
-    bool many_steps = false;   // asked of the methods that take as many steps as they are told
-    std::string skipped = {};  // why nobody is asked
+    // What is known of it by construction, whoever solves it.
+    enum class Construction { nothing, no_equilibrium, nothing_moves } known = Construction::nothing;
+    std::vector<std::string> asked = {};  // solvers beside the references; none: all
+    std::string skipped = {};             // why nobody is asked
 };
 
 // A name, and what it makes of a scene. Every branch of the scene as it is; of all else the first.
@@ -55,12 +56,13 @@ struct Sweep {
 };
 
 struct Trial {
-    std::string scene;  // whose row it is in
-    std::string sweep;  // ... and column
+    std::string scene;  // whose row of the map it is in
+    std::string sweep;  // ... and column; of the sweep `extreme` each variant has a row of its own
     Variant variant;
 };
 
 inline constexpr std::string_view as_it_is = "as it is";  // the sweep that has only the scene itself
+inline constexpr std::string_view extreme = "extreme";    // scenes that are so by their making
 std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps);
 
 // The sweeps that any scene stands: sweeps.cpp.
@@ -77,8 +79,10 @@ std::vector<Solver> solvers();
 
 enum class Knowledge {
     none,
-    references,  // two that share no equation are within their claims of each other
-    retold,      // the same mechanism as it was drawn, whose state is known
+    construction,  // of the scene: Variant::known
+    proved,        // by the certificate, from the state of a reference or of the series
+    references,    // two that share no equation are within their claims of each other
+    retold,        // the same mechanism as it was drawn, whose state is known
 };
 const char* name(Knowledge knowledge);
 
@@ -86,6 +90,7 @@ enum class Verdict {
     right,       // converged, within what is claimed
     unpromised,  // converged, and claims nothing: its digits
     honest,      // another outcome, or an account that says that no digit is right
+    elsewhere,   // converged, at another equilibrium of the same load that is proved as well
     unjudged,    // converged, and nothing is known
     wrong,
 };
@@ -113,8 +118,13 @@ struct Survival {
         std::string scene, sweep, variant, why;
     };
     std::vector<Skipped> skipped;
+    double seconds = 0;  // of processor time, all threads
+    struct Dearest {
+        std::string scene, variant;
+        double seconds = 0;
+    } dearest;  // trial
     int count(Verdict verdict) const;
-    int judged() const;  // right, unpromised, honest or wrong
+    int judged() const;  // all but the unjudged
 };
 
 struct StressOptions {
@@ -127,9 +137,10 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options = {}
 // ---- The map: what a solver came to in all trials of a scene and a sweep, one sign.
 //
 //   0 ... 9  digits of the worst that converged (9: nine or more)     !  every outcome was honest
-//   ?  converged, and nothing is known                                .  not asked
+//   ~  another equilibrium than that of the branch                    .  not asked
+//   ?  converged, and nothing is known
 //   X  wrong
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
-          const std::string& solver);
+          const std::string& solver, const std::string& variant = {});  // of one variant alone
 
 }  // namespace elastocheck::compare

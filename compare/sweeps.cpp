@@ -75,17 +75,20 @@ std::vector<Variant> beyond(const Scene& scene) {
     return variants;
 }
 
-// One, and as many as round-off notices: so many as half a minute is enough for.
+// One, and as many as round-off notices, of one method of each kind: so many as some seconds are enough for.
 std::vector<Variant> steps(const Scene& scene) {
     std::vector<Variant> variants;
-    const double most = 2e6 / std::pow(1.0 + static_cast<double>(scene.bodies.size()), 1.5);
-    const int many = most > 5e5 ? 1'000'000 : most > 5e4 ? 100'000 : 10'000;
+    const auto bodies = scene.bodies.size();
+    const int many = bodies <= 1 ? 1'000'000 : bodies <= 4 ? 100'000 : 10'000;
     for (const int steps : {1, many}) {
         Scene varied = first_branch(scene);
         for (auto& branch : varied.branches) branch.steps = steps;
-        variants.push_back({.label = fmt::format("{} step{}", steps, steps == 1 ? "" : "s"),
-                            .scene = varied,
-                            .many_steps = true});
+        Variant variant{.label = fmt::format("{} step{}", steps, steps == 1 ? "" : "s"), .scene = varied};
+        for (const auto& method : recursive::methods)
+            if (has_steps(method) && (steps == 1 || method.name == "published" || method.name == "balanced" ||
+                                      method.name == "chord"))
+                variant.asked.emplace_back(method.name);
+        variants.push_back(std::move(variant));
     }
     return variants;
 }

@@ -169,6 +169,7 @@ Alone alone(const Problem& problem, const Approximate& at, double a) {
 Extent held_by(const StateAt& at, const Approximate& found, const Alone& alone) {
     const System& system = at.system;
     const Index n = system.n();
+    if (alone.r.size() == 0) return {0, 0, 0, 0};  // no box but the smallest contracts
     const VectorXd room = alone.r.head(n) - (found.y.head(n) - at.z).cwiseAbs();
     Extent unique{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), 0, 0};
     for (int b = 0; b < system.bodies; ++b) {

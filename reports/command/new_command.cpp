@@ -33,6 +33,12 @@ std::vector<std::string> templates() {
     return names;
 }
 
+std::string_view template_text(const std::string& name) {
+    for (const auto& scene : embedded_scenes)
+        if (scene.name == name) return scene.text;
+    return {};
+}
+
 int new_scene(const std::string& name, bool as_json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     std::size_t longest = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace elastocheck::reports {
@@ -11,6 +12,7 @@ namespace elastocheck::reports {
 int new_scene(const std::string& name, bool as_json);
 inline constexpr const char* templates_schema = "elastocheck/templates/1";
 
-std::vector<std::string> templates();  // their names
+std::vector<std::string> templates();                     // their names
+std::string_view template_text(const std::string& name);  // empty where there is none
 
 }  // namespace elastocheck::reports

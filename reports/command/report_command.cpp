@@ -33,6 +33,7 @@
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/tables/stress_tables.hpp"
 #include "reports/tables/study_tables.hpp"
 #include "reports/tables/trade_tables.hpp"
 #include "reports/text/terminal.hpp"
@@ -134,6 +135,21 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
+// The map and what is wrong; the cells stay where they are.
+json read_stress(const std::string& file) {
+    json stress;
+    try {
+        stress = parse_json(read_whole(file));
+    } catch (const JsonError& error) {
+        throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    }
+    if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
+        throw std::invalid_argument(fmt::format(
+            "{}: is not the stress.json that `elastocheck stress` writes ('{}')", file, stress_schema));
+    for (const char* key : {"cells", "reproduce"}) stress.erase(key);
+    return stress;
+}
+
 // Of each scene its answer, and whether it passes.
 json answer_document(const json& result, const std::vector<Answer>& answers, const std::string& page) {
     json scenes = json::array();
@@ -186,6 +202,10 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
                      "results.json of seeded faults (./dev mutate), to show which alarms ring")
         ->check(a_file("*.json"));
     command
+        ->add_option("--stress", request.stress,
+                     "stress.json of `elastocheck stress`, to show what becomes of it at the extremes")
+        ->check(a_file("*.json"));
+    command
         ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
         ->check(a_file("*.csv"));
     command->add_option("--branch-column", request.branch_column,
@@ -226,6 +246,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
+    if (!request.stress.empty() && !request.from.empty())
+        throw std::invalid_argument("report: --stress belongs to what is solved; --from has it already");
+    const json stress = request.stress.empty() ? json() : read_stress(request.stress);
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
     json result;
@@ -236,6 +259,7 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         result = document(reproduce, provenance());
         for (const auto& scene : request.scenes)
             result["scenes"].push_back(solve_scene(scene, request, progress));
+        if (!stress.is_null()) result["stress"] = stress;
         if (!alarms.is_null()) result["alarms"] = alarms;
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as a reader of the file will see it: NaN is null

@@ -20,6 +20,7 @@ struct ReportRequest {
     std::string branch_column = "branch";  // of it
     std::vector<std::string> cases;  // "THEIRS=OURS": names in that column, and the branches that they mean
     std::string alarms;              // JSON, what `./dev mutate` found
+    std::string stress;              // JSON, what `elastocheck stress` found
     std::string tolerance = "0.01mm,0.001deg";
     std::string figures = "svg";
     bool archive = false;

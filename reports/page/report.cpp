@@ -18,6 +18,7 @@
 #include "reports/page/plot.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/sections.hpp"
+#include "reports/page/survival.hpp"
 #include "reports/page/svg.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
@@ -357,6 +358,7 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
         {"summary", table_json(summary(draft.parts))},
         {"provenance", provenance(root)},
         {"reproduce", for_terminal(root["reproduce"].text())},
+        {"stress", survival(root)},
         {"alarms", alarms(root)},
         {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);

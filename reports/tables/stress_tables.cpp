@@ -16,8 +16,8 @@ using json = nlohmann::ordered_json;
 using compare::Survival;
 using compare::Verdict;
 
-constexpr std::array verdicts{Verdict::right, Verdict::unpromised, Verdict::honest, Verdict::unjudged,
-                              Verdict::wrong};
+constexpr std::array verdicts{Verdict::right,     Verdict::unpromised, Verdict::honest,
+                              Verdict::elsewhere, Verdict::unjudged,   Verdict::wrong};
 constexpr std::size_t width = 118;  // of a terminal
 
 compare::Column words(std::string name, std::string description = {}) {
@@ -27,10 +27,31 @@ compare::Column words(std::string name, std::string description = {}) {
 // Infinite says nothing, as does NaN.
 double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
-std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep) {
+std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
+                  const std::string& variant = {}) {
     std::string all;
-    for (const auto& solver : survival.solvers) all += sign(survival, scene, sweep, solver);
+    for (const auto& solver : survival.solvers) all += sign(survival, scene, sweep, solver, variant);
     return all;
+}
+
+// Rows of the map: scenes under sweeps, and the variants of those that are extreme by their making.
+struct Rows {
+    std::vector<std::string> scenes, sweeps;
+    std::vector<std::pair<std::string, std::string>> extremes;  // scene, variant
+};
+Rows rows_of(const Survival& survival) {
+    Rows rows;
+    for (const auto& sweep : survival.sweeps)
+        if (sweep != compare::extreme) rows.sweeps.push_back(sweep);
+    for (const auto& cell : survival.cells) {
+        if (cell.sweep == compare::extreme) {
+            const std::pair row{cell.scene, cell.variant};
+            if (std::ranges::find(rows.extremes, row) == rows.extremes.end()) rows.extremes.push_back(row);
+        } else if (std::ranges::find(rows.scenes, cell.scene) == rows.scenes.end()) {
+            rows.scenes.push_back(cell.scene);
+        }
+    }
+    return rows;
 }
 
 std::string where(const compare::StressCell& cell) {
@@ -67,32 +88,40 @@ compare::Table cell_table(const Survival& survival) {
 std::string stress_text(const Survival& survival) {
     std::string text;
     const auto out = std::back_inserter(text);
+    const Rows rows = rows_of(survival);
     std::size_t head = 0;
-    for (const auto& scene : survival.scenes) head = std::max(head, scene.size());
+    for (const auto& scene : rows.scenes) head = std::max(head, scene.size());
     std::size_t column = survival.solvers.size();
-    for (const auto& sweep : survival.sweeps) column = std::max(column, sweep.size());
+    for (const auto& sweep : rows.sweeps) column = std::max(column, sweep.size());
     const std::size_t at_once = std::max<std::size_t>(1, (width - head) / (column + 2));
-    for (std::size_t first = 0; first < survival.sweeps.size(); first += at_once) {
-        const std::size_t last = std::min(first + at_once, survival.sweeps.size());
+    for (std::size_t first = 0; first < rows.sweeps.size(); first += at_once) {
+        const std::size_t last = std::min(first + at_once, rows.sweeps.size());
         fmt::format_to(out, "{:<{}}", "", head);
-        for (std::size_t s = first; s < last; ++s)
-            fmt::format_to(out, "  {:<{}}", survival.sweeps[s], column);
+        for (std::size_t s = first; s < last; ++s) fmt::format_to(out, "  {:<{}}", rows.sweeps[s], column);
         text += '\n';
-        for (const auto& scene : survival.scenes) {
+        for (const auto& scene : rows.scenes) {
             fmt::format_to(out, "{:<{}}", scene, head);
             for (std::size_t s = first; s < last; ++s)
-                fmt::format_to(out, "  {:<{}}", signs(survival, scene, survival.sweeps[s]), column);
+                fmt::format_to(out, "  {:<{}}", signs(survival, scene, rows.sweeps[s]), column);
             text += '\n';
         }
         text += '\n';
     }
+    std::size_t row_head = 0;
+    for (const auto& [scene, variant] : rows.extremes)
+        row_head = std::max(row_head, scene.size() + variant.size() + 2);
+    for (const auto& [scene, variant] : rows.extremes)
+        fmt::format_to(out, "{:<{}}  {}\n", scene + ", " + variant, row_head,
+                       signs(survival, scene, std::string(compare::extreme), variant));
+    if (!rows.extremes.empty()) text += '\n';
     text += "One sign each of";
     for (const auto& solver : survival.solvers) fmt::format_to(out, " {}", solver);
     text +=
         ", the worst of all variants of a sweep:\n"
         "  0 ... 9  digits of the range of motion that are right (9: nine or more)    !  an honest outcome, "
         "each time\n"
-        "  ?  converged, and nothing is known    X  WRONG    .  not asked\n";
+        "  ~  at another equilibrium, proved as well    ?  converged, and nothing is known    X  WRONG    .  "
+        "not asked\n";
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
@@ -105,19 +134,34 @@ std::string stress_text(const Survival& survival) {
 }
 
 json stress_json(const Survival& survival) {
-    json map = json::array(), counts = json::object(), skipped = json::array();
-    for (const auto& scene : survival.scenes) {
+    json map = json::array(), extremes = json::array(), counts = json::object(), skipped = json::array();
+    const Rows rows = rows_of(survival);
+    for (const auto& scene : rows.scenes) {
         json row = json::array();
-        for (const auto& sweep : survival.sweeps) row.push_back(signs(survival, scene, sweep));
+        for (const auto& sweep : rows.sweeps) row.push_back(signs(survival, scene, sweep));
         map.push_back({{"scene", scene}, {"signs", row}});
     }
+    for (const auto& [scene, variant] : rows.extremes)
+        extremes.push_back({{"scene", scene},
+                            {"variant", variant},
+                            {"signs", signs(survival, scene, std::string(compare::extreme), variant)}});
     for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
     for (const auto& s : survival.skipped)
         skipped.push_back({{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
+    json wrong = json::array();
+    for (const auto& c : survival.cells)
+        if (c.verdict == Verdict::wrong)
+            wrong.push_back({{"scene", c.scene},
+                             {"variant", c.variant},
+                             {"way", c.way},
+                             {"solver", c.solver},
+                             {"why", c.why}});
     return {{"solvers", survival.solvers},
-            {"sweeps", survival.sweeps},
+            {"sweeps", rows.sweeps},
             {"map", map},
+            {"extremes", extremes},
             {"counts", counts},
+            {"wrong", wrong},
             {"skipped", skipped},
             {"cells", table_json(cell_table(survival))}};
 }

@@ -18,7 +18,8 @@ compare::Table cell_table(const compare::Survival& survival);
 // The map as a terminal shows it: a row a scene, a column a sweep, in it one sign a solver; its legend; every wrong cell.
 std::string stress_text(const compare::Survival& survival);
 
-// {"solvers", "sweeps", "scenes", "map": [{"scene", "signs": [text a sweep]}], "counts": {...}, "cells", "wrong", "skipped"}
+// {"solvers", "sweeps", "map": [{"scene", "signs": [text a sweep]}], "extremes": [{"scene", "variant", "signs"}],
+// "counts", "wrong", "skipped", "cells"}
 nlohmann::ordered_json stress_json(const compare::Survival& survival);
 
 }  // namespace elastocheck::reports

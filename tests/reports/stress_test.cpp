@@ -1,0 +1,105 @@
+// The survival map on its way out, and the scenes that are extreme by their making.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "reports/document/field.hpp"
+#include "reports/extremes/extremes.hpp"
+#include "reports/page/report.hpp"
+#include "reports/tables/stress_tables.hpp"
+#include "tests/reports/command.hpp"
+#include "tests/reports/result.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using support::contains;
+using support::Folder;
+using support::text_of;
+using json = nlohmann::ordered_json;
+
+// Small: no figures but two.
+json small_result() {
+    json result = sample_result("pinned_bar");
+    for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
+    return result;
+}
+
+const char* const map = R"({
+  "solvers": ["published", "series"], "sweeps": ["as it is", "far <away>"],
+  "map": [{"scene": "arch", "signs": ["39", "X!"]}],
+  "extremes": [{"scene": "column", "variant": "straight | so", "signs": "?~"}],
+  "counts": {"right": 3, "unpromised": 1, "honest": 1, "elsewhere": 1, "unjudged": 1, "wrong": 1},
+  "wrong": [{"scene": "arch", "variant": "far", "way": "down", "solver": "published", "why": "off by 2 mm"}],
+  "skipped": []})";
+
+TEST(Survival, TheMapIsOnThePageAndInItsTwin) {
+    const Folder folder;
+    auto result = small_result();
+    write_report(result, "result.json", folder.path / "without");
+    EXPECT_FALSE(contains(text_of(folder.path / "without" / "report.html"), "At the extremes"));
+    result["stress"] = json::parse(map);
+    write_report(result, "result.json", folder.path / "with");
+    const std::string html = text_of(folder.path / "with" / "report.html"),
+                      markdown = text_of(folder.path / "with" / "report.md");
+    for (const char* part : {"<b class=\"some\">3</b><b class=\"many\">9</b>",
+                             "<b class=\"wrong\">X</b><b class=\"honest\">!</b>",
+                             "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>",
+                             "Of 8 answers 3 are right", "1 are wrong", "far &lt;away&gt;", "off by 2 mm"})
+        EXPECT_TRUE(contains(html, part)) << part;
+    for (const char* part : {"| arch | `39` | `X!` |", "`?~`", "straight \\| so", "off by 2 mm"})
+        EXPECT_TRUE(contains(markdown, part)) << part;
+}
+
+TEST(Survival, ASignThatIsNoneIsRefused) {
+    const Folder folder;
+    for (const char* signs : {"3", "39!", "3`", "3<"}) {
+        auto result = small_result();
+        result["stress"] = json::parse(map);
+        result["stress"]["map"][0]["signs"][1] = signs;
+        EXPECT_THROW(write_report(result, "result.json", folder.path / "r"), ResultError) << signs;
+    }
+}
+
+TEST(Survival, OfTheCommandIsWhatItWrites) {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const auto said = elastocheck_says("stress " + scenes + "/single_bushing.yaml --json -o " + out);
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(said.out, text_of(out + "/stress.json"));
+    const json document = json::parse(said.out);
+    const auto& columns = document["cells"]["columns"];
+    EXPECT_EQ(columns.size(), 14u);
+    EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
+    EXPECT_EQ(document["counts"]["wrong"], 0);
+    const auto report = elastocheck_says("report " + scenes + "/single_bushing.yaml --stress " + out +
+                                         "/stress.json -o " + (folder.path / "page").string());
+    EXPECT_TRUE(contains(text_of(folder.path / "page" / "report.html"), "Survival map")) << report.err;
+}
+
+TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
+    for (const auto& [arguments, says] :
+         {std::pair<std::string, const char*>{"stress --set points.tip.x=1", "give one"},
+          {"stress there_is_none.yaml", "there_is_none.yaml"},
+          {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes + "/single_bushing.yaml",
+           "single_bushing.yaml"},
+          {"report --from a.json -o never --stress b.json", "--stress belongs to what is solved"}}) {
+        const auto said = elastocheck_says(arguments);
+        EXPECT_EQ(said.code, 2) << arguments;
+        EXPECT_TRUE(contains(said.err, says)) << arguments << ": " << said.err;
+    }
+}
+
+// Those of the scenes above whose making says what is right: whoever answers otherwise, or cannot be judged, is told.
+TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
+    const auto survival = compare::stress(extremes());
+    EXPECT_GT(survival.judged(), 300);
+    for (const auto& cell : survival.cells)
+        EXPECT_NE(cell.verdict, compare::Verdict::wrong) << fmt::format(
+            "{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.way, cell.solver, cell.why, cell.detail);
+    if (HasFailure()) std::cout << stress_text(survival);
+}
+
+}  // namespace
+}  // namespace elastocheck::reports
