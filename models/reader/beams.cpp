@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/reader/limits.hpp"
 #include "models/reader/look_up.hpp"
 
 namespace elastocheck::reader {
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int most_segments = 1000;
 constexpr double parallel = 1e-6;  // sine of the angle between directions that are taken for one
 
 // ---- The course: where it runs.

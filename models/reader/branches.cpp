@@ -18,15 +18,13 @@
 
 #include "models/compile.hpp"
 #include "models/overloaded.hpp"
+#include "models/reader/limits.hpp"
 #include "models/reader/sections.hpp"
 #include "models/reader/terms.hpp"
 #include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 namespace {
-
-constexpr int most_steps = 1'000'000;
-constexpr double most_poses = 1e7;  // of one branch: steps times bodies
 
 bool is_zero(const Load& load) {
     return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "models/reader/limits.hpp"
 #include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
@@ -14,7 +15,6 @@ namespace {
 
 // The size of a number that is not zero: no conversion, product or quotient then leaves the range of double.
 constexpr double least_size = 1e-30, largest_size = 1e30;
-constexpr std::size_t longest_name = 64;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 

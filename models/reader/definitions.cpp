@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "models/reader/beams.hpp"
+#include "models/reader/limits.hpp"
 #include "models/reader/look_up.hpp"
 
 namespace elastocheck::reader {

@@ -41,8 +41,6 @@ struct Definitions {
     std::optional<std::filesystem::path> folder;    // where the files that the scene names are
 };
 
-inline constexpr std::size_t most_bodies = 10'000;
-
 Definitions read_definitions(const Cursor& scene);
 
 // Two hardpoints nearer than this are one [m]: a direction or a length between them would be round-off.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "models/reader/limits.hpp"
 #include "models/reader/text_file.hpp"
 #include "models/reader/words.hpp"
 
@@ -16,8 +17,6 @@ namespace elastocheck::reader {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t most_rows = 10'000;
 
 std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
     const auto rows = at.items();

@@ -1,13 +1,12 @@
 // Text files as they come, for the readers of scenes and tables.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <string>
 
-namespace elastocheck::reader {
+#include "models/reader/limits.hpp"
 
-inline constexpr std::size_t largest_text = 1 << 20;  // [bytes]
+namespace elastocheck::reader {
 
 struct TextFile {
     std::string text;     // one byte more than the largest at most: for the reader to refuse

@@ -11,14 +11,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "models/reader/limits.hpp"
 #include "models/reader/scene_file.hpp"
 #include "models/reader/text_file.hpp"
 #include "models/reader/words.hpp"
 
 namespace elastocheck::reader {
 namespace {
-
-constexpr std::size_t deepest_nesting = 16;  // a scene needs five: bushings, one bushing, stiffness, its rows
 
 int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 

@@ -72,7 +72,8 @@ std::vector<Task> tasks(const GateOptions& options) {
                                         (folder / for_terminal(entry.path().filename().string())).string(),
                                         wrong));
         try {
-            const BaselineFile file = parse_baseline(read_whole(entry.path()), entry.path().string());
+            const BaselineFile file =
+                parse_baseline(read_whole(entry.path(), largest_baseline), entry.path().string());
             all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
         } catch (const std::runtime_error& error) {  // BaselineError, FileError
             all.push_back({entry.path(), entry.path(), error.what()});
@@ -87,7 +88,8 @@ std::vector<Task> tasks(const GateOptions& options) {
 
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
-    if (!options.from.empty()) return parse_baseline(read_whole(options.from), options.from);
+    if (!options.from.empty())
+        return parse_baseline(read_whole(options.from, largest_baseline), options.from);
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
@@ -132,7 +134,8 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         return std::nullopt;
     }
     try {
-        BaselineFile file = parse_baseline(read_whole(task.baseline), task.baseline.string());
+        BaselineFile file =
+            parse_baseline(read_whole(task.baseline, largest_baseline), task.baseline.string());
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;

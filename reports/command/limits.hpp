@@ -1,12 +1,13 @@
-// How much is taken on: said before the work, instead of running out of memory in it.
+// How much a run takes on: said before the work, instead of running out of memory in it. Of what is read:
+// models/reader/limits.hpp, reports/files/limits.hpp.
 #pragma once
 
 #include "models/model.hpp"
+#include "models/reader/limits.hpp"
 
 namespace elastocheck::reports {
 
-// Of a branch, as in a scene.
-inline constexpr int most_steps = 1'000'000;
+using reader::most_steps;  // of a branch, as in a scene
 // What is kept of the points of a run may take together [bytes]: what an ordinary desk or CI machine has to spare.
 inline constexpr double most_memory = 4e9;
 

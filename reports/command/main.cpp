@@ -262,6 +262,8 @@ int main(int argc, char** argv) {
         complain("elastocheck: {}{}\n", code == bug ? "internal error: " : "", what);
         return code;
     };
+    // A limit on the size of files is said like a full disk, not by a signal.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         const int code = run(argc, argv);
         finish_printing();

@@ -83,8 +83,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
         add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
     if (!request.measured.empty()) {
-        add_measurement(document, read_whole(request.measured), request.measured, model, comparison,
-                        load_cases(request));
+        add_measurement(document, read_whole(request.measured, largest_measurement), request.measured, model,
+                        comparison, load_cases(request));
         if (compared_with_measurement(document) == 0)
             reasons.push_back(fmt::format("no point of {} lies where the legs could be compared with it",
                                           request.measured));
@@ -134,35 +134,24 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
-// "pass", "fail", "not judged", where the document holds that against a tolerance; else whether it could be judged.
-std::string mark_of(const json& scene) {
-    const auto judgement = scene.find("judgement");
-    if (judgement != scene.end()) return judgement->value("verdict", "not judged");
-    return scene["verdict"]["conclusive"].get<bool>() ? "judged" : "not judged";
-}
-
 // Of each scene its answer, and whether it passes.
-json answer_document(const json& result, const std::vector<std::string>& answers, const std::string& page) {
+json answer_document(const json& result, const std::vector<Answer>& answers, const std::string& page) {
     json scenes = json::array();
-    for (std::size_t k = 0; k < answers.size(); ++k) {
-        const json& scene = result["scenes"][k];
-        scenes.push_back({{"name", scene["name"]},
-                          {"source", scene["source"]},
-                          {"mark", mark_of(scene)},
-                          {"answer", answers[k]},
-                          {"verdict", scene["verdict"]}});
-    }
+    for (const auto& answer : answers)
+        scenes.push_back({{"name", answer.name},
+                          {"source", answer.source},
+                          {"mark", answer.mark},
+                          {"answer", answer.sentence},
+                          {"verdict", result["scenes"][scenes.size()]["verdict"]}});
     return {
         {"schema", report_schema}, {"provenance", result["provenance"]}, {"page", page}, {"scenes", scenes}};
 }
 
-std::string answer_text(const json& result, const std::vector<std::string>& answers, const std::string& page,
-                        double seconds) {
+std::string answer_text(const std::vector<Answer>& answers, const std::string& page, double seconds) {
     std::string text;
-    for (std::size_t k = 0; k < answers.size(); ++k)
-        text += fmt::format("{}: {}\n\n", result["scenes"][k]["name"].get<std::string>(), answers[k]);
-    for (const auto& scene : result["scenes"])
-        text += fmt::format("{}: {}\n", scene["source"].get<std::string>(), mark_of(scene));
+    for (const auto& answer : answers)
+        if (!answer.sentence.empty()) text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
+    for (const auto& answer : answers) text += fmt::format("{}: {}\n", answer.source, answer.mark);
     return text + fmt::format("The page: {} ({} scene{}, {:.1f} s)\n", page, answers.size(),
                               answers.size() == 1 ? "" : "s", seconds);
 }
@@ -234,7 +223,7 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
         throw std::invalid_argument(
             "report: --branch-column and --case say how to read --measured; give a file");
-    if (!request.measured.empty()) (void)read_whole(request.measured);
+    if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
@@ -256,19 +245,18 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
                      {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
-    for (const auto& scene : result["scenes"])
-        if (!scene["verdict"]["conclusive"].get<bool>()) {
+    for (const auto& answer : answers)
+        if (!answer.conclusive) {
             code = could_not_judge;
-            for (const auto& reason : scene["verdict"]["reasons"])
-                complain("{}: inconclusive: {}\n", scene["source"].get<std::string>(),
-                         reason.get<std::string>());
+            for (const auto& reason : answer.reasons)
+                complain("{}: inconclusive: {}\n", answer.source, reason);
         }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
     if (request.as_json)
         print_document(answer_document(result, answers, page));
     else
-        print(answer_text(result, answers, page, elapsed.count()));
+        print(answer_text(answers, page, elapsed.count()));
     if (request.open) open_in(opener, page);
     return code;
 }

@@ -231,14 +231,6 @@ std::string driven_name(const Model& model, const Driven& what) {
         what);
 }
 
-json provenance_json(const Provenance& p) {
-    json libraries = json::object();
-    for (const auto& library : p.libraries) libraries[library.name] = library.version;
-    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
-            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
-            {"libraries", libraries}};
-}
-
 json document(const std::string& reproduce, const Provenance& provenance) {
     return {{"schema", result_schema},
             {"reproduce", reproduce},

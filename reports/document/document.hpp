@@ -20,9 +20,6 @@ inline constexpr const char* result_schema = "elastocheck/result/3";
 // "vertical", "left.jack", "free length of coil"
 std::string driven_name(const Model& model, const Driven& what);
 
-// Who made it, with what: commit, compiler, flags, processor, libraries.
-nlohmann::ordered_json provenance_json(const Provenance& provenance);
-
 // {schema, reproduce, provenance, scenes: [...]}. Lengths in mm, angles in deg, forces in N, moments in N·m,
 // as every key or neighbouring "unit" says. A number that is not finite is null. `reproduce` is the command
 // that made it.

@@ -5,7 +5,11 @@
 namespace elastocheck::reports {
 
 nlohmann::ordered_json parse_json(std::string_view text) {
+    // A value is 16 bytes, in an object 48 with its name; a list or an object is a vector on the heap besides, which grows
+    // by doubling.
+    constexpr double of_value = 2 * 48, of_list = 48;
     int depth = 0;
+    double size = static_cast<double>(text.size());
     bool in_string = false;
     for (std::size_t k = 0; k < text.size(); ++k) {
         const char c = text[k];
@@ -14,10 +18,15 @@ nlohmann::ordered_json parse_json(std::string_view text) {
         } else if (c == '"') {
             in_string = !in_string;
         } else if (!in_string) {
-            depth += (c == '[' || c == '{') - (c == ']' || c == '}');
+            const bool opens = c == '[' || c == '{';
+            depth += opens - (c == ']' || c == '}');
+            size += opens ? of_value + of_list : c == ',' ? of_value : 0;
             if (depth > deepest_json) throw JsonError(fmt::format("nested more than {} deep", deepest_json));
         }
     }
+    if (size > largest_json)
+        throw JsonError(fmt::format("would take about {:.1f} GB of memory; allowed: {:.0f} GB", 1e-9 * size,
+                                    1e-9 * largest_json));
     try {
         return nlohmann::ordered_json::parse(text);
     } catch (const nlohmann::json::exception& error) {

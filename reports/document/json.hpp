@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "reports/files/limits.hpp"
+
 namespace elastocheck::reports {
 
 // what() says why, without the name of the file.
@@ -12,10 +14,8 @@ struct JsonError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-inline constexpr int deepest_json = 64;  // a result needs fourteen
-
-// Throws JsonError: not JSON, cut off, or nested deeper than `deepest_json`, which would end in a crash
-// somewhere.
+// Throws JsonError: not JSON, cut off, nested deeper than `deepest_json`, which would end in a crash somewhere, or
+// larger than `largest_json`.
 nlohmann::ordered_json parse_json(std::string_view text);
 
 }  // namespace elastocheck::reports

@@ -10,6 +10,7 @@
 #include "compare/measured.hpp"
 #include "models/reader/words.hpp"
 #include "reports/document/provenance.hpp"
+#include "reports/files/limits.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -199,6 +200,9 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
             fail(file, number_of_line,
                  fmt::format("{} cells, but {} columns are named in the first line", cells.size(),
                              points.columns.size()));
+        if (points.lines.size() == most_measured)
+            fail(file, number_of_line,
+                 fmt::format("more points than {}, the most that are read", most_measured));
         points.lines.push_back(number_of_line);
         for (std::size_t k = 0; k < cells.size(); ++k) {
             if (static_cast<int>(k) == branch_column) {

@@ -40,6 +40,14 @@ std::string version_text(const Provenance& p) {
                        p.dirty ? ", with uncommitted changes" : "", p.compiler, p.flags, libraries);
 }
 
+nlohmann::ordered_json provenance_json(const Provenance& p) {
+    nlohmann::ordered_json libraries = nlohmann::ordered_json::object();
+    for (const auto& library : p.libraries) libraries[library.name] = library.version;
+    return {{"elastocheck", p.version}, {"commit", p.commit}, {"dirty", p.dirty},
+            {"compiler", p.compiler},   {"flags", p.flags},   {"cpu", p.cpu},
+            {"libraries", libraries}};
+}
+
 std::string input_hash(std::string_view content) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;

@@ -1,6 +1,7 @@
 // Which code, built how, on what, made a result.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,9 @@ Provenance provenance();
 
 // What --version says: version, commit, compiler, and all libraries, also those that round nothing.
 std::string version_text(const Provenance& provenance);
+
+// The same in a result or a baseline.
+nlohmann::ordered_json provenance_json(const Provenance& provenance);
 
 // FNV-1a, 64 bit, in hex: tells one input from another, not a proof against forgery.
 std::string input_hash(std::string_view content);

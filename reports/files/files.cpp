@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -70,6 +71,12 @@ bool write_and_close(int out, std::string_view content) {
     return flush_and_close(out, write_all(out, content));
 }
 
+// Whether the open file still has a name.
+bool is_there(int open) {
+    struct stat entry {};
+    return ::fstat(open, &entry) == 0 && entry.st_nlink > 0;
+}
+
 }  // namespace
 
 void check_may_write(const fs::path& file, const FileKind& kind) {
@@ -89,17 +96,43 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
                         file.string(), kind.name));
 }
 
+namespace {
+
+// What runs that were killed left beside the file. An owner holds a lock on his while he lives.
+void remove_abandoned(const fs::path& file, const std::string& prefix) {
+    std::error_code failed;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    for (auto at = fs::directory_iterator(folder, failed); !failed && at != fs::end(at);
+         at.increment(failed)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(prefix) || !name.ends_with(".tmp")) continue;
+        const int left = ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (left < 0) continue;
+        struct stat entry {};
+        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) && ::flock(left, LOCK_EX | LOCK_NB) == 0)
+            ::unlink(at->path().c_str());
+        ::close(left);
+    }
+}
+
+}  // namespace
+
 FileToBe::FileToBe(fs::path file, const FileKind& kind) : file_(std::move(file)) {
     std::error_code failed;
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
         throw FileError(fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
+    const std::string prefix = fmt::format(".{}.", file_.filename().string());
+    remove_abandoned(file_, prefix);
     temporary_ = file_;
     for (int k = 0; out_ < 0; ++k) {
-        temporary_.replace_filename(fmt::format(".{}.{}-{}.tmp", file_.filename().string(), ::getpid(), k));
+        temporary_.replace_filename(fmt::format("{}{}-{}.tmp", prefix, ::getpid(), k));
         out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
+        // Another run may have taken it for one that was left, before it was locked.
+        if (out_ >= 0 && (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
+            ::close(std::exchange(out_, -1));
     }
 }
 
@@ -168,7 +201,7 @@ void fill(const fs::path& file, std::string_view content) {
     if (out < 0 || !write_and_close(out, content)) cannot(file, "written");
 }
 
-std::string read_whole(const fs::path& file) {
+std::string read_whole(const fs::path& file, std::size_t largest) {
     const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat entry {};
     if (in < 0 || ::fstat(in, &entry) != 0) cannot(file, "read");
@@ -184,6 +217,10 @@ std::string read_whole(const fs::path& file) {
         if (count < 0 && errno == EINTR) continue;
         good = count > 0;
         if (good) text.append(buffer, static_cast<std::size_t>(count));
+        if (text.size() <= largest) continue;
+        ::close(in);
+        throw FileError(fmt::format("{}: cannot be read: it is larger than {} MiB; no file of its kind is",
+                                    file.string(), largest >> 20U));
     }
     const int error = errno;
     ::close(in);

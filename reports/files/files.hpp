@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "reports/files/limits.hpp"
+
 namespace elastocheck::reports {
 
 // A file could not be read or written, or must not be; what() names it and says why.
@@ -30,7 +32,8 @@ inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
 // A file that is written piece by piece, and is there once it is whole: until then it has a temporary name beside its
-// own, and what is not finished is removed. Throws FileError; an older file of that name is then untouched.
+// own, and what is not finished is removed: by its owner, or by the next that writes the file where the owner was killed.
+// Throws FileError; an older file of that name is then untouched.
 class FileToBe {
   public:
     // check_may_write; creates the folder when it is missing.
@@ -60,7 +63,7 @@ void append(const std::filesystem::path& file, std::string_view content);
 // Writes a file in a folder that nobody else knows of yet (folder.hpp). Throws FileError.
 void fill(const std::filesystem::path& file, std::string_view content);
 
-// The content of a file or a pipe; throws FileError.
-std::string read_whole(const std::filesystem::path& file);
+// The content of a file or a pipe; throws FileError, of what is larger as soon as it shows.
+std::string read_whole(const std::filesystem::path& file, std::size_t largest = largest_file);
 
 }  // namespace elastocheck::reports

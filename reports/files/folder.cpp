@@ -10,8 +10,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "reports/document/provenance.hpp"
 
@@ -59,7 +61,7 @@ bool is_ours(const fs::path& folder, const std::string& file, const std::set<std
 }
 
 // Everything in the folder must be on its manifest, as it was written.
-void check_ours(const fs::path& folder) {
+void check_all_ours(const fs::path& folder) {
     const auto files = files_in(folder);
     const auto listed = listed_in(folder);
     for (const auto& file : files) {
@@ -71,6 +73,26 @@ void check_ours(const fs::path& folder) {
                  ? "was changed since elastocheck wrote it, and replacing the folder would lose that; choose "
                    "another folder, or remove this one"
                  : "is no part of a report, and replacing the folder would lose it; choose another folder");
+    }
+}
+
+// What tells a folder from the one that is put in its place; nothing where there is none.
+std::optional<std::pair<dev_t, ino_t>> identity(const fs::path& folder) {
+    struct stat entry {};
+    if (::stat(folder.c_str(), &entry) != 0) return std::nullopt;
+    return std::pair{entry.st_dev, entry.st_ino};
+}
+
+// The same of a folder that another run may replace while it is looked at: what was seen then is of two, and is looked
+// at again.
+void check_ours(const fs::path& folder) {
+    for (;;) {
+        const auto before = identity(folder);
+        try {
+            return check_all_ours(folder);
+        } catch (const std::exception&) {
+            if (identity(folder) == before) throw;
+        }
     }
 }
 
@@ -104,7 +126,9 @@ std::string staging_prefix(const fs::path& target) {
 int lock_folder(const fs::path& folder) {
     const int lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock >= 0 && ::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+        const int error = errno;
         ::close(lock);
+        errno = error;
         return -1;
     }
     return lock;
@@ -162,11 +186,18 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
     fs::create_directories(target_.parent_path(), failed);
     if (failed) fail(folder, fmt::format("cannot make its folder: {}", failed.message()));
     remove_abandoned(target_);
-    std::string name = (target_.parent_path() / (staging_prefix(target_) + "XXXXXX")).string();
-    if (::mkdtemp(name.data()) == nullptr)
-        fail(folder, fmt::format("cannot be written: {}", std::strerror(errno)));
-    staging_ = name;
-    lock_ = lock_folder(staging_);
+    // Another run may take it for one that was left, before it is locked; then it is gone, or locked by that one.
+    while (lock_ < 0) {
+        std::string name = (target_.parent_path() / (staging_prefix(target_) + "XXXXXX")).string();
+        if (::mkdtemp(name.data()) == nullptr)
+            fail(folder, fmt::format("cannot be written: {}", std::strerror(errno)));
+        staging_ = name;
+        lock_ = lock_folder(staging_);
+        struct stat entry {};
+        if (lock_ < 0 && errno != EWOULDBLOCK && errno != ENOENT) break;  // a file system without locks
+        if (lock_ >= 0 && (::fstat(lock_, &entry) != 0 || entry.st_nlink == 0))
+            ::close(std::exchange(lock_, -1));
+    }
     fill(staging_ / marker, "");
     ::chmod(
         staging_.c_str(), 0777 & ~[] {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "reports/document/document.hpp"
 #include "reports/document/json.hpp"
 #include "reports/text/escape.hpp"
 

@@ -90,7 +90,9 @@ json script_data(const Figure& figure, const std::string& name) {
                  high = figure.sheet ? figure.sheet->height : height * figure.height;
     double widest = 0;  // of the words beside the axis [px], which gnuplot takes for narrower than they are
     for (const auto& [at, text] : figure.y_ticks) {
-        ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", text}});
+        std::string plain;  // to gnuplot a tick's text is a format
+        for (const char c : text) plain += c == '%' ? "%%" : std::string(1, c);
+        ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", plain}});
         widest = std::max(widest, text_width(text, 11));
     }
     return {{"name", name},
@@ -146,14 +148,18 @@ std::string figure_data(const Figure& figure) {
 
 }  // namespace
 
+std::vector<NamedContent> sources(const Plot& plot) {
+    return {{plot.name + ".csv", figure_data(*plot.figure)},
+            {plot.name + ".gp", render("figure.gp", script_data(*plot.figure, plot.name), Escape::gnuplot)}};
+}
+
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
                                const PlotOptions& options) {
     const fs::path figures = folder / "figures";
     std::vector<std::string> scripts;
-    for (const auto& [figure, name] : plots) {
-        fill(figures / (name + ".csv"), figure_data(*figure));
-        fill(figures / (name + ".gp"), render("figure.gp", script_data(*figure, name), Escape::gnuplot));
-        scripts.push_back("figures/" + name + ".gp");
+    for (const auto& plot : plots) {
+        for (const auto& [file, content] : sources(plot)) fill(figures / file, content);
+        scripts.push_back("figures/" + plot.name + ".gp");
     }
     if (scripts.empty()) return {};
     run_gnuplot(folder, scripts);  // one process: each script begins by resetting everything

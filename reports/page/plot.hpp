@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/files/folder.hpp"
 #include "reports/page/page.hpp"
 #include "reports/page/svg.hpp"
 
@@ -19,6 +20,9 @@ struct PlotOptions {
     bool pdf = false;         // PDF files too
     bool keep_source = true;  // scripts and data
 };
+
+// A figure's script and data, as they stand beside it: NAME.csv, NAME.gp.
+std::vector<NamedContent> sources(const Plot& plot);
 
 // Writes figures/NAME.svg with NAME.gp and NAME.csv into `folder`; one picture per plot. The k-th picture's
 // ids begin with "fk", counted from 1. Throws PlotError, FileError.

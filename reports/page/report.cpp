@@ -279,21 +279,51 @@ json parse_result(std::string_view text, const std::string& file) {
     return result;
 }
 
-std::vector<std::string> write_report(const json& result, const std::string& file, const fs::path& folder,
-                                      const ReportOptions& options) {
-    Staging staging(folder);
-    const Field root{&result, "", &file};
-    Page page;
-    std::list<ScenePart> parts;  // plots point into them
-    std::vector<Plot> plots;
+namespace {
+
+// A report before its figures are drawn.
+struct Draft {
+    Page page{};
+    std::list<ScenePart> parts{};  // plots point into them
+    std::vector<Plot> plots{};
+};
+
+Draft draft(const Field& root) {
+    Draft made;
     for (const auto& scene : root["scenes"].items()) {
-        parts.push_back(page.part(scene));
-        plots.insert(plots.end(), parts.back().plots.begin(), parts.back().plots.end());
+        made.parts.push_back(made.page.part(scene));
+        const auto& plots = made.parts.back().plots;
+        made.plots.insert(made.plots.end(), plots.begin(), plots.end());
     }
-    if (options.progress) options.progress(fmt::format("{} figures", plots.size()));
-    page.pictures = draw(plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    return made;
+}
+
+// Its pages and tables, the figures in it; and the answer of each scene.
+struct Texts {
+    std::vector<NamedContent> files{};
+    std::vector<Answer> answers{};
+};
+
+// `sections` as Page::scene has them.
+Answer answer(const Field& scene, const json& sections) {
+    const Field verdict = scene["verdict"];
+    Answer made{.name = scene["name"].text(),
+                .source = scene["source"].text(),
+                .sentence = {},
+                .mark = {},
+                .conclusive = verdict["conclusive"].truth(),
+                .reasons = verdict["reasons"].texts()};
+    for (const auto& section : sections)
+        if (section["first"]) made.sentence = section["lead"];
+    const auto judgement = scene.find("judgement");
+    made.mark = judgement ? (*judgement)["verdict"].text() : made.conclusive ? "judged" : "not judged";
+    return made;
+}
+
+Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
+    const Field root{&result, "", &file};
     json scenes = json::array();
-    for (const auto& part : parts) scenes.push_back(page.scene(part));
+    for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
     json tints = json::array();
     for (std::size_t k = 0; k < palette.size(); ++k)
         tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
@@ -301,28 +331,49 @@ std::vector<std::string> write_report(const json& result, const std::string& fil
         {"title", scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
         {"several", scenes.size() > 1},
         {"scenes", scenes},
-        {"summary", table_json(summary(parts))},
+        {"summary", table_json(summary(draft.parts))},
         {"provenance", provenance(root)},
         {"reproduce", for_terminal(root["reproduce"].text())},
         {"alarms", alarms(root)},
         {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
-    if (options.archive) {
-        fill(staging.path() / "README.md", markdown);
-        fill(staging.path() / "numbers.csv", numbers_csv(result, file));
-    } else {
-        fill(staging.path() / "report.html", render("html/page", data, Escape::html));
-        fill(staging.path() / "report.md", markdown);
-        fill(staging.path() / "result.json", result.dump(1) + "\n");
-        fill(staging.path() / "curves.csv", curves_csv(result, file));
-        fill(staging.path() / "forces.csv", forces_csv(result, file));
-    }
+    Texts made;
+    if (archive)
+        made.files = {{"README.md", markdown}, {"numbers.csv", numbers_csv(result, file)}};
+    else
+        made.files = {{"report.html", render("html/page", data, Escape::html)},
+                      {"report.md", markdown},
+                      {"result.json", result.dump(1) + "\n"},
+                      {"curves.csv", curves_csv(result, file)},
+                      {"forces.csv", forces_csv(result, file)}};
+    for (auto text = scenes.begin(); const auto& part : draft.parts)
+        made.answers.push_back(answer(part.scene, (*text++)["sections"]));
+    return made;
+}
+
+}  // namespace
+
+std::vector<NamedContent> report_texts(const json& result, const std::string& file) {
+    Draft report = draft({&result, "", &file});
+    std::vector<NamedContent> files;
+    for (const auto& plot : report.plots) std::ranges::move(sources(plot), std::back_inserter(files));
+    report.page.pictures.resize(report.plots.size());
+    for (const bool archive : {true, false})
+        std::ranges::move(texts(report, result, file, archive).files, std::back_inserter(files));
+    return files;
+}
+
+std::vector<Answer> write_report(const json& result, const std::string& file, const fs::path& folder,
+                                 const ReportOptions& options) {
+    Staging staging(folder);
+    Draft report = draft({&result, "", &file});
+    if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
+    report.page.pictures =
+        draw(report.plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    const Texts made = texts(std::move(report), result, file, options.archive);
+    for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
     staging.publish();
-    std::vector<std::string> answers;
-    for (const auto& scene : scenes)
-        for (const auto& section : scene["sections"])
-            if (section["first"]) answers.push_back(section["lead"]);
-    return answers;
+    return made.answers;
 }
 
 }  // namespace elastocheck::reports

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "reports/page/gnuplot.hpp"
 #include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
 
@@ -149,7 +150,7 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
                         const std::string& description) {
     pugi::xml_document document;
     if (!document.load_string(svg.c_str()) || !document.child("svg"))
-        throw std::runtime_error(fmt::format("figure '{}': gnuplot wrote no SVG", id));
+        throw PlotError(fmt::format("gnuplot wrote no whole SVG of figure {}; is the disk full?", id));
     xml_node root = document.child("svg");
     for_each(root, [](xml_node node) {
         if (is(node, "title") || is(node, "desc")) node.parent().remove_child(node);

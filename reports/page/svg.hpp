@@ -32,7 +32,7 @@ struct Illustration {
 
 // Removes what gnuplot leaves unused, turns palette colours into classes (e-s stroke, e-f fill, e-k both
 // through currentColor), prefixes every id with `id`, and gives it a name and a description. Throws
-// std::runtime_error when `svg` is no SVG.
+// PlotError when `svg` is no whole SVG.
 Illustration illustrate(const std::string& svg, const std::string& id, const std::string& title,
                         const std::string& description);
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
 namespace elastocheck::reports {
 namespace {
 
@@ -17,6 +21,11 @@ struct Character {
     bool turns_writing() const {
         return code == 0x061C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
                (code >= 0x2066 && code <= 0x2069);
+    }
+    // To a spreadsheet, at the beginning of a cell; the last four are the full-width forms.
+    bool begins_formula() const {
+        return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D || code == 0xFF0B ||
+               code == 0xFF0D || code == 0xFF20;
     }
     bool plain() const { return valid && !control() && !turns_writing(); }
 };
@@ -49,6 +58,13 @@ std::string translated(std::string_view text, Put&& put) {
         text.remove_prefix(c.bytes.size());
     }
     return result;
+}
+
+bool is_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double ignored = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+    return error == std::errc() && end == text.data() + text.size();
 }
 
 constexpr std::string_view stand_in = "\uFFFD";  // for what no page can show
@@ -92,11 +108,24 @@ std::string for_html(std::string_view text) {
 }
 
 std::string for_markdown(std::string_view text) {
-    return translated(text, [](const Character& c) -> std::string {
+    const std::string_view whole = text;
+    // Where a line begins: "- x", "+ x", "1. x" would be lists, "---" and "===" lines.
+    const std::size_t digits = std::min(whole.find_first_not_of("0123456789"), whole.size());
+    const auto ends = [&](std::size_t at) {
+        return at >= whole.size() || whole[at] == ' ' || whole[at] == '\t';
+    };
+    const std::size_t same = std::min(whole.find_first_not_of(whole.substr(0, 1)), whole.size());
+    return translated(text, [&](const Character& c) -> std::string {
         if (!c.plain())
             return std::string(c.code == '\n' || c.code == '\r' || c.code == '\t' ? " " : stand_in);
-        const bool markup = std::string_view("\\`*_[]<>#|~&").find(c.bytes) != std::string_view::npos;
-        return fmt::format("{}{}", markup ? "\\" : "", c.bytes);
+        const auto at = static_cast<std::size_t>(c.bytes.data() - whole.data());
+        const bool list = (at == 0 && (c.code == '-' || c.code == '+' || c.code == '=') && ends(same) &&
+                           whole.size() > 1) ||
+                          (at == digits && at > 0 && (c.code == '.' || c.code == ')') && ends(at + 1));
+        const bool link = (c.code == ':' && whole.substr(at).starts_with("://")) ||
+                          (c.code == '.' && at >= 3 && whole.substr(at - 3, 3) == "www");
+        const bool markup = std::string_view("\\`*_[]<>#|~&$").find(c.bytes) != std::string_view::npos;
+        return fmt::format("{}{}", markup || list || link ? "\\" : "", c.bytes);
     });
 }
 
@@ -108,11 +137,13 @@ std::string for_gnuplot(std::string_view text) {
 }
 
 std::string for_csv(std::string_view text) {
-    bool quoted = false;
+    bool quoted = false, begins = !is_number(text);  // a cell: also behind what some take for the end of one
     std::string field = translated(text, [&](const Character& c) -> std::string {
         if (!c.plain()) return " ";
-        quoted = quoted || c.code == ',' || c.code == '"';
-        return c.code == '"' ? "\"\"" : std::string(c.bytes);
+        quoted = quoted || c.code == ',' || c.code == '"' || c.code == ';';
+        const bool formula = begins && c.begins_formula();
+        begins = c.code == ';' || c.code == ',' || (begins && (c.code == ' ' || c.code == '"'));
+        return (formula ? "'" : "") + (c.code == '"' ? std::string(R"("")") : std::string(c.bytes));
     });
     return quoted ? fmt::format("\"{}\"", field) : field;
 }

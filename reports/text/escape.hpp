@@ -19,14 +19,16 @@ std::string for_terminal(std::string_view text);
 // HTML, as text or in a quoted attribute.
 std::string for_html(std::string_view text);
 
-// Markdown, also in a cell of a table: nothing in it is markup, nothing ends the line.
+// Markdown, also in a cell of a table or as a paragraph: nothing in it is markup, a link, a formula or a list, nothing
+// ends the line.
 std::string for_markdown(std::string_view text);
 
 // A gnuplot script: between single quotes, or in a comment. An apostrophe becomes a typographic one:
 // gnuplot 5.4 takes a doubled one for the end of the text where it begins the text or follows another.
 std::string for_gnuplot(std::string_view text);
 
-// A field of a CSV file (RFC 4180), quoted where it has to be; on one line.
+// A field of a CSV file (RFC 4180), quoted where it has to be; on one line. What a spreadsheet would compute (=, +, -, @
+// at the beginning of a cell, of one after a semicolon too) gets an apostrophe before it; numbers stay.
 std::string for_csv(std::string_view text);
 
 // The characters that XML 1.0 has; what writes the document escapes its markup.

@@ -10,6 +10,7 @@
 
 #include "models/compile.hpp"
 #include "reports/document/curves.hpp"
+#include "reports/document/json.hpp"
 #include "reports/tables/csv.hpp"
 #include "reports/tables/render.hpp"
 #include "tests/support/scenes.hpp"
@@ -159,6 +160,22 @@ TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
                   columns);
         at = end + 1;
     }
+}
+
+// Three bytes of text, and as many lists of their own: a file of 30 MB would take 2 GB.
+TEST(Json, WhatWouldTakeMoreMemoryThanThereIsIsRefusedBeforeItIsParsed) {
+    std::string many = "[";
+    while (many.size() < 30'000'000) many += "[],";
+    many.back() = ']';
+    try {
+        (void)parse_json(many);
+        ADD_FAILURE() << "parsed";
+    } catch (const JsonError& error) {
+        EXPECT_EQ(std::string(error.what()), "would take about 2.4 GB of memory; allowed: 2 GB");
+    }
+    std::string text = "[\"";  // signs within a text are text
+    text += many.substr(0, 20'000'000) + "\"]";
+    EXPECT_EQ(parse_json(text).size(), 1u);
 }
 
 }  // namespace

@@ -50,5 +50,32 @@ TEST(Escape, EachLanguagesOwnSignsAreText) {
     EXPECT_EQ(for_shell(""), "''");
 }
 
+// Spreadsheets compute what begins so, also in quotes, and take a semicolon for the end of a cell where numbers have
+// decimal commas.
+TEST(Escape, NoCellOfASpreadsheetIsAFormula) {
+    EXPECT_EQ(for_csv("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+    EXPECT_EQ(for_csv("@SUM(1)"), "'@SUM(1)");
+    EXPECT_EQ(for_csv("+cmd"), "'+cmd");
+    EXPECT_EQ(for_csv("-cmd"), "'-cmd");
+    EXPECT_EQ(for_csv("＝1＋1"), "'＝1＋1");
+    EXPECT_EQ(for_csv(" =1"), " '=1");
+    EXPECT_EQ(for_csv("\t=1"), " '=1");
+    EXPECT_EQ(for_csv("\"=1"), "\"\"\"'=1\"");
+    EXPECT_EQ(for_csv("a;=1,@b"), "\"a;'=1,'@b\"");
+    for (const char* fine : {"a=b", "-1", "+1.5e-3", "1-2", "toe [deg]", "x@y"})
+        EXPECT_EQ(for_csv(fine), fine);
+}
+
+TEST(Escape, MarkdownHasNeitherListsNorLinksNorFormulasOfANamesMaking) {
+    EXPECT_EQ(for_markdown("- x"), "\\- x");
+    EXPECT_EQ(for_markdown("+ x"), "\\+ x");
+    EXPECT_EQ(for_markdown("---"), "\\---");
+    EXPECT_EQ(for_markdown("12. x"), "12\\. x");
+    EXPECT_EQ(for_markdown("1) x"), "1\\) x");
+    EXPECT_EQ(for_markdown("https://x www.y"), "https\\://x www\\.y");
+    EXPECT_EQ(for_markdown("$x$"), "\\$x\\$");
+    for (const char* fine : {"-0.3", "1.5", "-", "a: b", "12", "a - b"}) EXPECT_EQ(for_markdown(fine), fine);
+}
+
 }  // namespace
 }  // namespace elastocheck::reports

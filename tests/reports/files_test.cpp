@@ -1,7 +1,13 @@
 // Files are written whole or not at all.
 #include "reports/files/files.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <thread>
 
 #include "tests/support/folder.hpp"
 
@@ -88,6 +94,29 @@ TEST(ReadWhole, ReadsFilesAndNoDevices) {
     EXPECT_EQ(read_whole(folder.write("f", "x")), "x");
     for (const auto& odd : {std::filesystem::path("/dev/zero"), folder.path, folder.path / "none"})
         EXPECT_THROW(read_whole(odd), FileError) << odd;
+}
+
+TEST(ReadWhole, RefusesWhatIsLargerThanItsKindAsSoonAsItShows) {
+    const Folder folder;
+    const std::string file = folder.write("f", std::string((1 << 20) + 1, 'x'));
+    EXPECT_EQ(read_whole(file, (1 << 20) + 1).size(), (1u << 20) + 1);
+    const std::string pipe = (folder.path / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::thread endless([&] {
+        ::signal(SIGPIPE, SIG_IGN);
+        const int out = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC);
+        const std::string much(1 << 16, 'x');
+        while (::write(out, much.data(), much.size()) > 0) continue;
+        ::close(out);
+    });
+    for (const std::string& one : {file, pipe}) try {
+            (void)read_whole(one, 1 << 20);
+            ADD_FAILURE() << one << " was read";
+        } catch (const FileError& error) {
+            EXPECT_EQ(std::string(error.what()),
+                      one + ": cannot be read: it is larger than 1 MiB; no file of its kind is");
+        }
+    endless.join();
 }
 
 TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {

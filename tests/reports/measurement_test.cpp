@@ -8,6 +8,7 @@
 
 #include "models/compile.hpp"
 #include "reports/document/provenance.hpp"
+#include "reports/files/limits.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/measured.hpp"
 #include "reports/page/sections/sections.hpp"
@@ -46,6 +47,13 @@ std::string refusal(const std::string& csv) {
         return error.what();
     }
     return "read";
+}
+
+TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
+    std::string csv = "load_N,toe_deg\n";
+    for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none that is reached
+    EXPECT_EQ(measured(csv)["points"], most_measured);
+    EXPECT_EQ(refusal(csv + "5e9,0\n"), "kc.csv:100002: more points than 100000, the most that are read");
 }
 
 TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecursion) {

@@ -1,19 +1,25 @@
 // Independent solves of one model from several threads: each the same, bit by bit, as when it runs alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <functional>
 #include <latch>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "compare/compare.hpp"
 #include "models/branch.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
+#include "recursive/respond.hpp"
 #include "recursive/solve.hpp"
+#include "reference/energy/respond.hpp"
 #include "reference/energy/solve.hpp"
+#include "reference/equilibrium/respond.hpp"
 #include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck {
@@ -37,8 +43,29 @@ Bits bits(const EquilibriumPath& path) {
     return all;
 }
 
-// A solve: along the k-th one-way branch of the model it is given, which all threads share.
-using Solve = std::function<EquilibriumPath(const Model&, const Branch&)>;
+Bits bits(const Response& response) {
+    Bits all{static_cast<std::uint64_t>(response.outcome), std::hash<std::string>{}(response.detail)};
+    for (const auto& answer : response.increments)
+        for (const Increment& increment : answer)
+            for (const auto& v : {increment.dr, increment.dpi})
+                for (const double number : v) all.push_back(std::bit_cast<std::uint64_t>(number));
+    return all;
+}
+
+// How the states of a path answer a force on the first body, by `respond` of a leg.
+template <class Respond>
+Bits answers(const EquilibriumPath& path, Respond respond) {
+    const std::vector<Disturbance> push{UnitWrench{{0, {0.1, 0.2, 0.3}}, {1, 2, 3}, {0, 0, 1}}};
+    Bits all = bits(path);
+    for (const Equilibrium& point : path.points) {
+        const Bits one = bits(respond(point, push));
+        all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+}
+
+// A solve: along the k-th one-way branch of the model it is given, which all threads share; all that it says, as bits.
+using Solve = std::function<Bits(const Model&, const Branch&)>;
 
 // The branches of the scene by `solve`, one after the other in each thread; all threads start at once, each
 // with another branch, so that they are in each other's way as much as they can be.
@@ -48,7 +75,7 @@ void expect_undisturbed(const char* scene, const Solve& solve) {
     std::vector<Bits> alone;
     for (const Branch& branch : model.branches)
         for (const Branch& way : ways(branch)) models.push_back(on_branch(model, way));
-    for (const Model& each : models) alone.push_back(bits(solve(each, each.branches.front())));
+    for (const Model& each : models) alone.push_back(solve(each, each.branches.front()));
 
     std::vector<std::vector<Bits>> together(threads, std::vector<Bits>(models.size()));
     std::latch start(threads);
@@ -59,7 +86,7 @@ void expect_undisturbed(const char* scene, const Solve& solve) {
                 start.arrive_and_wait();
                 for (std::size_t k = 0; k < models.size(); ++k) {
                     const std::size_t way = (k + t) % models.size();
-                    together[t][way] = bits(solve(models[way], models[way].branches.front()));
+                    together[t][way] = solve(models[way], models[way].branches.front());
                 }
             });
     }
@@ -82,7 +109,10 @@ TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
         for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"}) {
             SCOPED_TRACE(std::string(method.name));
             expect_undisturbed(scene, [&](const Model& model, const Branch& branch) {
-                return recursive::solve(model, branch, {.method = method, .steps = 20});
+                const auto path = recursive::solve(model, branch, {.method = method, .steps = 20});
+                return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
+                    return recursive::respond(model, branch, state, push, method);
+                });
             });
         }
 }
@@ -90,15 +120,40 @@ TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
 TEST(Threads, TheEquilibriumLegIsUndisturbed) {
     for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
-            return reference::equilibrium::solve(model, branch, loads(branch));
+            const auto path = reference::equilibrium::solve(model, branch, loads(branch));
+            return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
+                return reference::equilibrium::respond(model, branch, state, push);
+            });
         });
 }
 
 TEST(Threads, TheEnergyLegIsUndisturbed) {
     for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
-            return reference::energy::solve(model, branch, loads(branch));
+            const auto path = reference::energy::solve(model, branch, loads(branch));
+            return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
+                return reference::energy::respond(model, branch, state, push);
+            });
         });
+}
+
+// Whoever compares asks all legs, how they answer at the wheels, and what each thinks of the others' states.
+TEST(Threads, AComparisonWithItsCharacteristicsIsUndisturbed) {
+    expect_undisturbed("chrono_mcpherson_travel.yaml", [](const Model& model, const Branch&) {
+        compare::Options few;
+        few.recursion.steps = 4;
+        const auto all = compare::compare(model, few);
+        Bits said;
+        const auto add = [&](double number) { said.push_back(std::bit_cast<std::uint64_t>(number)); };
+        for (const auto& branch : all.branches)
+            for (const auto& run : branch.runs) {
+                for (const auto& row : run.curve.values) std::ranges::for_each(row, add);
+                for (const auto& at : run.compliance)
+                    for (const double number : at.centre.reshaped()) add(number);
+                for (const auto& judged : run.judged) add(judged.force), add(judged.length);
+            }
+        return said;
+    });
 }
 
 }  // namespace

@@ -1,0 +1,17 @@
+// How much is read of what comes from elsewhere. What this program writes is smaller, within the limits of its runs
+// (command/limits.hpp).
+#pragma once
+
+#include <cstddef>
+
+namespace elastocheck::reports {
+
+inline constexpr std::size_t largest_file = std::size_t{512} << 20;  // [bytes] of a result, the largest kind
+inline constexpr std::size_t largest_baseline = std::size_t{64} << 20;     // [bytes]
+inline constexpr std::size_t largest_measurement = std::size_t{64} << 20;  // [bytes]
+inline constexpr std::size_t most_measured = 100'000;                      // points in a measurement
+
+inline constexpr int deepest_json = 64;      // a result needs fourteen
+inline constexpr double largest_json = 2e9;  // [bytes] in memory, as its signs tell before it is parsed
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,41 @@
+// What comes from outside, each kind as a function of its bytes. It returns where the program gave an answer that is
+// documented: the input understood, or refused with what is wrong. Anything else escapes (an exception of another type),
+// ends the process (a signal, a sanitizer), or is a Fault: what came of the input breaks a claim that the program makes.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace elastocheck::fuzz {
+
+struct Fault : std::logic_error {
+    using std::logic_error::logic_error;
+};
+
+struct Target {
+    const char* name;               // of its corpus, too
+    void (*run)(std::string_view);  //
+    bool is_json = false;           // mutated as a tree, not as lines
+};
+
+// A scene as text, up to the model that the solvers take. A line `# --set PATH=VALUE` is a setting as well.
+void scene(std::string_view input);
+// A result document: every text of the report made of it.
+void result(std::string_view input);
+// A baseline: judged against a sound one, both ways round, and told in every form the gate has.
+void baseline(std::string_view input);
+// Measured curves: compared with curves of a suspension, and told.
+void measurement(std::string_view input);
+// A table beside a scene.
+void table(std::string_view input);
+
+inline constexpr std::array targets{Target{"scene", scene}, Target{"result", result, true},
+                                    Target{"baseline", baseline, true}, Target{"measurement", measurement},
+                                    Target{"table", table}};
+
+// Throws Fault where the text, but for its ends of lines, holds what no name may hold.
+void expect_plain(std::string_view what, std::string_view text);
+
+}  // namespace elastocheck::fuzz
