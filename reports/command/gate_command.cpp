@@ -86,6 +86,15 @@ std::vector<Task> tasks(const GateOptions& options) {
     return all;
 }
 
+// The scene as its baseline names it: the way there, which may lead through folders with names that nobody can write down.
+std::string name_beside(const Task& task) {
+    const fs::path folder = task.baseline.has_parent_path() ? task.baseline.parent_path() : ".";
+    std::string name = fs::relative(task.scene, folder).generic_string();
+    if (const std::string wrong = flaw(name); !wrong.empty())
+        throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text", name, wrong));
+    return name;
+}
+
 // What this build measures of a scene, or what --from says that another did.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty())
@@ -99,11 +108,9 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
             options.progress(fmt::format("{}: {}", task.scene.filename().string(), what));
         };
     BaselineFile file;
+    file.scene_file = name_beside(task);
     file.baseline.accepted = compare::measure(model, compare::compare(model, how));
     if (options.progress) options.progress("");
-    file.scene_file =
-        fs::relative(task.scene, task.baseline.parent_path().empty() ? "." : task.baseline.parent_path())
-            .generic_string();
     file.input_hash = input_hash(read_whole(task.scene));
     file.numbers = loaded.scene.numbers;
     file.provenance = provenance();

@@ -9,6 +9,8 @@
 
 #include <thread>
 
+#include "models/reader/limits.hpp"
+#include "reports/files/limits.hpp"
 #include "tests/support/folder.hpp"
 
 namespace elastocheck::reports {
@@ -133,6 +135,33 @@ TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
     }
     EXPECT_EQ(entries(folder.path), 2);
     EXPECT_THROW(write_whole("/dev/full/result.json", "x", curves_file), FileError);
+}
+
+// "10 000 000"
+std::string grouped(double number) {
+    std::string digits = std::to_string(static_cast<long long>(number));
+    for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, " ");
+    return digits;
+}
+
+TEST(Limits, StandInTheReadmeAsInTheCode) {
+    const std::string readme = text_of(ELASTOCHECK_VALIDATION "/../README.md");
+    const std::size_t begin = readme.find("## Limits");
+    ASSERT_NE(begin, readme.npos);
+    const std::string limits = readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
+    for (const std::string& said :
+         {grouped(reader::largest_text >> 20U) + " MiB; " + grouped(reader::deepest_nesting) +
+              " levels of nesting",
+          "names of " + grouped(reader::longest_name) + " bytes", grouped(reader::most_bodies) + " bodies",
+          grouped(reader::most_segments) + " segments", grouped(reader::most_rows) + " rows",
+          "of a branch " + grouped(reader::most_steps) + " steps",
+          grouped(reader::most_poses) + " steps times bodies",
+          grouped(largest_file >> 20U) + " MiB; " + grouped(deepest_json) + " levels of nesting; " +
+              grouped(1e-9 * largest_json) + " GB in memory",
+          "| a baseline | " + grouped(largest_baseline >> 20U) + " MiB",
+          "| measured curves | " + grouped(largest_measurement >> 20U) + " MiB, " + grouped(most_measured) +
+              " points"})
+        EXPECT_TRUE(limits.find(said) != limits.npos) << said;
 }
 
 }  // namespace

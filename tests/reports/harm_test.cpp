@@ -123,6 +123,21 @@ TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
     EXPECT_FALSE(contains("\n" + said.out + said.err, "\n::error")) << said.err;
 }
 
+TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
+    const Folder folder;
+    for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
+        fs::create_directory(folder.path / name);
+        std::ofstream(folder.path / name / "s.yaml") << text_of(scene);
+        const Said said =
+            support::says("cd '" + (folder.path / name).string() + "' && env -u CI " + ELASTOCHECK_COMMAND +
+                          " gate s.yaml --baseline ../baselines --accept --reason x");
+        EXPECT_EQ(said.code, 2) << said.out << said.err;
+        EXPECT_TRUE(contains(said.err, "/s.yaml: ") && contains(said.err, "names are one line of UTF-8 text"))
+            << said.err;
+        EXPECT_FALSE(fs::exists(folder.path / "baselines"));
+    }
+}
+
 TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
     const Folder folder;
     std::string baseline = text_of(scenes + "/baselines/pinned_bar.json");
