@@ -22,15 +22,28 @@ struct Place {
     std::vector<double> over(const Curve& curve) const { return channel ? curve.channel(*channel) : curve.a; }
 };
 
-bool reaches(const Curve& curve, const Place& place, double x) {
-    const auto at = place.over(curve);
-    if (!trend(at).monotonic()) return false;
-    const auto [low, high] = std::minmax(at.front(), at.back());
-    return x >= low && x <= high;
-}
+// A leg's curve along one branch as it is read; made once, for points may be many.
+struct Line {
+    std::vector<double> over;     // what points are placed by; empty where it turns back
+    std::vector<double> channel;  // the output that is asked for
 
-double value_at(const Curve& curve, const Place& place, std::size_t channel, double x) {
-    return reaches(curve, place, x) ? interpolate(place.over(curve), curve.channel(channel), x, 6) : nan;
+    bool reaches(double x) const {
+        return !over.empty() && x >= std::min(over.front(), over.back()) &&
+               x <= std::max(over.front(), over.back());
+    }
+    double at(double x) const { return reaches(x) ? interpolate(over, channel, x, 6) : nan; }
+};
+using Lines = std::vector<std::array<Line, legs.size()>>;  // per branch and leg
+
+Lines lines_of(const Comparison& comparison, const Place& place) {
+    Lines lines(comparison.branches.size());
+    for (std::size_t b = 0; b < lines.size(); ++b)
+        for (const Leg leg : legs) {
+            auto& over = lines[b][static_cast<std::size_t>(leg)].over;
+            over = place.over(curve_of(comparison.branches[b], leg));
+            if (!trend(over).monotonic()) over.clear();
+        }
+    return lines;
 }
 
 // Whether two branches go to different sides of a = 0: then a point without a name belongs to one at most.
@@ -42,7 +55,7 @@ bool apart(const Branch& a, const Branch& b) {
 
 // Position in Comparison::branches of each point's branch, or -1.
 std::vector<int> branches_of(const Model& model, const Comparison& comparison, const Measured& measured,
-                             const Place& place, const std::vector<double>& x) {
+                             const Lines& lines, const std::vector<double>& x) {
     const auto& all = comparison.branches;
     std::vector<int> result;
     if (!measured.branch.empty()) {
@@ -62,10 +75,10 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison, c
                     "belongs to",
                     all[b].branch, all[a].branch));
     for (const double at : x) {
-        const auto found = std::ranges::find_if(all, [&](const BranchComparison& branch) {
-            return reaches(curve_of(branch, Leg::equilibrium), place, at);
+        const auto found = std::ranges::find_if(lines, [&](const auto& of_branch) {
+            return of_branch[static_cast<std::size_t>(Leg::equilibrium)].reaches(at);
         });
-        result.push_back(found == all.end() ? -1 : static_cast<int>(found - all.begin()));
+        result.push_back(found == lines.end() ? -1 : static_cast<int>(found - lines.begin()));
     }
     return result;
 }
@@ -83,7 +96,8 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
         column.change = false;
     }
     const auto read = [&](const Place& place, const std::vector<double>& x) {
-        const auto branch = branches_of(model, comparison, measured, place, x);
+        Lines lines = lines_of(comparison, place);
+        const auto branch = branches_of(model, comparison, measured, lines, x);
         if (result.branch.empty())
             for (const int b : branch)
                 result.branch.push_back(b < 0 ? "" : comparison.branches[static_cast<std::size_t>(b)].branch);
@@ -92,13 +106,16 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
             MeasuredRow row{.channel = column.channel, .off = {}};
             std::array<double, legs.size()> squares{};
             row.off.fill({nan, nan});
+            for (std::size_t b = 0; b < lines.size(); ++b)
+                for (const Leg leg : legs)
+                    lines[b][static_cast<std::size_t>(leg)].channel =
+                        curve_of(comparison.branches[b], leg).channel(column.channel);
             for (std::size_t k = 0; k < x.size(); ++k) {
                 if (branch[k] < 0) continue;
                 std::array<double, legs.size()> now{};
                 for (const Leg leg : legs)
                     now[static_cast<std::size_t>(leg)] =
-                        value_at(curve_of(comparison.branches[static_cast<std::size_t>(branch[k])], leg),
-                                 place, column.channel, x[k]) -
+                        lines[static_cast<std::size_t>(branch[k])][static_cast<std::size_t>(leg)].at(x[k]) -
                         column.values[k];
                 if (!std::ranges::all_of(now, [](double d) { return std::isfinite(d); })) continue;
                 ++row.compared;

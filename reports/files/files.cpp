@@ -117,7 +117,7 @@ void remove_abandoned(const fs::path& file, const std::string& prefix) {
 
 }  // namespace
 
-FileToBe::FileToBe(fs::path file, const FileKind& kind) : file_(std::move(file)) {
+FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
     std::error_code failed;
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
@@ -161,17 +161,26 @@ void FileToBe::add(std::string_view content) {
 
 void FileToBe::finish() {
     write_waiting();
-    bool good = flush_and_close(std::exchange(out_, -1), true);
+    const int lock = ::fcntl(out_, F_DUPFD_CLOEXEC, 0);  // it stays locked until it has its name
+    bool good = lock >= 0 && flush_and_close(std::exchange(out_, -1), true);
+    int error = errno;
     if (good) {
-        // Where nothing was, nothing may have come meanwhile; where there was one of ours, it is replaced.
-        std::error_code failed;
-        const bool is_new = !fs::exists(fs::symlink_status(file_, failed));
-        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(),
-                           is_new ? RENAME_NOREPLACE : 0) == 0;
-        if (!good && errno == EINVAL)  // a file system without it
+        // Where nothing was, what has come meanwhile is replaced only if it is ours as well.
+        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) == 0;
+        if (!good && (errno == EEXIST || errno == EINVAL)) {  // EINVAL: a file system without it
+            try {
+                check_may_write(file_, *kind_);
+            } catch (const FileError&) {
+                ::close(lock);
+                ::unlink(temporary_.c_str());
+                throw;
+            }
             good = ::rename(temporary_.c_str(), file_.c_str()) == 0;
+        }
+        error = errno;
     }
-    if (!good) give_up(errno);
+    if (lock >= 0) ::close(lock);
+    if (!good) give_up(error);
 }
 
 void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {

@@ -49,6 +49,7 @@ class FileToBe {
     [[noreturn]] void give_up(int error);
     void write_waiting();
 
+    const FileKind* kind_;  // outlives it: one of those above
     std::filesystem::path file_, temporary_;
     std::string waiting_;  // to be written together
     int out_ = -1;

@@ -7,9 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <regex>
+#include <set>
+#include <vector>
 
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
@@ -104,7 +107,6 @@ TEST(Writers, OfOneFileAtOnceLeaveOneOfTheirs) {
     const auto content = [](int writer) {
         return std::string(curves_file.beginning) + std::string(200'000, static_cast<char>('a' + writer));
     };
-    write_whole(file, content(0), curves_file);
     EXPECT_EQ(failures(4,
                        [&](int writer) {
                            for (int k = 0; k < 40; ++k) write_whole(file, content(writer), curves_file);
@@ -220,8 +222,8 @@ TEST(FullDisk, OfAFileSystemToo) {
     const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
     if (says("unshare -rm sh -c '" + mount + "'").code != 0)
         GTEST_SKIP() << "this user may not mount a file system of his own";
-    for (const std::string what :
-         {"compare " + scene + " -o out", "solve " + scene + " --steps 2000 -o out.csv"}) {
+    for (const std::string& what : std::vector<std::string>{"compare " + scene + " -o out",
+                                                            "solve " + scene + " --steps 2000 -o out.csv"}) {
         const Said said = says("unshare -rm sh -c '" + mount + " && cd " + folder.path.string() + " && " +
                                command + what + "; echo code $?; ls -A'");
         EXPECT_TRUE(said.out.ends_with("code 2\n")) << what << ": " << said.out << said.err;
@@ -230,9 +232,9 @@ TEST(FullDisk, OfAFileSystemToo) {
 }
 
 TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
-    for (const std::string what :
-         {"compare " + scene + " -o /proc/elastocheck", "solve " + scene + " -o /proc/elastocheck.csv",
-          "gate " + scene + " --junit /proc/elastocheck.xml"}) {
+    for (const std::string& what : std::vector<std::string>{
+             "compare " + scene + " -o /proc/elastocheck", "solve " + scene + " -o /proc/elastocheck.csv",
+             "gate " + scene + " --junit /proc/elastocheck.xml"}) {
         const Said said = says(command + what);
         EXPECT_EQ(said.code, 2) << what << said.out;
         EXPECT_TRUE(contains(said.err, "/proc/elastocheck")) << said.err;

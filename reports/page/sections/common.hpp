@@ -71,6 +71,6 @@ std::string enumerated(const std::vector<std::string>& words);
 // "tangent, 60 steps"; "adaptive, tolerance 0.1 mm"; "equilibrium solution". Of a point or a recommendation.
 std::string configuration(const Field& chosen);
 
-std::string slug(const std::string& text);  // for ids and file names: a-z, 0-9, -; 40 at most
+std::string slug(const std::string& text);  // for ids and file names: a-z, 0-9, -
 
 }  // namespace elastocheck::reports
