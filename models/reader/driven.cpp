@@ -105,10 +105,13 @@ void add_bushing(int k, const NamedElement& element, const Units& units, Drivabl
 }
 
 void add_elements(const Scene& scene, const Units& units, const NamedElements& elements, Drivables& result) {
-    for (const auto& [k, element] : elements)
+    for (const auto& entry : elements) {  // not taken apart: clang 14 lets no lambda have the parts
+        const int k = entry.first;
+        const NamedElement& element = entry.second;
         std::visit(overloaded{[&](const AxialSpring& e) { add_spring(k, element.path, e, units, result); },
                               [&](const Bushing&) { add_bushing(k, element, units, result); }},
                    scene.elastics[static_cast<std::size_t>(k)].kind);
+    }
 }
 
 // A jack holds the wheel centre, or the contact patch, at a height: the ground point that it has at the design

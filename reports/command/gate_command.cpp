@@ -88,8 +88,9 @@ std::vector<Task> tasks(const GateOptions& options) {
 
 // The scene as its baseline names it: the way there, which may lead through folders with names that nobody can write down.
 std::string name_beside(const Task& task) {
-    const fs::path folder = task.baseline.has_parent_path() ? task.baseline.parent_path() : ".";
-    std::string name = fs::relative(task.scene, folder).generic_string();
+    // Absolute: of a folder that is not there yet, relative() does not know where it is.
+    const fs::path folder = fs::absolute(task.baseline).parent_path();
+    std::string name = fs::relative(fs::absolute(task.scene), folder).generic_string();
     if (const std::string wrong = flaw(name); !wrong.empty())
         throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text", name, wrong));
     return name;

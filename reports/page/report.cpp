@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <list>
 #include <set>
@@ -261,6 +262,27 @@ std::string numbers_csv(const json& result, const std::string& file) {
     return csv;
 }
 
+namespace {
+
+// Also what no section reads: it goes into the report's own result.json. (Ends of lines are escaped there.)
+void expect_plain(const Field& field) {
+    const auto check = [&](std::string text) {
+        std::ranges::replace_if(
+            text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+        if (const std::string wrong = flaw(text); !wrong.empty()) field.fail("expected plain text: " + wrong);
+    };
+    if (field.value->is_string()) check(field.value->get<std::string>());
+    if (field.value->is_array())
+        for (const auto& item : field.items()) expect_plain(item);
+    if (field.value->is_object())
+        for (const auto& [key, value] : field.value->items()) {
+            check(key);
+            expect_plain({&value, field.path.empty() ? key : field.path + "." + key, field.file});
+        }
+}
+
+}  // namespace
+
 json parse_result(std::string_view text, const std::string& file) {
     json result;
     const Field root{&result, "", &file};
@@ -276,6 +298,7 @@ json parse_result(std::string_view text, const std::string& file) {
                         "that made it again",
                         schema.text(), result_schema));
     if (root["scenes"].items().empty()) root["scenes"].fail("there is no scene in it");
+    expect_plain(root);
     return result;
 }
 

@@ -21,7 +21,9 @@ Suspension suspension() {
     all.channels = compare::channels(made.model);
     const auto drawn = evaluate(made.model, all.channels, compare::design_state(made.model));
     for (const auto& branch : made.model.branches) {
-        compare::BranchComparison one{.branch = branch.name, .unit = compare::unit_of(branch.unit)};
+        compare::BranchComparison one;
+        one.branch = branch.name;
+        one.unit = compare::unit_of(branch.unit);
         for (const auto leg : compare::legs) {
             compare::LegRun run;
             run.leg = leg;

@@ -148,6 +148,8 @@ TEST(Killed, AtAnyMomentTheGateLeavesTheOldBaselineOrTheNewOne) {
         ASSERT_EQ(says(accept).code, 0);
         whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         expected[which] = text_of(baseline);
+        EXPECT_TRUE(contains(expected[which], R"("file":"../s.yaml")"))
+            << "also in a folder that was not there";
     }
     ASSERT_NE(expected[0], expected[1]);
     int killed = 0;
