@@ -126,10 +126,11 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& field) 
     for (const auto kind : compare::tolerance_classes) {
         const Field of_class = at(field, name(kind));
         if (!of_class.value.is_object()) refuse(of_class, "is not an object");
+        compare::Tolerances& tolerances = result[kind];  // be there none of its own
         for (const auto& [key, value] : of_class.value.items()) {
             const Field tolerance{value, of_class.path + "." + key};
             expect_fields(tolerance, {"atol", "rtol"});
-            result[kind][key] = {number(at(tolerance, "atol")), number(at(tolerance, "rtol"))};
+            tolerances[key] = {number(at(tolerance, "atol")), number(at(tolerance, "rtol"))};
         }
     }
     return result;
