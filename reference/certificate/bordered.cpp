@@ -96,7 +96,10 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     const MatrixXd T = tangent(system, z);
     const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(nb + m) * T;
     if (!J.allFinite() || J.size() == 0) return border;
-    if (Eigen::PartialPivLU<MatrixXd>(equilibrated(J).A).rcond() > surely_regular * nothing) return border;
+    // Of a matrix with a pivot that is nothing the estimate of its condition is nothing, too.
+    const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
+    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing && lu.rcond() > surely_regular * nothing)
+        return border;
 
     // yᵀ Φ = 0: the rows y say the same, and reactions y are in balance.
     MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.bottomLeftCorner(m, nb), nothing).left : MatrixXd(m, 0);
@@ -211,21 +214,24 @@ std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& of) {
 
 template <class S>
 Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a) {
-    Values<S> of = evaluate_without_slopes(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a));
+    Values<S> of =
+        evaluate_without_slopes(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a));
     add_border(problem, y, of.E);
     return of;
 }
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
     if (slopes == Slopes::no) return evaluate_without_slopes(problem, y, a);
-    Values<S> of = evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
+    Values<S> of =
+        evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
     add_border(problem, y, of.E);
     if (problem.size() > problem.n()) of.J = bordered_slopes(problem, of);
     return of;
 }
 template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
 template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&, Slopes);
-template Values<SlopesAlong> evaluate(const Problem&, const std::vector<SlopesAlong>&, const SlopesAlong&, Slopes);
+template Values<SlopesAlong> evaluate(const Problem&, const std::vector<SlopesAlong>&, const SlopesAlong&,
+                                      Slopes);
 template Values<Along> evaluate_without_slopes(const Problem&, const std::vector<Along>&, const Along&);
 template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&, const Jet<1>&);
 

@@ -15,7 +15,8 @@
 // tubes and within both, holds one zero: it is that of both.
 //
 // Over a knot of a curve F has no second derivative. Pieces close in on it, until one that is short enough takes its slopes
-// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix.
+// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix. Each of its entries ranges by itself, so this
+// contracts only where the slope does not jump by much more than what is there: beyond that the branch is open at the knot.
 #include <fmt/format.h>
 
 #include "reference/certificate/certificate.hpp"
@@ -180,7 +181,8 @@ Jet<n> parameter(const Piece& piece, const Interval& S) {
 template <int n, class Evaluate>
 std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
     const std::vector<Jet<n>> about = evaluate(Interval(0)), over = evaluate(Interval(-1, 1));
-    std::vector<std::vector<Interval>> c(static_cast<std::size_t>(n) + 1, std::vector<Interval>(about.size()));
+    std::vector<std::vector<Interval>> c(static_cast<std::size_t>(n) + 1,
+                                         std::vector<Interval>(about.size()));
     for (std::size_t i = 0; i < about.size(); ++i)
         for (std::size_t k = 0; k < c.size(); ++k)
             c[k][i] = k < static_cast<std::size_t>(n) ? about[i].c[k] : over[i].c[k];
@@ -200,7 +202,7 @@ VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>>
 // |I - Y(s) F'| r with the coefficients of both.
 struct RestAlong {
     std::vector<MatrixXd> rest;
-    MatrixXd Y;                      // Σ |Y_k|
+    MatrixXd Y;  // Σ |Y_k|
     std::vector<MatrixXd> M, R;
     double gamma = 0;
     bool finite = true;
@@ -253,8 +255,10 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
 template <class Rest>
 VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
     constexpr double least = 1e-20;
+    constexpr int most =
+        200;  // over the knot of a stop r is its stiffness over the spring's times what it is elsewhere
     VectorXd r = first.cwiseMax(least) * 1.01;
-    for (int k = 0; k < 12; ++k) {
+    for (int k = 0; k < most; ++k) {
         const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
         if (!(next.array() <= room.array()).all()) return {};
         if (all_less((first + rest(next)) * (1 + 1e-14), next)) return next;
@@ -276,19 +280,23 @@ void enclose(const Walk& walk, Node& node) {
 }
 
 // Proves a piece, or leaves its tube empty.
-bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& joint, const Tolerance& tolerance) {
+bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
+           const Tolerance& tolerance) {
     const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
     const int n = problem.n();
     constexpr int F_order = order<Along>, J_order = order<SlopesAlong>;
     const auto F = coefficients<F_order>([&](const Interval& S) {
-        return evaluate_without_slopes(problem, along<F_order>(piece, S, nullptr), parameter<F_order>(piece, S)).E;
+        return evaluate_without_slopes(problem, along<F_order>(piece, S, nullptr),
+                                       parameter<F_order>(piece, S))
+            .E;
     });
     VectorXd first = step({Y0}, F, n);
     if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
     // Room for the tube: it is what F' is taken over.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto J = coefficients<J_order>([&](const Interval& S) {
-        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S), Slopes::yes).J;
+        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S), Slopes::yes)
+            .J;
     });
     for (const auto& part : J)
         for (const Interval& entry : part)
@@ -314,7 +322,7 @@ bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, cons
         return evaluate(problem, y, parameter<1>(piece, Interval(-1, 1)).c[0], Slopes::yes).J;
     };
     VectorXd room = joint;
-    for (int trial = 0; trial < 3; ++trial) {
+    for (int trial = 0; trial < 5; ++trial) {
         const auto J = slopes(room);
         std::vector<double> middle;
         for (const Interval& entry : J) middle.push_back(mid(entry));
@@ -344,7 +352,8 @@ void raise(Extent& to, const Extent& by) {
 
 // How far the tube is from the state, at its a.
 Extent distance(const Piece& piece, const StateAt& at) {
-    const Interval a0 = piece.a0, a1 = piece.a1, s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
+    const Interval a0 = piece.a0, a1 = piece.a1,
+                   s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
     std::vector<Interval> z;
     for (const auto& jet : along<0>(piece, intersection(s, Interval(-1, 1)), &piece.r)) z.push_back(jet.c[0]);
     z.resize(static_cast<std::size_t>(at.system.n()));
@@ -398,7 +407,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     double h = first_share * way;
     Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;
-    if (!from.found) return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
+    if (!from.found)
+        return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
     enclose(walk, from);
     if (from.box.size() == 0) return open(fmt::format("nothing is proved at {:.9g}", tube.from));
     const VectorXd none = VectorXd::Zero(from.y.size());
@@ -409,14 +419,16 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         const double a1 = last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
             if (pushed.held > tolerance.held)
-                return open(fmt::format("past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m", tube.to,
-                                        idle_bodies(system, walk.border), pushed.held));
+                return open(
+                    fmt::format("past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
+                                tube.to, idle_bodies(system, walk.border), pushed.held));
             if (pushed.gap > tolerance.gap)
                 return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad", tube.to,
                                         redundant_joints(system, walk.border), pushed.gap));
-            return open(fmt::format("no piece is proved past {:.12g}: the branch turns back, divides, or meets a law that "
-                                    "ends",
-                                    tube.to));
+            return open(fmt::format(
+                "no piece is proved past {:.12g}: the branch turns back or divides, a law ends, or a "
+                "stop closes that is much stiffer than what it meets",
+                tube.to));
         }
         to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
         middle_node = walk.node(tube.to / 2 + a1 / 2);
@@ -452,7 +464,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         }
         halved = false;
         Extent width{0, 0, 0, 0};
-        for (; next_state < at.size() && std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from);
+        for (; next_state < at.size() &&
+               std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from);
              ++next_state)
             raise(width, distance(piece, at[next_state]));
         for (int b = 0; b < system.bodies; ++b) {
@@ -472,18 +485,20 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&
                       tube.width.force <= tolerance.force && tube.width.moment <= tolerance.moment;
     if (!near)
-        return open(fmt::format("a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
-                                "from the states, which is more than the tolerance",
-                                1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi, tube.width.force,
-                                tube.width.moment));
+        return open(fmt::format(
+            "a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
+            "from the states, which is more than the tolerance",
+            1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi, tube.width.force,
+            tube.width.moment));
     tube.answer = Answer::proved;
     if (walk.border.count() > walk.border.redundant)
         tube.detail = fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
                                   idle_bodies(system, walk.border), held.held);
     if (walk.border.redundant > 0)
-        tube.detail += fmt::format("{}joints {} hold more than once: they share as in the states, and stay open by at most "
-                                   "{:.1e} m or rad",
-                                   tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
+        tube.detail += fmt::format(
+            "{}joints {} hold more than once: they share as in the states, and stay open by at most "
+            "{:.1e} m or rad",
+            tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
     return tube;
 }
 

@@ -83,7 +83,8 @@ SlopeOf slope_of_a(const MatrixXd& Y, const Contraction& rest) {
     r = r.cwiseMax(1e-300);
     for (int k = 0; k < 20; ++k) {
         const VectorXd next = (rest(x.cwiseAbs()) + rest(r)) * (1 + 1e-13);
-        if (all_less(next, r * (1 + 1e-12)) || (next.array() <= r.array()).all()) return {x[n - 1], next[n - 1] * (1 + 1e-12)};
+        if (all_less(next, r * (1 + 1e-12)) || (next.array() <= r.array()).all())
+            return {x[n - 1], next[n - 1] * (1 + 1e-12)};
         r = (next * 1.1).cwiseMax(r);
     }
     return {};
@@ -143,7 +144,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
     right.head(system.n()) = Eigen::Map<const VectorXd>(of.E_a.data(), system.n());
     along.head(n - 1) = -inverse(square(of.J, n - 1)) * right;
-    if (!along.allFinite() || along.head(n - 1).isZero(0)) return open("the curve has no tangent at the state");
+    if (!along.allFinite() || along.head(n - 1).isZero(0))
+        return open("the curve has no tangent at the state");
     y[n - 1] = state.load;
     Problem problem{system, known.border, known.z_g, true, normalised(system, along).t, y};
     const OnCurve top = turning_point(problem);
@@ -166,11 +168,10 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
             Interval sigma;
             for (Index i = 0; i < n; ++i)
                 sigma += Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
-            const bool on_segment =
-                mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
-                all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
+            const bool on_segment = mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
+                                    all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
             const SlopeOf slope = slope_of_a(end.Y, point.rest);
-                if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
+            if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
             sign[side] = slope.middle > 0 ? 1 : -1;
             a[side] = around(end.y[n - 1], point.r[n - 1]);
         }
@@ -185,10 +186,11 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
             limit.error.force <= tolerance.force && limit.error.moment <= tolerance.moment)
             limit.answer = Answer::proved;
         else
-            limit.detail = fmt::format("a limit point is proved, {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m from the "
-                                       "state, which is more than the tolerance",
-                                       1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi,
-                                       limit.error.force, limit.error.moment);
+            limit.detail = fmt::format(
+                "a limit point is proved, {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m from the "
+                "state, which is more than the tolerance",
+                1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi, limit.error.force,
+                limit.error.moment);
         return limit;
     }
     return open("no box contracts on both sides of the limit point");

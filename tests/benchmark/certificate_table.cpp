@@ -60,11 +60,13 @@ void table(const std::string& file, int count) {
             const double from = now();
             const Tube tube = certify_branch(way.model, way.branch, path.points);
             const double seconds = now() - from;
-            fmt::print("| {} | {} | {}/{} | {:.1e} mm, {:.1e} rad, {:.1e} N | {:.1e} mm | {:.2f} ms, {:.1f} x | {}, {} "
-                       "pieces, {:.1e} mm, {:.2f} s |\n",
-                       model.name, way.name, points.proved, points.of, 1e3 * points.error.length, points.error.angle,
-                       points.error.force, 1e3 * points.unique, 1e3 * points.proof / points.of,
-                       points.proof / points.leg, name(tube.answer), tube.pieces, 1e3 * tube.width.length, seconds);
+            fmt::print(
+                "| {} | {} | {}/{} | {:.1e} mm, {:.1e} rad, {:.1e} N | {:.1e} mm | {:.2f} ms, {:.1f} x | {}, "
+                "{} "
+                "pieces, {:.1e} mm, {:.2f} s |\n",
+                model.name, way.name, points.proved, points.of, 1e3 * points.error.length, points.error.angle,
+                points.error.force, 1e3 * points.unique, 1e3 * points.proof / points.of,
+                points.proof / points.leg, name(tube.answer), tube.pieces, 1e3 * tube.width.length, seconds);
         }
 }
 
@@ -103,8 +105,9 @@ int main(int count, char** arguments) {
     const int points = count > 1 ? std::atoi(arguments[1]) : 20;
     std::vector<std::string> files(arguments + std::min(count, 2), arguments + count);
     if (files.empty()) files.push_back(ELASTOCHECK_SCENES "/mcpherson.yaml");
-    fmt::print("| scene | branch | proved | within | alone within | time a point, over the leg's | as one curve |\n"
-               "|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "| scene | branch | proved | within | alone within | time a point, over the leg's | as one curve |\n"
+        "|---|---|---|---|---|---|---|\n");
     for (const auto& file : files) table(file, points);
     arch(ELASTOCHECK_SCENES "/two_spring_arch.yaml");
 }

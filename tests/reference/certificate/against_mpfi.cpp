@@ -42,19 +42,21 @@ void note(bool fine, const char* what, const Interval& a, const Interval& b, con
     if (fine) return;
     ++violations;
     if (++said <= 20)
-        std::printf("%s of [%a, %a] [%a, %a] is not in [%a, %a]\n", what, a.lo, a.hi, b.lo, b.hi, got.lo, got.hi);
+        std::printf("%s of [%a, %a] [%a, %a] is not in [%a, %a]\n", what, a.lo, a.hi, b.lo, b.hi, got.lo,
+                    got.hi);
 }
 
 // All of the exact result is in what was computed. A NaN in the exact one is a result that is not defined: then nothing may be
 // claimed.
 void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Exact& exact) {
     if (mpfi_nan_p(exact.x)) return note(!bounded(got), what, a, b, got);
-    note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what, a, b, got);
+    note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what, a, b,
+         got);
 }
 // MPFR's own rounding of 400 bits is far below any double's.
 void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Real& exact) {
-    note(mpfr_nan_p(exact.x) == 0 && mpfr_cmp_d(exact.x, got.lo) >= 0 && mpfr_cmp_d(exact.x, got.hi) <= 0, what, a, b,
-         got);
+    note(mpfr_nan_p(exact.x) == 0 && mpfr_cmp_d(exact.x, got.lo) >= 0 && mpfr_cmp_d(exact.x, got.hi) <= 0,
+         what, a, b, got);
 }
 
 void operators(const Interval& a, const Interval& b) {
@@ -193,10 +195,12 @@ int main(int count, char** arguments) {
         std::puts("doubles are not rounded to nearest here, or small ones are dropped");
         return 1;
     }
-    const double least = std::numeric_limits<double>::denorm_min(), normal = std::numeric_limits<double>::min(),
-                 most = std::numeric_limits<double>::max(), infinite = std::numeric_limits<double>::infinity();
-    std::vector<double> special{0., 1., 3., 0.1, least, normal, normal - least, 1.5 * normal, most, most / 2, infinite,
-                                1e-160, 1e160, 2., 0.5, next_up(1.), next_down(1.)};
+    const double least = std::numeric_limits<double>::denorm_min(),
+                 normal = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max(),
+                 infinite = std::numeric_limits<double>::infinity();
+    std::vector<double> special{
+        0.,       1.,       3.,     0.1,   least, normal, normal - least, 1.5 * normal, most,
+        most / 2, infinite, 1e-160, 1e160, 2.,    0.5,    next_up(1.),    next_down(1.)};
     for (std::size_t k = special.size(); k-- > 0;) special.push_back(-special[k]);
     for (const double a : special)
         for (const double b : special) {
@@ -211,7 +215,9 @@ int main(int count, char** arguments) {
     const auto number = [&](auto& range) { return unit(random) * std::pow(10., range(random)); };
     for (long n = 0; n < pairs; ++n) {
         const auto interval = [&]() -> Interval {
-            const double a = n % 3 == 0 ? std::bit_cast<double>(random()) : n % 3 == 1 ? number(exponent) : number(small);
+            const double a = n % 3 == 0   ? std::bit_cast<double>(random())
+                             : n % 3 == 1 ? number(exponent)
+                                          : number(small);
             if (!std::isfinite(a)) return 1.;
             switch (random() % 4) {
                 case 0: return a;
@@ -229,7 +235,8 @@ int main(int count, char** arguments) {
         angles(7 * unit(random), unit(random));
         const double turn = n % 20 == 0 ? 1 : std::pow(10., depth(random) / 2);
         logarithms(
-            Eigen::Quaterniond(unit(random), turn * unit(random), turn * unit(random), turn * unit(random)).normalized());
+            Eigen::Quaterniond(unit(random), turn * unit(random), turn * unit(random), turn * unit(random))
+                .normalized());
     }
     std::printf("%ld results, %ld violations\n", checked, violations);
     return violations == 0 ? 0 : 1;

@@ -134,7 +134,8 @@ TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
         const double load = limit * (1 - share);
         for (const bool standing : {true, false}) {
             // The closed form, in doubles, is as far off as an ulp of the load over the stiffness left.
-            const Certificate c = certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
+            const Certificate c =
+                certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
             EXPECT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
             EXPECT_EQ(c.stable, standing) << share;
         }
