@@ -72,6 +72,8 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     EXPECT_EQ(said.out, text_of(out + "/stress.json"));
     const json document = json::parse(said.out);
     EXPECT_EQ(said.code, document["wrong"].empty() ? 0 : 1) << said.err;
+    EXPECT_EQ(document["schema"], "elastocheck/stress/1");
+    EXPECT_EQ(document["map"][0]["signs"].size(), document["sweeps"].size());
     const auto& columns = document["cells"]["columns"];
     EXPECT_EQ(columns.size(), 14u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
