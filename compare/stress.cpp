@@ -108,6 +108,7 @@ struct Known {
     Knowledge how = Knowledge::none;
     Stand where;
     ErrorBound within;
+    bool stable = false;  // shown to be: of what is proved alone
 };
 
 struct WayRun {
@@ -202,7 +203,8 @@ Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Eq
         if (certificate.answer == reference::certificate::Answer::proved)
             return {Knowledge::proved,
                     stand(way.model, run.places, path[point]),
-                    {certificate.error.length + lever * certificate.error.angle, certificate.error.angle}};
+                    {certificate.error.length + lever * certificate.error.angle, certificate.error.angle},
+                    certificate.stable};
     }
     return {};
 }
@@ -329,8 +331,10 @@ bool says_that_it_ends(Outcome outcome) {
     return false;
 }
 
+// A stable equilibrium at every point.
 bool all_proved(const WayRun& run) {
-    return std::ranges::all_of(run.known, [](const Known& known) { return known.how == Knowledge::proved; });
+    return std::ranges::all_of(
+        run.known, [](const Known& known) { return known.how == Knowledge::proved && known.stable; });
 }
 
 // Where both references say that the branch ends, and no state past that is proved; empty where one does not.
@@ -408,18 +412,22 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
 }
 
 // The same mechanism told otherwise has the same answer: to the digits that a solver claims, or of one that claims nothing
-// to a ten millionth of what moves and ten thousand roundings of the largest coordinate.
+// to a ten millionth of what moves and ten thousand roundings of the largest coordinate. The error of a step depends on the
+// point of a body that its increments are counted from, so that of one that claims nothing this is asked only where bodies
+// that are fixed to each other are told by the same one of them.
 void judge_retold(const Solver& solver, const Found& found, const WayRun& run, const Found& base_found,
                   const WayRun& base, const Retelling& how, StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     if (cell.verdict == Verdict::wrong) return;
     const Match both = match(run.places, base.places);
+    const bool same_bodies = both.here.size() == run.places.size() && both.there.size() == base.places.size();
     for (std::size_t k = 0; k < std::min(found.stands.size(), base_found.stands.size()); ++k) {
         const Stand here = only(found.stands[k], both.here),
                     there = retold(only(base_found.stands[k], both.there), how);
         const ErrorBound d = apart(here, there);
         const ErrorBound c = claim_of(solver, found.accounts[k], run.size),
                          c_base = claim_of(solver, base_found.accounts[k], base.size);
+        if (!std::isfinite(c.length) && !same_bodies) continue;
         const double rounding = 1e4 * eps * run.reach,
                      allowed = std::isfinite(c.length) && std::isfinite(c_base.length)
                                    ? c.length + how.length * c_base.length + rounding
@@ -452,7 +460,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
             cell.verdict = Verdict::wrong,
             cell.why =
                 "says that no equilibrium continues the branch; told otherwise, the same scene has one";
-        else if (all_proved(run))
+        else if (all_proved(run) && !found.stands.empty())
             cell.verdict = Verdict::wrong,
             cell.why =
                 "says that no equilibrium continues the branch, where the states of another are proved";

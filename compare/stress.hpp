@@ -11,7 +11,7 @@
 // The true error of a state lies between |x - x_T| - e and |x - x_T| + e, x_T a state that is known to within e. A claim is
 // broken where the lower end is above it. What is known, and how: Knowledge. Wrong is as well who converges where both
 // references say that the branch ends, who answers otherwise when the same mechanism is told otherwise, and a reference that
-// says that the branch ends where another's states are proved at every point, or where it goes on when told otherwise.
+// says that the branch ends where another's states are proved and stable at every point, or where it goes on when told otherwise.
 //
 // A body that an idle mode moves is anywhere along it, so such bodies are not looked at.
 #pragma once

@@ -29,7 +29,17 @@ Scene driven(const Scene& scene, double factor) {
 
 std::vector<Variant> itself(const Scene& scene) { return {{"as it is", scene}}; }
 
-// One element much softer or stiffer than the others: the first that gives a force.
+double drawn_length(const Scene& scene, const AxialSpring& spring) {
+    const auto drawn = [&](const Point& at) -> Vector3d {
+        if (at.body == ground) return at.s_local;
+        const Pose& body = scene.bodies[static_cast<std::size_t>(at.body)].design;
+        return body.r + body.p * at.s_local;
+    };
+    return (drawn(spring.j) - drawn(spring.i)).norm();
+}
+
+// One element much softer or stiffer than the others, the first; a spring bears as drawn what it bore: else a suspension
+// would be another one.
 std::vector<Variant> stiffness(const Scene& scene) {
     std::vector<Variant> variants;
     if (scene.elastics.empty()) return variants;
@@ -37,6 +47,11 @@ std::vector<Variant> stiffness(const Scene& scene) {
         Scene varied = first_branch(scene);
         Elastic& element = varied.elastics.front();
         element = stiffened(element, factor);
+        if (auto* spring = std::get_if<AxialSpring>(&element.kind);
+            spring != nullptr && factor > 0 && std::holds_alternative<LinearRate>(spring->law)) {
+            const double length = drawn_length(varied, *spring);
+            spring->free_length = length + (spring->free_length - length) / factor;
+        }
         variants.push_back({fmt::format("rates of '{}' times {:g}", element.name, factor), varied});
     }
     return variants;
