@@ -78,9 +78,9 @@ MatrixXd tangent(const System& system, const VectorXd& z) {
     return T;
 }
 
-MatrixXd square(const std::vector<double>& J, Index n) { return Eigen::Map<const RowMajor>(J.data(), n, n); }
-
 }  // namespace
+
+MatrixXd square(const std::vector<double>& J, Index n) { return Eigen::Map<const RowMajor>(J.data(), n, n); }
 
 std::vector<double> doubles(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 std::vector<Interval> thin(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
@@ -96,7 +96,10 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     const MatrixXd T = tangent(system, z);
     const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(nb + m) * T;
     if (!J.allFinite() || J.size() == 0) return border;
-    if (Eigen::PartialPivLU<MatrixXd>(equilibrated(J).A).rcond() > surely_regular * nothing) return border;
+    // Of a matrix with a pivot that is nothing the estimate of its condition is nothing, too.
+    const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
+    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing && lu.rcond() > surely_regular * nothing)
+        return border;
 
     // yᵀ Φ = 0: the rows y say the same, and reactions y are in balance.
     MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.bottomLeftCorner(m, nb), nothing).left : MatrixXd(m, 0);
@@ -161,52 +164,76 @@ std::string redundant_joints(const System& system, const Border& border) {
     return largest_named(shares, [&](std::size_t j) { return system.model->joints[j].name; });
 }
 
+namespace {
+
+template <class S>
+S parameter(const Problem& problem, const std::vector<S>& y, const S& a) {
+    return problem.a_is_unknown ? y.back() : a;
+}
+template <class S>
+std::vector<S> poses_and_reactions(const Problem& problem, const std::vector<S>& y) {
+    return {y.begin(), y.begin() + problem.n()};
+}
+
+// U μ and the gauges.
+template <class S>
+void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>& E) {
+    using B = Base<S>;
+    const Index n = problem.n(), k = problem.border.count();
+    const auto at = [](auto& all, Index i) -> auto& { return all[static_cast<std::size_t>(i)]; };
+    E.resize(static_cast<std::size_t>(problem.size()), constant<S>(0.));
+    for (Index j = 0; j < k; ++j)
+        for (Index i = 0; i < n; ++i) {
+            const double U = problem.border.U(i, j), g = problem.border.g(i, j);
+            if (U != 0) at(E, i) = at(E, i) + at(y, n + j) * B(U);
+            if (g != 0) at(E, n + j) = at(E, n + j) + (at(y, i) - B(problem.z_g[i])) * B(g);
+        }
+    if (!problem.a_is_unknown) return;
+    for (Index i = 0; i < problem.size(); ++i)
+        E.back() = E.back() + (at(y, i) - B(problem.y_t[i])) * B(problem.t[i]);
+}
+
+template <class S>
+std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& of) {
+    const Index n = problem.n(), k = problem.border.count(), size = problem.size();
+    std::vector<S> J(static_cast<std::size_t>(size * size), constant<S>(0.));
+    const auto at = [&](Index i, Index j) -> S& { return J[static_cast<std::size_t>(i * size + j)]; };
+    for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j < n; ++j) at(i, j) = of.J[static_cast<std::size_t>(i * n + j)];
+        for (Index j = 0; j < k; ++j) {
+            at(i, n + j) = constant<S>(problem.border.U(i, j));
+            at(n + j, i) = constant<S>(problem.border.g(i, j));
+        }
+        if (problem.a_is_unknown) at(i, size - 1) = of.E_a[static_cast<std::size_t>(i)];
+    }
+    for (Index i = 0; problem.a_is_unknown && i < size; ++i) at(size - 1, i) = constant<S>(problem.t[i]);
+    return J;
+}
+
+}  // namespace
+
+template <class S>
+Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a) {
+    Values<S> of =
+        evaluate_without_slopes(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a));
+    add_border(problem, y, of.E);
+    return of;
+}
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
-    const auto n = static_cast<std::size_t>(problem.n()),
-               k = static_cast<std::size_t>(problem.border.count()),
-               size = static_cast<std::size_t>(problem.size());
-    const S& at = problem.a_is_unknown ? y.back() : a;
-    const std::vector<S> z(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
-    Values<S> of = evaluate(problem.system, z, at, slopes);
-    const auto U = [&](std::size_t i, std::size_t j) {
-        return problem.border.U(static_cast<Index>(i), static_cast<Index>(j));
-    };
-    const auto g = [&](std::size_t i, std::size_t j) {
-        return problem.border.g(static_cast<Index>(i), static_cast<Index>(j));
-    };
-    using B = Base<S>;
-    of.E.resize(size, constant<S>(0.));
-    for (std::size_t j = 0; j < k; ++j)
-        for (std::size_t i = 0; i < n; ++i) {
-            if (U(i, j) != 0) of.E[i] = of.E[i] + y[n + j] * B(U(i, j));
-            if (g(i, j) != 0)
-                of.E[n + j] = of.E[n + j] + (z[i] - B(problem.z_g[static_cast<Index>(i)])) * B(g(i, j));
-        }
-    if (problem.a_is_unknown)
-        for (std::size_t i = 0; i < size; ++i)
-            of.E[size - 1] = of.E[size - 1] + (y[i] - B(problem.y_t[static_cast<Index>(i)])) *
-                                                  B(problem.t[static_cast<Index>(i)]);
-    if (slopes == Slopes::no) return of;
-    if (size == n) return of;
-
-    std::vector<S> J(size * size, constant<S>(0.));
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j < n; ++j) J[i * size + j] = of.J[i * n + j];
-        for (std::size_t j = 0; j < k; ++j) {
-            J[i * size + n + j] = constant<S>(U(i, j));
-            J[(n + j) * size + i] = constant<S>(g(i, j));
-        }
-        if (problem.a_is_unknown) J[i * size + size - 1] = of.E_a[i];
-    }
-    if (problem.a_is_unknown)
-        for (std::size_t i = 0; i < size; ++i)
-            J[(size - 1) * size + i] = constant<S>(problem.t[static_cast<Index>(i)]);
-    of.J = std::move(J);
+    if (slopes == Slopes::no) return evaluate_without_slopes(problem, y, a);
+    Values<S> of =
+        evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
+    add_border(problem, y, of.E);
+    if (problem.size() > problem.n()) of.J = bordered_slopes(problem, of);
     return of;
 }
 template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
 template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&, Slopes);
+template Values<SlopesAlong> evaluate(const Problem&, const std::vector<SlopesAlong>&, const SlopesAlong&,
+                                      Slopes);
+template Values<Along> evaluate_without_slopes(const Problem&, const std::vector<Along>&, const Along&);
+template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&, const Jet<1>&);
 
 MatrixXd inverse(const MatrixXd& J) {
     const auto [A, D_r, D_c] = equilibrated(J);

@@ -45,7 +45,10 @@ struct Problem {
 // The equations and, by rows [size × size], their slopes. Where a is no unknown it is what is given.
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes);
+template <class S>
+Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a);
 
+Eigen::MatrixXd square(const std::vector<double>& J, Eigen::Index n);
 std::vector<double> doubles(const Eigen::VectorXd& x);
 std::vector<Interval> box(const Eigen::VectorXd& middle, const Eigen::VectorXd& radius);
 std::vector<Interval> thin(const Eigen::VectorXd& x);

@@ -87,23 +87,30 @@ struct Box {
     VectorXd r;
     std::vector<Interval> J;  // slopes over it
 };
-Box smallest(const Problem& problem, const Approximate& at, double a) {
+// Where a box does not pass, the next one is larger, and its inverse that of the slopes' middle: over the knot of a stop
+// that is not the one at ỹ.
+Box smallest(const Problem& problem, Approximate& at, double a) {
     constexpr int trials = 8;
-    const VectorXd first = step(at.Y, evaluate(problem, thin(at.y), Interval(a), Slopes::no).E);
+    constexpr double least = 1e-20;
+    const auto F = evaluate(problem, thin(at.y), Interval(a), Slopes::no).E;
     Box found;
+    VectorXd first = step(at.Y, F);
     if (!first.allFinite()) return found;
-    found.r = 1.5 * first;
-    const double least = 1e-20;
-    found.r = found.r.cwiseMax(least);
+    found.r = (1.5 * first).cwiseMax(least);
     for (int trial = 0; trial < trials && !found.proved; ++trial) {
         found.J = evaluate(problem, box(at.y, found.r), Interval(a), Slopes::yes).J;
+        if (trial > 0) {
+            std::vector<double> middle;
+            for (const Interval& entry : found.J) middle.push_back(mid(entry));
+            at.Y = inverse(square(middle, problem.size()));
+            first = step(at.Y, F);
+            if (!first.allFinite()) return found;
+        }
         const Contraction rest = contraction(at.Y, found.J);
         if (!rest.finite) return found;
-        // A box that holds holds within all it was computed for: one that is smaller may pass as well.
         VectorXd r = (first * 1.01).cwiseMax(least);
-        for (int k = 0; k < 3; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
-        if ((r.array() <= found.r.array()).all() &&
-            all_less(first + rest(r) * (1 + 1e-14), r * (1 - 1e-14))) {
+        for (int k = 0; k < 3 + 40 * trial; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
+        if ((r.array() <= found.r.array()).all() && all_less((first + rest(r)) * (1 + 1e-14), r)) {
             found.r = r;
             found.proved = true;
         } else {
@@ -124,8 +131,8 @@ struct Alone {
 Alone alone(const Problem& problem, const Approximate& at, double a) {
     const System& system = problem.system;
     const int poses = 7 * system.bodies, n = problem.size();
-    constexpr int trials = 10;
-    constexpr double largest = 0.05, enough = 0.35, most = 0.9;
+    constexpr int trials = 10, fits = 3;
+    constexpr double largest = 0.05, enough = 0.35, most = 0.9, hopeless = 20;
     double t = 2e-3, failed = std::numeric_limits<double>::infinity();
     Alone best;
     const double load = std::max(1e-6, at.y.segment(poses, system.rows).size() > 0
@@ -138,19 +145,24 @@ Alone alone(const Problem& problem, const Approximate& at, double a) {
             r.segment<4>(7 * b + 3).setConstant(t);
         }
         r.tail(n - poses).setConstant(t * load);
+        // Passed is what passes over the very box that its slopes were taken over.
         double ratio = std::numeric_limits<double>::infinity();
-        for (int fit = 0; fit < 2; ++fit) {
+        for (int fit = 0; fit < fits; ++fit) {
             const Contraction rest =
                 contraction(at.Y, evaluate(problem, box(at.y, r), Interval(a), Slopes::yes).J);
             if (!rest.finite) break;
-            VectorXd moved = rest(r);
-            for (int k = 0; k < 3; ++k) {
-                // Reactions and μ enter straight: what the poses make of them is room enough.
-                r.tail(n - poses) = r.tail(n - poses).cwiseMax(1.5 * moved.tail(n - poses));
-                if (k < 2 || fit == 1) moved = rest(r);
-            }
-            ratio = (moved.array() / r.array()).maxCoeff();
-            if (fit == 1) break;
+            const auto over = [&](const VectorXd& radius) {
+                return (rest(radius).array() / radius.array()).maxCoeff();
+            };
+            ratio = over(r);
+            if (ratio < most || fit + 1 == fits) break;
+            // Reactions and μ enter straight: what the poses make of them is room enough.
+            VectorXd grown = r;
+            for (int k = 0; k < 3; ++k)
+                grown.tail(n - poses) = grown.tail(n - poses).cwiseMax(1.5 * rest(grown).tail(n - poses));
+            ratio = std::max(most, over(grown));
+            if (!(ratio < hopeless)) break;
+            r = std::move(grown);
         }
         if (ratio < most) {
             if (t > best.t) best = {t, r};
@@ -209,9 +221,8 @@ bool none_within(const Problem& problem, const StateAt& at, const Tolerance& tol
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = at.z;
     const Interval a = at.state.load;
-    const Values<double> here = evaluate(problem, doubles(y), at.state.load, Slopes::yes);
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Eigen::MatrixXd Y = inverse(Eigen::Map<const RowMajor>(here.J.data(), n + k, n + k));
+    const Eigen::MatrixXd Y =
+        inverse(square(evaluate(problem, doubles(y), at.state.load, Slopes::yes).J, n + k));
     if (!Y.allFinite()) return false;
     const auto E = evaluate(system, thin(at.z), a, Slopes::no).E;
     const auto J = evaluate(system, around_state, a, Slopes::yes).J;
@@ -329,7 +340,7 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
         return open(fmt::format("{} unknowns are more than the {} for which a dense proof is worth its time",
                                 system.n(), most_unknowns));
 
-    const auto [problem, found] = approach(at);
+    auto [problem, found] = approach(at);
     const Interval a = state.load;
 
     if (found.settled && found.y.allFinite()) {

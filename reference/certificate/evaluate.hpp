@@ -180,8 +180,9 @@ struct Assembly {
     }
 };
 
-template <class S>
-Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
+// All parts; `One` and `Two` are the numbers for parts with one body and with two.
+template <class S, class One, class Two>
+Values<S> assembled(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
     const Model& model = *system.model;
     const auto n = static_cast<std::size_t>(system.n());
     Assembly<S> sum{system, z, a, {}};
@@ -190,42 +191,27 @@ Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Sl
         sum.out.J.assign(n * n, constant<S>(0.));
         sum.out.E_a.assign(n, constant<S>(0.));
     }
-    using One = Dual<S, 8>;
-    using Two = Dual<S, 15>;
     const auto two = [](const auto& kind) {
         return std::visit([](const auto& k) { return Slots{k.i.body, k.j.body}.two(); }, kind);
     };
-    const bool with = slopes == Slopes::yes;
-    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
-        if (!with)
-            sum.template element<S>(e);
-        else if (two(model.elastics[e].kind))
-            sum.template element<Two>(e);
-        else
-            sum.template element<One>(e);
-    }
-    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
-        if (!with)
-            sum.template constraint<S>(c);
-        else if (two(model.constraints[c].kind))
-            sum.template constraint<Two>(c);
-        else
-            sum.template constraint<One>(c);
-    }
-    for (const LoadPath& load : system.loads) {
-        if (body_of(load.kind) == ground) continue;
-        if (!with)
-            sum.template load<S>(load);
-        else
-            sum.template load<One>(load);
-    }
-    for (BodyId body = 0; body < system.bodies; ++body) {
-        if (!with)
-            sum.template norm<S>(body);
-        else
-            sum.template norm<One>(body);
-    }
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        two(model.elastics[e].kind) ? sum.template element<Two>(e) : sum.template element<One>(e);
+    for (std::size_t c = 0; c < model.constraints.size(); ++c)
+        two(model.constraints[c].kind) ? sum.template constraint<Two>(c) : sum.template constraint<One>(c);
+    for (const LoadPath& load : system.loads)
+        if (body_of(load.kind) != ground) sum.template load<One>(load);
+    for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
     return std::move(sum.out);
+}
+
+template <class S>
+Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a) {
+    return assembled<S, S, S>(system, z, a, Slopes::no);
+}
+template <class S>
+Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
+    if (slopes == Slopes::no) return evaluate_without_slopes(system, z, a);
+    return assembled<S, Dual<S, 8>, Dual<S, 15>>(system, z, a, slopes);
 }
 
 // ---- Wrenches of joints

@@ -2,6 +2,8 @@
 
 namespace elastocheck::reference::certificate {
 
+template Values<Interval> evaluate_without_slopes(const System&, const std::vector<Interval>&,
+                                                  const Interval&);
 template Values<Interval> evaluate(const System&, const std::vector<Interval>&, const Interval&, Slopes);
 template std::vector<JointWrench<Interval>> wrenches(const System&, const std::vector<Interval>&,
                                                      const Interval&);

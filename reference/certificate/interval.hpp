@@ -97,6 +97,8 @@ inline Interval operator*(const Interval& a, const Interval& b) {
     if (is_zero(a)) return bounded(b) ? Interval{} : everything;
     if (is_zero(b)) return bounded(a) ? Interval{} : everything;
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+    const double sum = (p + q) + (r + s);  // 0 · ∞, which a minimum would pass over
+    if (!(sum - sum == 0)) return everything;
     return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
 

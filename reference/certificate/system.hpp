@@ -66,6 +66,11 @@ struct Values {
 enum class Slopes { no, yes };
 template <class S>
 Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes);
+// What a branch is followed with: its equations over a piece, and their slopes.
+using Along = Jet<6>;
+using SlopesAlong = Jet<2>;
+template <class S>
+Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a);
 
 // Wrenches of the joints: on body i, about ModelJoint::at.
 template <class S>

@@ -1,0 +1,505 @@
+// A branch: pieces of polynomials through equilibria of its own, each with a tube in which, at every a, there is one and only
+// one equilibrium. With s ∈ [-1, 1] along a piece from a₀ to a₁,
+//
+//   a(s) = ½(1-s) a₀ + ½(1+s) a₁        ȳ(s) = ½(1-s) y₀ + ½(1+s) y₁ + (1-s²)(q₀ + q₁ s + q₂ s² + q₃ s³)
+//
+// which is exactly y₀ and y₁ at its ends, whatever the q. For every s (Krawczyk, with Y(s) = Y₀ + Y₁ s),
+//
+//   |Y(s) F(ȳ(s); a(s))| + |I - Y(s) F'(ȳ(s) + [-r, r]; a(s))| r < r
+//
+// gives one zero y*(s) within r of ȳ(s), which is continuous in s: a curve. F and F' are taken along the piece by their Taylor
+// coefficients about s = 0, the last one over all of [-1, 1]; Y₁ = -Y₀ J₁ Y₀ follows F' to first order.
+//
+// Gluing: a₀, a₁ are doubles and y₁ is the y₀ of the next piece, the border is one for the whole branch, and the gauge holds
+// idle motions at gᵀ(z - z̄(s)) = 0, which is the same at the joint of two pieces. There a box of its own, far smaller than the
+// tubes and within both, holds one zero: it is that of both.
+//
+// Over a knot of a curve F has no second derivative. Pieces close in on it, until one that is short enough takes its slopes
+// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix. Each of its entries ranges by itself, so this
+// contracts only where the slope does not jump by much more than what is there: beyond that the branch is open at the knot.
+#include <fmt/format.h>
+
+#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/krawczyk.hpp"
+#include "reference/certificate/state.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// ---- Between the states: where Newton's method starts, and where idle motions stand
+
+// Cubics through the states, with slopes from their neighbours.
+struct Interpolant {
+    std::vector<double> a;
+    std::vector<VectorXd> z, slope;
+};
+Interpolant interpolant(const std::vector<StateAt>& states) {
+    Interpolant of;
+    for (const StateAt& at : states) {
+        VectorXd z = at.z;
+        // Of the two quaternions of an orientation the one that continues.
+        for (int b = 0; b < at.system.bodies && !of.z.empty(); ++b) {
+            auto p = z.segment<4>(at.system.pose(b) + 3);
+            if (p.dot(of.z.back().segment<4>(at.system.pose(b) + 3)) < 0) p = -p.eval();
+        }
+        of.a.push_back(at.state.load);
+        of.z.push_back(std::move(z));
+    }
+    const std::size_t last = of.a.size() - 1;
+    const auto between = [&](std::size_t k) -> VectorXd {
+        return (of.z[k + 1] - of.z[k]) / (of.a[k + 1] - of.a[k]);
+    };
+    for (std::size_t k = 0; k <= last; ++k) {
+        if (last < 2) {
+            of.slope.push_back(between(0));
+            continue;
+        }
+        // Of the parabola through three.
+        const std::size_t m = std::clamp<std::size_t>(k, 1, last - 1);
+        const VectorXd left = between(m - 1), right = between(m);
+        const VectorXd bend = (right - left) / (of.a[m + 1] - of.a[m - 1]);
+        of.slope.push_back(left + bend * (2 * of.a[k] - of.a[m - 1] - of.a[m]));
+    }
+    return of;
+}
+struct Predicted {
+    VectorXd z, slope;
+};
+Predicted at(const Interpolant& of, double a) {
+    const bool rising = of.a.back() > of.a.front();
+    std::size_t k = 0;
+    while (k + 2 < of.a.size() && (rising ? a > of.a[k + 1] : a < of.a[k + 1])) ++k;
+    const double h = of.a[k + 1] - of.a[k], t = (a - of.a[k]) / h;
+    if (t == 0) return {of.z[k], of.slope[k]};
+    if (t == 1) return {of.z[k + 1], of.slope[k + 1]};
+    const double u = 1 - t;
+    return {of.z[k] * (u * u * (1 + 2 * t)) + of.z[k + 1] * (t * t * (1 + 2 * u)) +
+                (of.slope[k] * (t * u * u) - of.slope[k + 1] * (t * t * u)) * h,
+            (of.z[k + 1] - of.z[k]) * (6 * t * u / h) + of.slope[k] * (u * (1 - 3 * t)) +
+                of.slope[k + 1] * (t * (3 * t - 2))};
+}
+
+// An equilibrium of our own at a, its inverse and its tangent dy/da.
+struct Node {
+    double a = 0;
+    VectorXd y, rate;
+    MatrixXd Y;
+    bool found = false;
+    VectorXd box;  // radii of one that holds the equilibrium, where it was asked for
+};
+
+struct Walk {
+    const System& system;
+    const Interpolant& states;
+    Border border;
+
+    Problem problem(const VectorXd& z_g) const { return {system, border, z_g, false, {}, {}}; }
+
+    Node node(double a) const {
+        const Predicted guess = at(states, a);
+        const Problem here = problem(guess.z);
+        VectorXd y = VectorXd::Zero(here.size());
+        y.head(here.n()) = guess.z;
+        Node node;
+        node.a = a;
+        Approximate found = newton(here, y, a);
+        if (!found.settled) return node;
+        node.y = std::move(found.y);
+        const Values<double> of = evaluate(here, doubles(node.y), a, Slopes::yes);
+        node.Y = inverse(square(of.J, here.size()));
+        VectorXd right(here.size());
+        right << -Eigen::Map<const VectorXd>(of.E_a.data(), here.n()), border.g.transpose() * guess.slope;
+        node.rate = node.Y * right;
+        node.found = node.y.allFinite() && node.rate.allFinite();
+        return node;
+    }
+};
+
+// ---- A piece
+
+struct Piece {
+    double a0 = 0, a1 = 0;
+    VectorXd y0, y1;
+    std::array<VectorXd, 4> q;
+    VectorXd r;  // of the tube
+};
+
+Piece quintic(const Node& from, const Node& middle, const Node& to) {
+    const double h = to.a / 2 - from.a / 2;
+    const VectorXd d = (to.y - from.y) / 2, q_from = (h * from.rate - d) / 2, q_to = (d - h * to.rate) / 2;
+    Piece piece{from.a, to.a, from.y, to.y, {}, {}};
+    piece.q[0] = middle.y - (from.y + to.y) / 2;
+    piece.q[1] = h * middle.rate - d;
+    piece.q[2] = (q_to + q_from) / 2 - piece.q[0];
+    piece.q[3] = (q_to - q_from) / 2 - piece.q[1];
+    return piece;
+}
+Piece straight(const Node& from, const Node& to) {
+    const VectorXd none = VectorXd::Zero(from.y.size());
+    return {from.a, to.a, from.y, to.y, {none, none, none, none}, {}};
+}
+
+// Coefficients of component i of ȳ in powers of s.
+std::array<Interval, 6> powers(const Piece& piece, Index i) {
+    const Interval y0 = piece.y0[i], y1 = piece.y1[i], half = 0.5;
+    const auto q = [&](std::size_t k) { return Interval(piece.q[k][i]); };
+    return {(y0 + y1) * half + q(0), (y1 - y0) * half + q(1), q(2) - q(0), q(3) - q(1), -q(2), -q(3)};
+}
+
+// Taylor coefficients about each s in S at once.
+template <int n>
+Jet<n> expanded(std::array<Interval, 6> p, const Interval& S) {
+    Jet<n> jet;
+    for (std::size_t k = 0; k < jet.c.size(); ++k) {
+        if (k >= p.size()) break;
+        // Horner's scheme leaves p(S), and divides by s - S.
+        for (std::size_t j = p.size() - 1; j-- > k;) p[j] = p[j] + p[j + 1] * S;
+        jet.c[k] = p[k];
+    }
+    return jet;
+}
+template <int n>
+std::vector<Jet<n>> along(const Piece& piece, const Interval& S, const VectorXd* r) {
+    std::vector<Jet<n>> y;
+    for (Index i = 0; i < piece.y0.size(); ++i) {
+        y.push_back(expanded<n>(powers(piece, i), S));
+        if (r != nullptr) y.back().c[0] += Interval(-(*r)[i], (*r)[i]);
+    }
+    return y;
+}
+template <int n>
+Jet<n> parameter(const Piece& piece, const Interval& S) {
+    const Interval a0 = piece.a0, a1 = piece.a1, half = 0.5;
+    return expanded<n>({(a0 + a1) * half, (a1 - a0) * half, 0., 0., 0., 0.}, S);
+}
+
+// The coefficients of what `evaluate` makes of jets about s = 0, the last one over all s.
+template <int n, class Evaluate>
+std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
+    const std::vector<Jet<n>> about = evaluate(Interval(0)), over = evaluate(Interval(-1, 1));
+    std::vector<std::vector<Interval>> c(static_cast<std::size_t>(n) + 1,
+                                         std::vector<Interval>(about.size()));
+    for (std::size_t i = 0; i < about.size(); ++i)
+        for (std::size_t k = 0; k < c.size(); ++k)
+            c[k][i] = k < static_cast<std::size_t>(n) ? about[i].c[k] : over[i].c[k];
+    return c;
+}
+
+// |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by what it is.
+VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F, int gauge_from) {
+    VectorXd sum = VectorXd::Zero(Y.front().rows());
+    for (auto& part : F) {
+        std::fill(part.begin() + gauge_from, part.end(), Interval());
+        for (const MatrixXd& factor : Y) sum += step(factor, part);
+    }
+    return sum * (1 + 1e-14);
+}
+
+// |I - Y(s) F'| r with the coefficients of both.
+struct RestAlong {
+    std::vector<MatrixXd> rest;
+    MatrixXd Y;  // Σ |Y_k|
+    std::vector<MatrixXd> M, R;
+    double gamma = 0;
+    bool finite = true;
+    VectorXd operator()(const VectorXd& r) const {
+        VectorXd sum = VectorXd::Zero(r.size()), lost = sum;
+        for (const MatrixXd& part : rest) sum += above(part, r);
+        for (std::size_t k = 0; k < M.size(); ++k) lost += above(R[k], r) + gamma * above(M[k], r);
+        return (sum + above(Y, lost)) * (1 + 1e-13);
+    }
+};
+RestAlong rest_along(const std::vector<MatrixXd>& Y, const std::vector<std::vector<Interval>>& J) {
+    const Index n = Y.front().rows();
+    RestAlong of;
+    std::vector<MatrixXd> M;
+    for (const auto& part : J) {
+        const Contraction c = contraction(MatrixXd::Zero(n, n), part);  // for its middle and radius
+        of.finite = of.finite && c.finite;
+        if (!of.finite) return of;
+        of.M.push_back(c.M);
+        of.R.push_back(c.R);
+        of.gamma = std::max(of.gamma, c.gamma);
+        MatrixXd middle(n, n);
+        for (Index i = 0; i < n; ++i)
+            for (Index j = 0; j < n; ++j) middle(i, j) = mid(part[static_cast<std::size_t>(i * n + j)]);
+        M.push_back(std::move(middle));
+    }
+    of.gamma *= 2;  // a coefficient is a sum of at most two products
+    of.Y = MatrixXd::Zero(n, n);
+    for (const MatrixXd& factor : Y) of.Y += factor.cwiseAbs();
+    for (std::size_t k = 0; k + 1 < Y.size() + M.size(); ++k) {
+        MatrixXd sum = MatrixXd::Zero(n, n);
+        if (k == 0) sum.setIdentity();
+        for (std::size_t i = 0; i < Y.size(); ++i)
+            if (k >= i && k - i < M.size()) sum -= Y[i] * M[k - i];
+        of.rest.push_back(sum.cwiseAbs());
+    }
+    return of;
+}
+
+// Half of the tolerance is the tube's: the rest is left to the states themselves.
+bool within(const System& system, const VectorXd& r, const Tolerance& tolerance) {
+    for (int b = 0; b < system.bodies; ++b)
+        if (!(r.segment<3>(system.pose(b)).norm() < 0.5 * tolerance.length &&
+              2 * r.segment<4>(system.pose(b) + 3).norm() < 0.5 * tolerance.angle))
+            return false;
+    return true;
+}
+
+// r with |Y F| + rest(r) < r, from the fixed point of that; empty where there is none.
+template <class Rest>
+VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
+    constexpr double least = 1e-20;
+    constexpr int most =
+        200;  // over the knot of a stop r is its stiffness over the spring's times what it is elsewhere
+    VectorXd r = first.cwiseMax(least) * 1.01;
+    for (int k = 0; k < most; ++k) {
+        const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
+        if (!(next.array() <= room.array()).all()) return {};
+        if (all_less((first + rest(next)) * (1 + 1e-14), next)) return next;
+        r = next.cwiseMax(r);
+    }
+    return {};
+}
+
+// The box at a joint; the gauge there is the joint's own place.
+void enclose(const Walk& walk, Node& node) {
+    if (node.box.size() > 0) return;
+    const Problem problem = walk.problem(node.y.head(walk.system.n()));
+    const Interval a = node.a;
+    const VectorXd first = step(node.Y, evaluate(problem, thin(node.y), a, Slopes::no).E);
+    if (!first.allFinite()) return;
+    const VectorXd room = (3 * first).cwiseMax(1e-19);
+    const Contraction rest = contraction(node.Y, evaluate(problem, box(node.y, room), a, Slopes::yes).J);
+    if (rest.finite) node.box = tube(first, rest, room);
+}
+
+// Proves a piece, or leaves its tube empty.
+bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
+           const Tolerance& tolerance) {
+    const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
+    const int n = problem.n();
+    constexpr int F_order = order<Along>, J_order = order<SlopesAlong>;
+    const auto F = coefficients<F_order>([&](const Interval& S) {
+        return evaluate_without_slopes(problem, along<F_order>(piece, S, nullptr),
+                                       parameter<F_order>(piece, S))
+            .E;
+    });
+    VectorXd first = step({Y0}, F, n);
+    if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
+    // Room for the tube: it is what F' is taken over.
+    const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
+    const auto J = coefficients<J_order>([&](const Interval& S) {
+        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S), Slopes::yes)
+            .J;
+    });
+    for (const auto& part : J)
+        for (const Interval& entry : part)
+            if (!bounded(entry)) return false;
+    std::vector<double> J1;
+    for (const Interval& entry : J[1]) J1.push_back(mid(entry));
+    const std::vector<MatrixXd> Y{Y0, -Y0 * square(J1, problem.size()) * Y0};
+    const RestAlong rest = rest_along(Y, J);
+    if (!rest.finite) return false;
+    piece.r = tube(step(Y, F, n).cwiseMax(joint), rest, room);
+    return piece.r.size() > 0 && within(walk.system, piece.r, tolerance);
+}
+
+// The same over a knot.
+bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, const Tolerance& tolerance) {
+    const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
+    const auto F = coefficients<1>([&](const Interval& S) {
+        return evaluate_without_slopes(problem, along<1>(piece, S, nullptr), parameter<1>(piece, S)).E;
+    });
+    const auto slopes = [&](const VectorXd& room) {
+        std::vector<Interval> y;
+        for (const auto& jet : along<1>(piece, Interval(-1, 1), &room)) y.push_back(jet.c[0]);
+        return evaluate(problem, y, parameter<1>(piece, Interval(-1, 1)).c[0], Slopes::yes).J;
+    };
+    VectorXd room = joint;
+    for (int trial = 0; trial < 5; ++trial) {
+        const auto J = slopes(room);
+        std::vector<double> middle;
+        for (const Interval& entry : J) middle.push_back(mid(entry));
+        const MatrixXd Y = inverse(square(middle, problem.size()));
+        if (!Y.allFinite()) return false;
+        const VectorXd first = step({Y}, F, problem.n()).cwiseMax(joint);
+        if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
+        const Contraction rest = contraction(Y, J);
+        if (!rest.finite) return false;
+        if (trial > 0) {
+            piece.r = tube(first, rest, room);
+            if (piece.r.size() > 0) return within(walk.system, piece.r, tolerance);
+        }
+        room = (20 * first).cwiseMax(room * 4);
+    }
+    return false;
+}
+
+// ---- What is said of it
+
+void raise(Extent& to, const Extent& by) {
+    to.length = std::max(to.length, by.length);
+    to.angle = std::max(to.angle, by.angle);
+    to.force = std::max(to.force, by.force);
+    to.moment = std::max(to.moment, by.moment);
+}
+
+// How far the tube is from the state, at its a.
+Extent distance(const Piece& piece, const StateAt& at) {
+    const Interval a0 = piece.a0, a1 = piece.a1,
+                   s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
+    std::vector<Interval> z;
+    for (const auto& jet : along<0>(piece, intersection(s, Interval(-1, 1)), &piece.r)) z.push_back(jet.c[0]);
+    z.resize(static_cast<std::size_t>(at.system.n()));
+    return distance(at, z);
+}
+
+// What holds idle motions over the tube, what redundant rows stay open by.
+struct Held {
+    double held = 0, gap = 0;
+};
+Held held_over(const Walk& walk, const Piece& piece) {
+    const Index k = walk.border.count(), n = walk.system.n(), balances = 6 * walk.system.bodies;
+    if (k == 0) return {};
+    VectorXd mu = piece.r.tail(k);
+    for (Index i = 0; i < k; ++i) mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
+    const VectorXd all = walk.border.U.cwiseAbs() * mu * (1 + 1e-12);
+    return {balances > 0 ? all.head(balances).maxCoeff() : 0,
+            walk.system.rows > 0 ? all.segment(balances, walk.system.rows).maxCoeff() : 0};
+}
+
+}  // namespace
+
+Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
+                    const Tolerance& tolerance) {
+    Tube tube;
+    tube.width = {0, 0, 0, 0};
+    const auto open = [&](const std::string& why) {
+        tube.answer = Answer::open;
+        tube.detail = why;
+        return tube;
+    };
+    if (states.size() < 2) return open("a way between states needs two of them");
+    if (!arithmetic_is_as_proved())
+        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+    const System system = make_system(model, branch);
+    std::vector<StateAt> at;
+    for (const auto& state : states) at.push_back(state_at(system, state));
+    tube.from = tube.to = states.front().load;
+    const double end = states.back().load, way = end - tube.from;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        if (!at[k].z.allFinite() || !std::isfinite(states[k].load)) return open("a state is not finite");
+        if (k > 0 && !((states[k].load - states[k - 1].load) * way > 0))
+            return open(fmt::format("the states turn back at {:.9g}", states[k].load));
+    }
+    const StateAt& middle = at[at.size() / 2];
+    const Interpolant interpolant_of = interpolant(at);
+    const Walk walk{system, interpolant_of, border_at(system, middle.z, middle.state.load)};
+
+    // As long as it goes; half of it where it does not, three fifths more where it did.
+    constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
+    double h = first_share * way;
+    Held held, pushed;
+    Node from = walk.node(tube.from), middle_node, to;
+    if (!from.found)
+        return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
+    enclose(walk, from);
+    if (from.box.size() == 0) return open(fmt::format("nothing is proved at {:.9g}", tube.from));
+    const VectorXd none = VectorXd::Zero(from.y.size());
+    std::size_t next_state = 0;
+    bool halved = false;
+    while (tube.to != end) {
+        const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
+        const double a1 = last ? end : tube.to + h;
+        if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
+            if (pushed.held > tolerance.held)
+                return open(
+                    fmt::format("past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
+                                tube.to, idle_bodies(system, walk.border), pushed.held));
+            if (pushed.gap > tolerance.gap)
+                return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad", tube.to,
+                                        redundant_joints(system, walk.border), pushed.gap));
+            return open(fmt::format(
+                "no piece is proved past {:.12g}: the branch turns back or divides, a law ends, or a "
+                "stop closes that is much stiffer than what it meets",
+                tube.to));
+        }
+        to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
+        middle_node = walk.node(tube.to / 2 + a1 / 2);
+        Piece piece;
+        bool proved = false;
+        Held of_piece;
+        // The boxes at both ends, within the tube.
+        const auto joined = [&] { return all_less(from.box, piece.r) && all_less(to.box, piece.r); };
+        const auto attempt = [&](const VectorXd& joint) {
+            if (to.found && middle_node.found) {
+                piece = quintic(from, middle_node, to);
+                proved = prove(walk, piece, middle_node.Y, joint, tolerance);
+            }
+            if (!proved && to.found && std::abs(h) < bridge * std::abs(way)) {
+                piece = straight(from, to);
+                proved = prove_over_knot(walk, piece, joint, tolerance);
+            }
+        };
+        attempt(none);
+        if (proved) enclose(walk, to);
+        if (proved && to.box.size() > 0 && !joined()) attempt(1.1 * from.box.cwiseMax(to.box));
+        if (proved) {
+            of_piece = held_over(walk, piece);
+            if (of_piece.held > tolerance.held || of_piece.gap > tolerance.gap) {
+                pushed = of_piece;
+                proved = false;
+            }
+        }
+        if (!proved || to.box.size() == 0 || !joined()) {
+            h /= 2;
+            halved = true;
+            continue;
+        }
+        halved = false;
+        Extent width{0, 0, 0, 0};
+        for (; next_state < at.size() &&
+               std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from);
+             ++next_state)
+            raise(width, distance(piece, at[next_state]));
+        for (int b = 0; b < system.bodies; ++b) {
+            width.length = std::max(width.length, piece.r.segment<3>(system.pose(b)).norm());
+            width.angle = std::max(width.angle, 2 * piece.r.segment<4>(system.pose(b) + 3).norm());
+        }
+        raise(tube.width, width);
+        held.held = std::max(held.held, of_piece.held);
+        held.gap = std::max(held.gap, of_piece.gap);
+        pushed = {};
+        ++tube.pieces;
+        tube.to = a1;
+        from = to;
+        h *= 1.6;
+        if (std::abs(h) > std::abs(way)) h = way;
+    }
+    const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&
+                      tube.width.force <= tolerance.force && tube.width.moment <= tolerance.moment;
+    if (!near)
+        return open(fmt::format(
+            "a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
+            "from the states, which is more than the tolerance",
+            1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi, tube.width.force,
+            tube.width.moment));
+    tube.answer = Answer::proved;
+    if (walk.border.count() > walk.border.redundant)
+        tube.detail = fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
+                                  idle_bodies(system, walk.border), held.held);
+    if (walk.border.redundant > 0)
+        tube.detail += fmt::format(
+            "{}joints {} hold more than once: they share as in the states, and stay open by at most "
+            "{:.1e} m or rad",
+            tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
+    return tube;
+}
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,199 @@
+// A limit point: a is an unknown, and the curve of equilibria goes on by the coordinate σ along its tangent t,
+//
+//   E(z; a) + U μ = 0,   gᵀ (z - z_g) = 0,   tᵀ (y - ỹ) = σ,     y = (z, μ, a)
+//
+// One box that contracts for every σ in [-δ, δ] holds one equilibrium y(σ) at each: a curve. Its slope dy/dσ solves
+// F' dy/dσ = e, e the unit vector of the last row, so
+//
+//   |dy/dσ - Y e| ≤ |I - Y F'| |Y e| + |I - Y F'| |dy/dσ - Y e|      (and the last is its own bound)
+//
+// Where da/dσ has one sign at -δ and the other at δ, a has its extreme between: the limit, which is no less than a(±δ) (where
+// it is a maximum) and no more than a on the whole box.
+#include <fmt/format.h>
+
+#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/krawczyk.hpp"
+#include "reference/certificate/state.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// σ counts origins over the model's size and quaternions: of y along v, tᵀ v = 1 with t = W v.
+struct Tangent {
+    VectorXd v, t;
+};
+Tangent normalised(const System& system, const VectorXd& along) {
+    VectorXd weighted = VectorXd::Zero(along.size());
+    for (int b = 0; b < system.bodies; ++b) {
+        const int k = system.pose(b);
+        weighted.segment<3>(k) = along.segment<3>(k) / (system.length * system.length);
+        weighted.segment<4>(k + 3) = along.segment<4>(k + 3);
+    }
+    const double size = std::sqrt(weighted.dot(along));
+    return {along / size, weighted / size};
+}
+
+// A point of the curve, with the inverse there; a tangent that its last column is.
+struct OnCurve {
+    VectorXd y;
+    MatrixXd Y;
+    bool found = false;
+    VectorXd v() const { return Y.col(Y.cols() - 1); }
+    double slope() const { return Y(Y.rows() - 1, Y.cols() - 1); }  // da/dσ
+};
+OnCurve on_curve(const Problem& problem) {
+    Approximate found = newton(problem, problem.y_t, 0);
+    return {std::move(found.y), std::move(found.Y), found.settled};
+}
+
+// Newton's method for da/dσ = 0, by secants. The problem's own point and tangent follow.
+constexpr double first_step = 1e-4, small_step = 1e-10, longest_step = 0.2;
+OnCurve turning_point(Problem& problem) {
+    double slope = 0, step = 0;
+    OnCurve here = on_curve(problem);
+    for (int count = 0; count < 40 && here.found; ++count) {
+        problem.y_t = here.y;
+        problem.t = normalised(problem.system, here.v()).t;
+        here = on_curve(problem);
+        if (!here.found) return here;
+        const double now = here.slope(), rate = step == 0 ? 0 : (now - slope) / step;
+        const double next = rate == 0 ? first_step : -now / rate;
+        if (now == 0 || std::abs(next) < small_step) return here;
+        slope = now;
+        step = std::clamp(next, -longest_step, longest_step);
+        problem.y_t = here.y + step * here.v();
+        here = on_curve(problem);
+    }
+    here.found = false;
+    return here;
+}
+
+// |x| over the box, for dy/dσ = Y e and what it may be off by.
+struct SlopeOf {
+    double middle = 0, radius = std::numeric_limits<double>::infinity();  // of da/dσ
+};
+SlopeOf slope_of_a(const MatrixXd& Y, const Contraction& rest) {
+    const Index n = Y.rows();
+    const VectorXd x = Y.col(n - 1);
+    VectorXd r = rest(x.cwiseAbs()) * 1.01;
+    r = r.cwiseMax(1e-300);
+    for (int k = 0; k < 20; ++k) {
+        const VectorXd next = (rest(x.cwiseAbs()) + rest(r)) * (1 + 1e-13);
+        if (all_less(next, r * (1 + 1e-12)) || (next.array() <= r.array()).all())
+            return {x[n - 1], next[n - 1] * (1 + 1e-12)};
+        r = (next * 1.1).cwiseMax(r);
+    }
+    return {};
+}
+
+// The box about ỹ that holds y(σ) for every σ of |σ| ≤ δ about `at`.
+struct Segment {
+    bool proved = false;
+    VectorXd r;
+    Contraction rest;
+};
+Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, double delta) {
+    std::vector<Interval> F = evaluate(problem, thin(y), Interval(0), Slopes::no).E;
+    F.back() += Interval(-delta, delta);
+    const VectorXd first = step(Y, F);
+    Segment of;
+    if (!first.allFinite()) return of;
+    // A point's box is to fit into a segment's, even where both are only rounding.
+    const double least = delta > 0 ? 1e-22 : 1e-25, wider = delta > 0 ? 1.3 : 1.01;
+    VectorXd r = (first * 1.5).cwiseMax(least);
+    for (int trial = 0; trial < 8; ++trial) {
+        of.rest = contraction(Y, evaluate(problem, box(y, r), Interval(0), Slopes::yes).J);
+        if (!of.rest.finite) return of;
+        VectorXd next = (first * wider).cwiseMax(least);
+        for (int k = 0; k < 3; ++k) next = ((first + of.rest(next)) * wider).cwiseMax(least);
+        if ((next.array() <= r.array()).all() && all_less((first + of.rest(next)) * (1 + 1e-14), next)) {
+            of.r = next;
+            of.proved = true;
+            return of;
+        }
+        r = (2 * next).cwiseMax(r);
+        if (!r.allFinite()) return of;
+    }
+    return of;
+}
+
+}  // namespace
+
+LimitPoint certify_limit_point(const Model& model, const Branch& branch, const Equilibrium& state,
+                               const Tolerance& tolerance) {
+    LimitPoint limit;
+    const auto open = [&](const std::string& why) {
+        limit.detail = why;
+        return limit;
+    };
+    if (!arithmetic_is_as_proved())
+        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+    const System system = make_system(model, branch);
+    const StateAt at = state_at(system, state);
+    if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
+
+    Problem known{system, border_at(system, at.z, state.load), at.z, false, {}, {}};
+    const Index n = known.size() + 1;
+    VectorXd y = VectorXd::Zero(n);
+    y.head(system.n()) = at.z;
+    const Values<double> of = evaluate(known, doubles(y.head(n - 1)), state.load, Slopes::yes);
+    VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
+    right.head(system.n()) = Eigen::Map<const VectorXd>(of.E_a.data(), system.n());
+    along.head(n - 1) = -inverse(square(of.J, n - 1)) * right;
+    if (!along.allFinite() || along.head(n - 1).isZero(0))
+        return open("the curve has no tangent at the state");
+    y[n - 1] = state.load;
+    Problem problem{system, known.border, known.z_g, true, normalised(system, along).t, y};
+    const OnCurve top = turning_point(problem);
+    if (!top.found) return open("no limit point is found near the state");
+
+    problem.y_t = top.y;
+    for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
+        const Segment all = segment(problem, top.y, top.Y, delta);
+        if (!all.proved) continue;
+        std::array<double, 2> sign{};
+        std::array<Interval, 2> a;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const double to = (side == 0 ? -1 : 1) * 0.999 * delta;
+            Problem at_end = problem;
+            at_end.y_t = top.y + to * top.v();
+            const OnCurve end = on_curve(at_end);
+            if (!end.found) break;
+            const Segment point = segment(at_end, end.y, end.Y, 0);
+            if (!point.proved) break;
+            Interval sigma;
+            for (Index i = 0; i < n; ++i)
+                sigma += Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
+            const bool on_segment = mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
+                                    all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
+            const SlopeOf slope = slope_of_a(end.Y, point.rest);
+            if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
+            sign[side] = slope.middle > 0 ? 1 : -1;
+            a[side] = around(end.y[n - 1], point.r[n - 1]);
+        }
+        if (!(sign[0] * sign[1] < 0)) continue;
+        const bool maximum = sign[0] > 0;
+        const Interval over = around(top.y[n - 1], all.r[n - 1]);
+        limit.from = maximum ? std::max(a[0].lo, a[1].lo) : over.lo;
+        limit.to = maximum ? over.hi : std::min(a[0].hi, a[1].hi);
+        const auto whole = box(top.y, all.r);
+        limit.error = distance(at, {whole.begin(), whole.begin() + system.n()});
+        if (limit.error.length <= tolerance.length && limit.error.angle <= tolerance.angle &&
+            limit.error.force <= tolerance.force && limit.error.moment <= tolerance.moment)
+            limit.answer = Answer::proved;
+        else
+            limit.detail = fmt::format(
+                "a limit point is proved, {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m from the "
+                "state, which is more than the tolerance",
+                1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi, limit.error.force,
+                limit.error.moment);
+        return limit;
+    }
+    return open("no box contracts on both sides of the limit point");
+}
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,168 @@
+// Whole branches as one curve, and limit points.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "compare/legs.hpp"
+#include "compare/trim.hpp"
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "reference/certificate/certificate.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Walked {
+    Model model;
+    Branch branch;
+    std::vector<Equilibrium> points;
+};
+std::vector<Walked> walked(const std::string& scene, int points) {
+    const Model model = compile(compare::trim(support::scene(scene)).scene);
+    std::vector<Walked> all;
+    for (const auto& branch : model.branches)
+        for (const auto& way : compare::ways_of(model, branch, points)) {
+            compare::Gait gait;
+            gait.leg = compare::Leg::equilibrium;
+            const EquilibriumPath path = compare::walk(way, gait);
+            EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+            all.push_back({way.model, way.branch, path.points});
+        }
+    return all;
+}
+
+TEST(CertifyBranch, TheWholeMcPhersonBranchIsOneCurveWithinAMillionthOfAMillimetre) {
+    for (const auto& walk : walked("mcpherson", 300)) {
+        const Tube tube = certify_branch(walk.model, walk.branch, walk.points);
+        EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
+        EXPECT_EQ(tube.from, 0);
+        EXPECT_EQ(tube.to, walk.branch.to);
+        EXPECT_LE(tube.width.length, 1e-9);
+        EXPECT_LE(tube.pieces, 60);
+        EXPECT_NE(tube.detail.find("idle motion of 'strut'"), std::string::npos) << tube.detail;
+    }
+}
+
+TEST(CertifyBranch, StatesThatAreOffOrAtOtherLoadsHaveNoTube) {
+    auto walk = walked("mcpherson", 30).front();
+    auto& points = walk.points;
+    ASSERT_EQ(certify_branch(walk.model, walk.branch, points).answer, Answer::proved);
+    auto moved = points;
+    moved[7].poses[1].r[2] += 1e-8;
+    const Tube off = certify_branch(walk.model, walk.branch, moved);
+    EXPECT_EQ(off.answer, Answer::open);
+    EXPECT_NE(off.detail.find("more than the tolerance"), std::string::npos) << off.detail;
+    auto loads = points;
+    loads[7].load += 0.1;
+    EXPECT_EQ(certify_branch(walk.model, walk.branch, loads).answer, Answer::open);
+    auto back = points;
+    std::swap(back[7], back[8]);
+    EXPECT_NE(certify_branch(walk.model, walk.branch, back).detail.find("turn back"), std::string::npos);
+    EXPECT_EQ(certify_branch(walk.model, walk.branch, std::span(points).first(1)).answer, Answer::open);
+}
+
+// The apex at height z is held by F(z) = 2 k (ℓ - ℓ₀) z / ℓ, ℓ² = b² + z²: largest where ℓ³ = ℓ₀ b².
+struct Arch {
+    static constexpr double k = 100e3, b = 0.3, h = 0.08;
+    static double length() { return std::hypot(b, h); }
+    static double force(double z) { return 2 * k * z * (1 - length() / std::hypot(b, z)); }
+    static double limit_height() {
+        const double l = std::cbrt(length() * b * b);
+        return std::sqrt(l * l - b * b);
+    }
+};
+struct OnArch {
+    Model model;
+    Branch branch;
+    Equilibrium at(double z, double load) const {
+        Equilibrium state;
+        state.load = load;
+        state.poses = {model.bodies[0].design};
+        state.poses[0].r[2] = z;
+        state.reactions.resize(model.joints.size());
+        return state;
+    }
+};
+OnArch arch() {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch way = model.branches.front();
+    way.to = -1500;
+    return {on_branch(model, way), way};
+}
+
+TEST(CertifyLimitPoint, TheArchsLimitIsEnclosedToTheLastDigits) {
+    const OnArch on = arch();
+    const double z = Arch::limit_height(), limit = Arch::force(z);
+    EXPECT_NEAR(limit, -211.516594, 1e-6);
+    for (const double off : {0., 1e-4, -1e-3, 3e-3}) {
+        const LimitPoint found =
+            certify_limit_point(on.model, on.branch, on.at(z + off, Arch::force(z + off)), {.length = 1e-2});
+        EXPECT_EQ(found.answer, Answer::proved) << found.detail;
+        EXPECT_LE(found.from, limit + 1e-10);
+        EXPECT_GE(found.to, limit - 1e-10);
+        EXPECT_LT(found.to - found.from, 1e-9);
+    }
+    const LimitPoint far = certify_limit_point(on.model, on.branch, on.at(z + 1e-4, Arch::force(z + 1e-4)));
+    EXPECT_EQ(far.answer, Answer::open);
+    EXPECT_NE(far.detail.find("from the state"), std::string::npos) << far.detail;
+}
+
+TEST(CertifyLimitPoint, ABranchThatDoesNotTurnHasNone) {
+    const auto walk = walked("mcpherson", 3).front();
+    const LimitPoint found = certify_limit_point(walk.model, walk.branch, walk.points[1]);
+    EXPECT_EQ(found.answer, Answer::open);
+    EXPECT_FALSE(found.detail.empty());
+}
+
+// The height at a load a little less than the limit, on the side that stands and on the other.
+double height(double load, bool standing) {
+    double low = standing ? Arch::limit_height() : 0, high = standing ? Arch::h : Arch::limit_height();
+    for (int k = 0; k < 200; ++k) {
+        const double z = (low + high) / 2;
+        ((Arch::force(z) < load) == standing ? low : high) = z;
+    }
+    return (low + high) / 2;
+}
+
+TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
+    const OnArch on = arch();
+    const double limit = Arch::force(Arch::limit_height());
+    for (const double share : {1e-2, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
+        const double load = limit * (1 - share);
+        for (const bool standing : {true, false}) {
+            // The closed form, in doubles, is as far off as an ulp of the load over the stiffness left.
+            const Certificate c =
+                certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
+            EXPECT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
+            EXPECT_EQ(c.stable, standing) << share;
+        }
+    }
+    // Past it there is none.
+    const Certificate past = certify(on.model, on.branch, on.at(Arch::limit_height(), limit * (1 + 1e-6)));
+    EXPECT_EQ(past.answer, Answer::excluded) << past.detail;
+}
+
+TEST(Certificate, AllThreeEquilibriaOfTheArchAreProvedEachByItself) {
+    const OnArch on = arch();
+    const double load = -120, below = [&] {
+        double low = -2, high = -Arch::h;
+        for (int k = 0; k < 200; ++k) (Arch::force((low + high) / 2) < load ? low : high) = (low + high) / 2;
+        return low;
+    }();
+    const double heights[] = {height(load, true), height(load, false), below};
+    for (int k = 0; k < 3; ++k) {
+        const Certificate c = certify(on.model, on.branch, on.at(heights[k], load));
+        EXPECT_EQ(c.answer, Answer::proved) << k << c.detail;
+        EXPECT_EQ(c.stable, k != 1) << k;
+        for (int other = 0; other < 3; ++other)
+            if (other != k) {
+                EXPECT_LT(c.unique.length, std::abs(heights[k] - heights[other]));
+            }
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,182 @@
+// What the theorem is about: numbers that are not rounded beforehand, joints that hold twice, knots, formulations, followers.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "compare/legs.hpp"
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/stability.hpp"
+#include "reference/certificate/state.hpp"
+#include "reference/equilibrium/solve.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+struct On {
+    Model model;
+    Branch branch;
+    Equilibrium solved(double a) const {
+        const auto path = equilibrium::solve(model, branch, std::span(&a, 1));
+        EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+        return path.points.empty() ? Equilibrium{} : path.points[0];
+    }
+};
+On on(const std::string& scene) {
+    const Model model = compile(parse_scene(scene, "test.yaml"));
+    const Branch way = ways(model.branches.front()).front();
+    return {on_branch(model, way), way};
+}
+
+std::string swing(const std::string& joints, const std::string& elements = "") {
+    return "elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
+           "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
+           "bodies: {arm: {origin: p}}\njoints: {" +
+           joints + "}\n" +
+           (elements.empty()
+                ? "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}"
+                : elements) +
+           "\nloads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
+           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n";
+}
+const std::string hinge = "a: {type: revolute, bodies: [arm, ground], at: o, axis: y}",
+                  hinge_again = "b: {type: revolute, bodies: [arm, ground], at: q, axis: y}";
+
+// a · b exactly is p + e, e of the fused product.
+bool holds_product(const Interval& x, double a, double b) {
+    const double p = a * b, e = std::fma(a, b, -p);
+    return (x.lo < p || (x.lo == p && e >= 0)) && (x.hi > p || (x.hi == p && e <= 0));
+}
+
+TEST(CertificateEquations, WhatADriverMovesIsNotRoundedBeforehand) {
+    On way = on(swing(hinge, "bushings: {b: {bodies: [arm, ground], at: p, rates: [1, 1, 1]}}"));
+    Vector6 direction;
+    direction << 0.1, 0.7, -1. / 3, 3e-5, 1e7 / 3, 0.3;
+    way.branch.drivers.push_back({Preload{0, direction}, 0.3, 1. / 7});
+    const System system = make_system(way.model, way.branch);
+    for (int k = 0; k < 6; ++k) {
+        const Affine& path = system.elements[0].preload[static_cast<std::size_t>(k)];
+        EXPECT_TRUE(holds_product(path.start, direction[k], 0.3)) << k;
+        EXPECT_TRUE(holds_product(path.rate, direction[k], 1. / 7)) << k;
+        const Interval at = path.at(Interval(0.3));
+        EXPECT_LT(at.lo, at.hi) << k;
+    }
+}
+
+TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradictionsAreNot) {
+    On way = on(swing(hinge + ", " + hinge_again));
+    const Equilibrium state = way.solved(500);
+    const Certificate c = certify(way.model, way.branch, state);
+    EXPECT_EQ(c.answer, Answer::proved) << c.detail;
+    EXPECT_NE(c.detail.find("hold more than once"), std::string::npos) << c.detail;
+    EXPECT_GT(c.gap, 0);
+    EXPECT_LT(c.gap, 1e-12);
+    EXPECT_TRUE(c.stable);
+    // A part of a millimetre apart along the axis, where both hold: the middle is no equilibrium.
+    for (auto& constraint : way.model.constraints)
+        if (auto* points = std::get_if<CoincidentPoints>(&constraint.kind))
+            if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05) points->j.s_local[1] += 1e-6;
+    const Certificate apart = certify(way.model, way.branch, state);
+    EXPECT_EQ(apart.answer, Answer::excluded) << apart.detail;
+}
+
+// A stop that the load just closes: where the slopes jump, on its knot and to both sides of it.
+TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchIsUpToIt) {
+    const auto stopped = [](double rate) {
+        return on(swing(hinge,
+                        fmt::format("springs: {{coil: {{bodies: [arm, ground], from: p, to: t, rate: 30}}}}\n"
+                                    "stops: {{s: {{bodies: [arm, ground], from: p, to: t, bump: {{clearance: "
+                                    "10, rate: {}}}}}}}",
+                                    rate)));
+    };
+    On way = stopped(500);
+    // The load at which the spring is 10 mm shorter, by halves.
+    double low = 0, high = 1000;
+    const auto gap = [&](const Equilibrium& state) {
+        const Pose& pose = state.poses[0];
+        const auto& spring = std::get<AxialSpring>(way.model.elastics[0].kind);
+        const bool from_arm = spring.i.body == 0;
+        const Vector3d moving = pose.r + pose.p * (from_arm ? spring.i : spring.j).s_local;
+        return (moving - (from_arm ? spring.j : spring.i).s_local).norm() - 0.39;
+    };
+    for (int k = 0; k < 60; ++k) (gap(way.solved((low + high) / 2)) > 0 ? low : high) = (low + high) / 2;
+    bool said = false;
+    for (const double by : {0., 1e-13, -1e-13, 1e-10, -1e-10, 1e-3, -1e-3}) {
+        const Certificate c = certify(way.model, way.branch, way.solved(low * (1 + by)));
+        EXPECT_EQ(c.answer, Answer::proved) << by << c.detail;
+        EXPECT_TRUE(c.stable) << by;
+        said = said || c.detail.find("on a knot") != std::string::npos;
+    }
+    EXPECT_TRUE(said);
+    const auto tube_of = [](const On& of) {
+        std::vector<Equilibrium> states;
+        for (int k = 0; k <= 10; ++k) states.push_back(of.solved(100. * k));
+        return certify_branch(of.model, of.branch, states);
+    };
+    // The way ends at its knot where it cannot be shown to go over it, and says so.
+    const Tube hard = tube_of(way);
+    EXPECT_EQ(hard.answer, Answer::open);
+    EXPECT_NEAR(hard.to, low, 1e-6);
+    EXPECT_NE(hard.detail.find("a stop closes"), std::string::npos) << hard.detail;
+}
+
+// Whatever a bushing measures, at small turns and large ones: the equilibrium leg's points are proved.
+TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) {
+    using F = Formulation;
+    int proved = 0;
+    for (const auto angles : {F::Angles::rotation_vector, F::Angles::cardan, F::Angles::projected})
+        for (const auto frame : {F::Frame::on_i, F::Frame::middle})
+            for (const bool conjugate : {true, false})
+                for (const bool offset : {true, false}) {
+                    if (frame == F::Frame::middle && !conjugate) continue;
+                    On way =
+                        on(swing("",
+                                 "bushings: {b: {bodies: [arm, ground], at: o, rates: [1000, 2000, 3000], "
+                                 "rotational_rates: [7e5, 5e5, 4e5]}}"));
+                    auto& bushing = std::get<Bushing>(way.model.elastics[0].kind);
+                    bushing.formulation = {frame, angles, conjugate, offset};
+                    bushing.i.A_local = Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();
+                    bushing.j.A_local = Eigen::Quaterniond(0.9, 0.3, 0.1, -0.2).normalized();
+                    bushing.undeformed << 1e-3, -2e-3, 0, 0.1, 0.2, -0.1;
+                    for (const double a : {0., 300., 1000.}) {
+                        const Certificate c = certify(way.model, way.branch, way.solved(a));
+                        EXPECT_EQ(c.answer, Answer::proved) << a << c.detail;
+                        proved += c.answer == Answer::proved;
+                    }
+                }
+    EXPECT_EQ(proved, 3 * 18);
+}
+
+TEST(CertificateEquations, WhereATableEndsNothingIsProved) {
+    On way = on(swing(hinge));
+    auto& spring = std::get<AxialSpring>(way.model.elastics[0].kind);
+    const Equilibrium state = way.solved(500);
+    ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
+    spring.law =
+        Curve{{-1e-6, 1e-6}, {{0., 30e3, 0., 0.}, {-0.03, 30e3, 0., 0.}, {0.03, 30e3, 0., 0.}}, false};
+    const Certificate c = certify(way.model, way.branch, state);
+    EXPECT_EQ(c.answer, Answer::open);
+    EXPECT_NE(c.detail.find("ends here"), std::string::npos) << c.detail;
+}
+
+TEST(CertificateEquations, PositiveDefiniteIsSaidOfNothingElse) {
+    Eigen::Matrix2d M, R = Eigen::Matrix2d::Zero();
+    M << 1e12, 1, 1, 1e-6;
+    EXPECT_TRUE(positive_definite(M, R));
+    R(1, 1) = 0.9e-6;
+    EXPECT_TRUE(positive_definite(M, R));
+    R(1, 1) = 1.1e-6;
+    EXPECT_FALSE(positive_definite(M, R));
+    M << 1, 1, 1, 1;
+    R.setZero();
+    EXPECT_FALSE(positive_definite(M, R));
+    M(1, 1) = std::nan("");
+    EXPECT_FALSE(positive_definite(M, R));
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::certificate
