@@ -132,25 +132,26 @@ int steering_joint(const Model& model) {
 }
 
 Response respond(const Gait& gait, const Model& model, const Branch& branch, const Equilibrium& state,
-                 std::span<const Disturbance> disturbances) {
+                 std::span<const Disturbance> disturbances, std::optional<recursive::Analysis>& analysis) {
+    const auto recursion = [&](const recursive::Method& method) {
+        if (!analysis) analysis = recursive::analyse(model);
+        return recursive::respond(model, branch, state, disturbances, method, *analysis);
+    };
     switch (gait.leg) {
-        case Leg::recursive:
-            return recursive::respond(model, branch, state, disturbances, gait.recursion.method);
-        case Leg::series:
-            return recursive::respond(model, branch, state, disturbances,
-                                      recursive::find_method("series").value());
+        case Leg::recursive: return recursion(gait.recursion.method);
+        case Leg::series: return recursion(recursive::find_method("series").value());
         case Leg::equilibrium: return reference::equilibrium::respond(model, branch, state, disturbances);
         case Leg::energy: return reference::energy::respond(model, branch, state, disturbances);
     }
     return {};
 }
 
-Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state) {
+Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state, Analyses& analyses) {
     Answers answers;
     const std::size_t wheels = way.model.wheels.size();
     Stand stand = freed(way, state);
     const auto wrenches = causes_at(way.model);
-    if (const Response free = respond(gait, stand.model, stand.branch, stand.state, wrenches);
+    if (const Response free = respond(gait, stand.model, stand.branch, stand.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
         answers.free = by_wheel(free.increments, wheels);
     else {
@@ -164,7 +165,7 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
     for (std::size_t w = 0; w < wheels; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
     const bool steers = steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     if (steers) changes.push_back(Motion{steering});
-    Response jacked = respond(gait, stand.model, stand.branch, stand.state, changes);
+    Response jacked = respond(gait, stand.model, stand.branch, stand.state, changes, analyses.jacked);
     if (jacked.outcome != Outcome::converged) {
         answers.why_not = told(jacked);
         return answers;

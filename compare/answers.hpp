@@ -39,12 +39,17 @@ struct Answers {
 int steering_joint(const Model& model);
 
 // By the leg's own tangent at the state; of the recursion the matrix that its method factorises. `steering` is a position in
-// Model::joints, or -1.
-Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state);
+// Model::joints, or -1. The `analyses` are of the way: from state to state the two models differ in loads and in the height
+// of jacks, of which an analysis knows nothing that is used here.
+Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state, Analyses& analyses);
+inline Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state) {
+    Analyses analyses;
+    return answer(way, gait, steering, state, analyses);
+}
 
-// The response of one leg.
+// The response of one leg; the recursion's with the analysis, which is made where there is none.
 Response respond(const Gait& gait, const Model& model, const Branch& branch, const Equilibrium& state,
-                 std::span<const Disturbance> disturbances);
+                 std::span<const Disturbance> disturbances, std::optional<recursive::Analysis>& analysis);
 
 // d(position) of a point of a body, and the turning of the body.
 Eigen::Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point);

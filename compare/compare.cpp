@@ -35,11 +35,12 @@ bool asks_for_characteristics(const std::vector<Channel>& channels) {
 std::vector<Compliance> compliance_of(const Model& model, const Way& way, const Gait& gait,
                                       const LegRun& run) {
     std::vector<Compliance> list;
+    Analyses analyses;
     for (const auto* state : {&run.landmarks.front, &run.landmarks.start, &run.landmarks.back}) {
         if (!*state) continue;
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
-        const Answers answers = answer(way, gait, steering_joint(model), **state);
+        const Answers answers = answer(way, gait, steering_joint(model), **state, analyses);
         Compliance& at = list.emplace_back();
         at.a = a;
         at.why_not = answers.why_not_free;
@@ -146,6 +147,20 @@ bool is_undefined_somewhere(const Channel& channel, std::size_t c, const std::ve
            });
 }
 
+// The first point at which an output has a value by one of the two only; empty where there is none.
+std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one, const LegRun& other) {
+    if (!channel.may_be_undefined()) return {};
+    for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
+        const bool by_one = one.curve.values[k][c] != undefined,
+                   by_other = other.curve.values[k][c] != undefined;
+        if (by_one != by_other)
+            return fmt::format(
+                "the reference legs disagree on whether {} has a value at {:.6g} {}: by the {} leg it has",
+                channel.name, one.curve.a[k], symbol(one.curve.unit), name(by_one ? one.leg : other.leg));
+    }
+    return {};
+}
+
 }  // namespace
 
 void Objections::add(std::string what, double share) {
@@ -198,6 +213,10 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                             channels[c].name, off, symbol(channels[c].unit), bound),
                 part);
     }
+    // Whether an output has a value at a point is part of the answer.
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (const auto where = defined_by_one(channels[c], c, equilibrium, second); !where.empty())
+            objections.add(where);
     // Whoever can judge states without having made them: the series is of the recursive leg's equations.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge}, {&second, Leg::equilibrium}};

@@ -47,12 +47,21 @@ EquilibriumPath recursion(const Way& way, recursive::Options options, int refine
 EquilibriumPath walk_anywhere(const Way& way, const Gait& gait, const Visit& visit) {
     const auto& [model, branch] = std::tie(way.model, way.branch);
     switch (gait.leg) {
-        case Leg::recursive: return recursion(way, gait.recursion, gait.refine, gait.every, visit);
+        case Leg::recursive: {
+            recursive::Options options = gait.recursion;
+            options.account = gait.account;
+            return recursion(way, options, gait.refine, gait.every, visit);
+        }
         case Leg::equilibrium:
-            return reference::equilibrium::solve(model, branch, grid(branch, gait.every), {}, visit);
-        case Leg::energy: return reference::energy::solve(model, branch, grid(branch, gait.every), {}, visit);
+            return reference::equilibrium::solve(model, branch, grid(branch, gait.every),
+                                                 {.account = gait.account}, visit);
+        case Leg::energy:
+            return reference::energy::solve(model, branch, grid(branch, gait.every),
+                                            {.account = gait.account}, visit);
         case Leg::series:
-            return recursion(way, {.method = recursive::find_method("series").value()}, 1, gait.every, visit);
+            return recursion(way,
+                             {.method = recursive::find_method("series").value(), .account = gait.account}, 1,
+                             gait.every, visit);
     }
     return {};
 }
@@ -163,13 +172,13 @@ EquilibriumPath walk(const std::vector<Way>& ways, const Gait& gait) {
 }
 
 Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
-           const Equilibrium& state) {
+           const Equilibrium& state, Analyses& analyses) {
     Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
     std::optional<Answers> answers;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
         if (characteristic == nullptr) continue;
-        if (!answers) answers = answer(way, gait, steering_joint(model), state);
+        if (!answers) answers = answer(way, gait, steering_joint(model), state, analyses);
         row.values[c] = in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
     }
     return row;
@@ -187,13 +196,14 @@ Walked walk(const Model& model, std::span<const Channel> channels, const Branch&
     Walked walked;
     walked.curve.unit = unit_of(branch.unit);
     clock::duration reading{};
+    Analyses analyses;
     const auto start = clock::now();
     const EquilibriumPath path = walk(
         ways, gait,
         [&](const Equilibrium& state) {
             const auto found = clock::now();
             if (also) also(state);
-            Row row = row_of(model, channels, ways.front(), gait, state);
+            Row row = row_of(model, channels, ways.front(), gait, state, analyses);
             reading += clock::now() - found;
             return row;
         },

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,7 @@ struct Gait {
     recursive::Options recursion = {};
     int refine = 1;
     int every = 1;
+    bool account = false;  // every point carries its bound and the stiffness left, by the leg's own account
 };
 
 // The values of the parameter that are asked for, in the order of the points: of one way from a = 0, of two from `from`
@@ -64,9 +66,18 @@ struct Row {
     double constraint_error = 0;  // likewise
     std::vector<double> values;   // per channel, in its unit
 };
+// What the recursion tells once of the two models that answer on a way (answers.hpp), whatever the state.
+struct Analyses {
+    std::optional<recursive::Analysis> free, jacked;  // made when they are first asked for
+};
 // By whoever walks as `gait` says: a characteristic is asked of the leg that found the state.
 Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
-           const Equilibrium& state);
+           const Equilibrium& state, Analyses& analyses);
+inline Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,
+                  const Equilibrium& state) {  // of one state alone
+    Analyses analyses;
+    return row_of(model, channels, way, gait, state, analyses);
+}
 
 // The same path, no point of which is kept: each is read once, as it is found, and its row handed over in the order of
 // the path. What comes reversed, the first of two ways, is kept as rows until it ends.

@@ -9,7 +9,8 @@
 //
 // An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the determinant
 // as it was. It is found where the determinant dips: where it is, in the middle, of another sign or less than
-// half of what it is at either end, the step is halved until it is no more, or the point is found.
+// half of what it is at either end, the step is halved until it is no more, or the point is found. Two modes that become
+// unstable at once leave the sign, too: they are seen in the least stiffness of every node (stiffness.hpp).
 //
 // Curves have knots, which no step goes over: it ends there (landing.hpp), and the next one begins with the derivative
 // that the path has behind. Where the determinant changes its sign with the piece, the path turns back at the knot.
@@ -20,6 +21,7 @@
 #include "recursive/landing.hpp"
 #include "recursive/recording.hpp"
 #include "recursive/settle.hpp"
+#include "recursive/stiffness.hpp"
 
 namespace elastocheck::recursive {
 
@@ -102,6 +104,12 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
     }
     Real log_here = log_determinant(s.system.lu);
+    Softest<Real> softest;
+    const auto unstable = [&] {
+        const LeastStiffness least = least_stiffness(s, softest);
+        return least.of_energy && least.value < 0;
+    };
+    const bool begins_stable = !unstable();
     keep(node.q, node.lambda, 0);
 
     while (reached <= last) {
@@ -121,14 +129,16 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         Real error = std::numeric_limits<Real>::infinity();
         if (trial.verdict == Verdict::believed) {
             const Real log_next = log_determinant(s.system.lu);
+            if (begins_stable && unstable()) trial.verdict = Verdict::turned_over;
             between(node, next, Real(0.5), q, lambda);
             trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
             if (trial.outcome == Outcome::converged) {
                 error =
                     std::max({trial.left, size, share_of_reactions(s, going, q, node.lambda, next.lambda)});
-                const bool dips = s.system.lu.orientation != node.orientation ||
-                                  log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
-                if (dips) trial.verdict = Verdict::turned_over;
+                const bool turned = s.system.lu.orientation != node.orientation;
+                const bool dips = log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
+                if (trial.verdict == Verdict::believed && (turned || dips))
+                    trial.verdict = turned ? Verdict::turned_over : Verdict::dips;
             }
             if (trial.verdict == Verdict::believed && error <= 1) {
                 for (; reached <= last;) {
@@ -157,7 +167,8 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         const Real change = judged ? Real(0.85) * pow(std::max(error, Real(1e-8)), Real(-0.25)) : Real(0.3);
         h = step * std::clamp(change, Real(0.1), Real(4));
         if (!(std::abs(h) > std::abs(end) * Real(1e-7)) && reached <= last)
-            return judged ? Outcome::branch_lost : why_it_ends(trial, node, curvature, step);
+            return judged ? Outcome::branch_lost
+                          : why_it_ends(trial, node, curvature, step, static_cast<Real>(s.length));
     }
     return Outcome::converged;
 }

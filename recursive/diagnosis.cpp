@@ -6,6 +6,8 @@
 #include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <numeric>
 
 #include "recursive/assembly.hpp"
@@ -276,19 +278,75 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
 }
 
 // The rows that repeat, by the joints that they belong to.
-void find_redundant(const std::vector<int>& joint_of_row, const std::vector<int>& repeating,
-                    const VectorXd& Phi, Diagnosis& result) {
-    for (const int row : repeating) {
-        const int joint = joint_of_row[static_cast<std::size_t>(row)];
-        if (result.redundant.empty() || result.redundant.back().joint != joint)
-            result.redundant.push_back({joint, 0, false});
+void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeating, const VectorXd& Phi,
+                    Diagnosis& result) {
+    std::vector<std::map<int, double>> among;  // of each redundancy: Σ y² by joint
+    for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
+        const int joint = joint_of_row[static_cast<std::size_t>(repeating.rows[c])];
+        if (result.redundant.empty() || result.redundant.back().joint != joint) {
+            result.redundant.push_back({joint, 0, false, {}});
+            among.emplace_back();
+        }
         ++result.redundant.back().rows;
+        for (Columns::InnerIterator y(repeating.dependencies, static_cast<Eigen::Index>(c)); y; ++y)
+            if (std::abs(y.value()) > part_threshold)
+                among.back()[joint_of_row[static_cast<std::size_t>(y.row())]] += y.value() * y.value();
+    }
+    for (std::size_t k = 0; k < among.size(); ++k) {
+        auto& shares = result.redundant[k].shares;
+        shares.assign(among[k].begin(), among[k].end());
+        double whole = 0;
+        for (const auto& [joint, part] : shares) whole += part;
+        for (auto& [joint, part] : shares) part /= whole;
+        std::ranges::stable_sort(shares, std::greater{}, &std::pair<int, double>::second);
     }
     for (Redundancy& r : result.redundant) {
         const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
         const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
         r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
     }
+}
+
+// Whether the twist turns a body about a line that every point lies on by which it is attached.
+bool is_spin(const BodyState<double>& at, const std::vector<Attachment>& attached, const Vector3d& v,
+             const Vector3d& w, double length) {
+    if (attached.empty() || w.norm() * length < 1e-6 * v.norm()) return false;
+    return std::ranges::all_of(attached, [&](const Attachment& a) {
+        return (v + w.cross(at.lever(a.s_local))).norm() < 1e-6 * length * w.norm();
+    });
+}
+
+// The probes that the mode moves, the wheels whose centre it moves or whose spin axis it turns, the dampers that it
+// shortens or lengthens.
+std::vector<std::string> outputs_moved(const Model& model, const State<double>& q,
+                                       const Eigen::SparseVector<double>& dq, double length) {
+    constexpr double rounding = 1e-6;
+    std::vector<std::string> moved;
+    const auto twist = [&](BodyId b) {
+        Vector6<double> t = Vector6<double>::Zero();
+        for (int k = 0; b != ground && k < 6; ++k) t[k] = dq.coeff(6 * b + k);
+        return t;
+    };
+    const auto of_point = [&](const Point& at) -> Vector3d {
+        const Vector6<double> t = twist(at.body);
+        return t.head<3>() + t.tail<3>().cross(q[at.body].lever(at.s_local));
+    };
+    for (const auto& probe : model.probes)
+        if (of_point(probe.at).norm() > rounding) moved.push_back(probe.name);
+    for (const auto& wheel : model.wheels) {
+        const Vector3d turned = twist(wheel.body).tail<3>().cross(q[wheel.body].lever(wheel.spin_axis_local));
+        if (of_point({wheel.body, wheel.centre_local}).norm() > rounding || turned.norm() * length > rounding)
+            moved.push_back(wheel.name.empty() ? "wheel" : wheel.name);
+    }
+    for (const auto& damper : model.dampers) {
+        const auto place = [&](const Point& p) -> Vector3d {
+            return q[p.body].r + q[p.body].lever(p.s_local);
+        };
+        const Vector3d along = (place(damper.j) - place(damper.i)).normalized();
+        if (std::abs(along.dot(of_point(damper.j) - of_point(damper.i))) > rounding)
+            moved.push_back(damper.name);
+    }
+    return moved;
 }
 
 // An idle mode from its column in (Δr, L Δπ). Its sign is free: the largest entry counts as positive.
@@ -337,7 +395,7 @@ Diagnosis diagnose(const Model& model) {
     result.rank = m - static_cast<int>(repeating.rows.size());
     std::vector<int> joint_of_row;  // rising
     for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
-    find_redundant(joint_of_row, repeating.rows, Phi, result);
+    find_redundant(joint_of_row, repeating, Phi, result);
     result.determined.assign(model.joints.size(), true);
     find_undetermined(joint_of_row, repeating.dependencies, result);
 
@@ -357,6 +415,9 @@ Diagnosis diagnose(const Model& model) {
             const auto at = static_cast<std::size_t>(mode.body);
             mode.description = describe(model.bodies[at].name, q[mode.body], attached[at], twist.head<3>(),
                                         twist.tail<3>(), L);
+            mode.spins =
+                modes == &single && is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), L);
+            mode.outputs = outputs_moved(model, q, mode.dq, L);
         }
 
     std::vector<Eigen::Triplet<double>> held;
@@ -380,9 +441,40 @@ Diagnosis diagnose(const Model& model) {
     return result;
 }
 
+namespace {
+
+// "'a'", "'a' and 'b'", "'a', 'b' and 'c'"
+std::string listed(const std::vector<std::string>& names) {
+    std::string all;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        all += (k == 0 ? "" : k + 1 < names.size() ? ", " : " and ") + ("'" + names[k] + "'");
+    return all;
+}
+std::string moving(const std::vector<std::string>& outputs) {
+    return outputs.empty() ? "moves no output" : "moves " + listed(outputs);
+}
+// The body of "strut: rotation about ...".
+std::string body_of(const IdleMode& mode) { return mode.description.substr(0, mode.description.find(": ")); }
+
+}  // namespace
+
+std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis) {
+    std::vector<std::string> lines, spinning;
+    for (const IdleMode& mode : diagnosis.idle)
+        if (mode.spins && mode.outputs.empty()) spinning.push_back(body_of(mode));
+    const bool together = spinning.size() > 1;
+    for (const IdleMode& mode : diagnosis.idle)
+        if (!(together && mode.spins && mode.outputs.empty()))
+            lines.push_back(mode.description + ", " + moving(mode.outputs));
+    if (together)
+        lines.push_back((spinning.size() == 2 ? "both " : "") + listed(spinning) +
+                        " spin about themselves, which " + moving({}));
+    return lines;
+}
+
 std::string idle_modes(const Diagnosis& diagnosis) {
     std::string all;
-    for (const auto& mode : diagnosis.idle) all += (all.empty() ? "" : "; ") + mode.description;
+    for (const auto& line : told_idle_modes(diagnosis)) all += (all.empty() ? "" : "; ") + line;
     return all;
 }
 

@@ -23,12 +23,17 @@ struct IdleMode {
     BodyId body = ground;            // the body that moves most
     Eigen::SparseVector<double> dq;  // [6nb], unit in (Δr, L Δπ)
     std::string description;  // "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'"
+    bool spins = false;       // one body alone, about an axis that all lies on by which it is attached
+    std::vector<std::string> outputs;  // the probes and wheels that it moves
 };
 
 struct Redundancy {
     int joint = 0;             // position in Model::joints
     int rows = 0;              // how many of its rows repeat what the joints before it already hold
     bool contradicts = false;  // whether Φ ≠ 0 there: the joints cannot all be met
+    // The joints that the repetition is among, and what each has of the left null vectors y of the row-scaled Φ_q, squared:
+    // largest first, together 1. Taking out any of them takes out the repetition.
+    std::vector<std::pair<int, double>> shares;
 };
 
 struct Diagnosis {
@@ -54,7 +59,10 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model& model);
 
-// "strut: rotation about ...; link: ...", as many as there are.
+// As a person would say them, one a line: "strut: rotation about ..., moves no output", those that spin together: "both 'a'
+// and 'b' spin about themselves, moves no output".
+std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis);
+// All of them in one line.
 std::string idle_modes(const Diagnosis& diagnosis);
 
 // κ₂ of eq. (24) at the design position, idle and redundant directions left out.

@@ -104,6 +104,7 @@ struct March {
     const Model& model;
     const Branch& branch;
     double length;  // L of the diagnosis [m]
+    int free;       // motions that the joints allow and something resists
     Counts counts;
     bool consistent = false;  // whether the matrix is the consistent tangent, or K of (19)
 
@@ -140,6 +141,7 @@ struct March {
         : model(model_),
           branch(branch_),
           length(analysis.diagnosis.length),
+          free(analysis.diagnosis.degrees_of_freedom() - static_cast<int>(analysis.diagnosis.idle.size())),
           q(design_state<Real>(model)),
           before(q),
           drawn(inputs_as_drawn<Real>(model)),

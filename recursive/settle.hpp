@@ -113,7 +113,7 @@ Outcome settle_truly(March<Real>& s) {
                 std::swap(node, next);
                 h = 2 * tried;
             } else if (h = tried / 4; h < Real(1e-6)) {
-                return why_it_ends(trial, node, curvature, tried);
+                return why_it_ends(trial, node, curvature, tried, length);
             }
         }
     }

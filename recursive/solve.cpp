@@ -5,20 +5,23 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "recursive/account.hpp"
+#include "recursive/delay.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/sweep.hpp"
+#include "recursive/watch.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
-// A value of the branch's parameter as it is spoken of: "at 1200 N", "at 35.2 mm".
-std::string at_parameter(ParameterUnit unit, double a) {
+// A value of the branch's parameter as it is spoken of: "1200 N", "35.2 mm".
+std::string in_unit(ParameterUnit unit, double a) {
     switch (unit) {
-        case ParameterUnit::newton: return fmt::format("at {:.6g} N", a);
-        case ParameterUnit::newton_metre: return fmt::format("at {:.6g} N·m", a);
-        case ParameterUnit::metre: return fmt::format("at {:.6g} mm", 1e3 * a);
-        case ParameterUnit::radian: return fmt::format("at {:.6g} deg", a * 180 / std::numbers::pi);
-        case ParameterUnit::none: return fmt::format("at {:.6g}", a);
+        case ParameterUnit::newton: return fmt::format("{:.6g} N", a);
+        case ParameterUnit::newton_metre: return fmt::format("{:.6g} N·m", a);
+        case ParameterUnit::metre: return fmt::format("{:.6g} mm", 1e3 * a);
+        case ParameterUnit::radian: return fmt::format("{:.6g} deg", a * 180 / std::numbers::pi);
+        case ParameterUnit::none: return fmt::format("{:.6g}", a);
     }
     return {};
 }
@@ -26,7 +29,7 @@ std::string at_parameter(ParameterUnit unit, double a) {
 std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method& method, Outcome outcome,
                   double stopped) {
     std::string detail = std::isnan(stopped) ? std::string("while what is held at the start settles")
-                                             : at_parameter(branch.unit, stopped);
+                                             : "at " + in_unit(branch.unit, stopped);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
             detail += ": the load pushes what nothing resists: " + idle_modes(diagnosis);
@@ -74,11 +77,9 @@ EquilibriumPath sweep(Precision precision, const Model& model, const Branch& bra
     return {};
 }
 
-}  // namespace
-
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+// As the method finds it.
+EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
-    check(model, branch);
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         if (options.precision != Precision::twofold)
             throw std::invalid_argument("the series is computed in double precision only");
@@ -87,11 +88,57 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
                                                : branch.steps;
         return series::sample(model, series::follow(model, branch, *how, analysis), branch, points, visit);
     }
+    // A method that takes equal steps may step over where the branch ends, and one with the stiffness of (19) does not see
+    // it at all: it is told beforehand, and its points past that are none.
+    const bool linear = std::holds_alternative<Linear>(options.method.kind);
+    std::optional<Event> event;
+    if (has_steps(options.method)) event = watch(model, branch, analysis);
+    const auto is_past = [&](double a) { return event && !(std::abs(a) <= std::abs(event->load)); };
+    const Visit until = [&](const Equilibrium& point) {
+        if (!is_past(point.load)) visit(point);
+    };
     double stopped = 0;
-    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis, visit, stopped);
+    EquilibriumPath path =
+        sweep(options.precision, model, branch, options, analysis, visit && event ? until : visit, stopped);
+    // What a method with the consistent tangent has noticed by itself has a name, too.
+    const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
+    if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stopped))
+        event = find_event(model, branch, analysis);
+    if (path.outcome == Outcome::converged ? event.has_value() : !std::isnan(stopped) && is_past(stopped)) {
+        std::erase_if(path.points, [&](const Equilibrium& point) { return is_past(point.load); });
+        path.outcome = event->outcome;
+        stopped = event->load;
+    }
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format("branch '{}': {}", branch.name,
                                   words(analysis.diagnosis, branch, options.method, path.outcome, stopped));
+    if (path.outcome == Outcome::diverged && linear) {
+        const auto limit = stability_limit(model, branch, options.method, analysis);
+        path.detail += limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
+                             : std::string("; the model alone sets it no limit on this branch");
+    }
+    return path;
+}
+
+}  // namespace
+
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+                      const Analysis& analysis, const Visit& visit) {
+    check(model, branch);
+    if (!options.account) return found(model, branch, options, analysis, visit);
+    const auto* series = std::get_if<Series>(&options.method.kind);
+    const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);
+    EquilibriumPath path;
+    std::vector<Equilibrium> points;
+    path = found(model, branch, options, analysis, [&](const Equilibrium& found) {
+        Equilibrium point = found;
+        give_account(point);
+        if (visit)
+            visit(point);
+        else
+            points.push_back(std::move(point));
+    });
+    path.points = std::move(points);
     return path;
 }
 

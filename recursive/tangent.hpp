@@ -247,23 +247,40 @@ void add_load_stiffness(const FollowerMoment& moment, Real factor, const State<R
 
 }  // namespace detail
 
-// Adds ∂G/∂q [6nb × 6nb] to the top left of `target`.
+// The parts of ∂G/∂q [6nb × 6nb], added to the top left of `target`: of the elements, of the joints' reactions, of loads.
 template <class Real, class Target>
-void add_consistent_tangent(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                            const State<Real>& q, const Vector<Real>& lambda, Target& target) {
+void add_elastic_tangent(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+                         Target& target) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         std::visit([&](const auto& e) { detail::add_tangent<Real>(e, inputs.rest[k], q, target); },
                    model.elastics[k].kind);
+}
+template <class Real, class Target>
+void add_curvature(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+                   const Vector<Real>& lambda, Target& target) {
     for (std::size_t k = 0; k < model.constraints.size(); ++k)
         std::visit(
             [&](const auto& c) {
                 detail::add_curvature<Real>(c, inputs.offset[k], q, lambda.data() + inputs.row[k], target);
             },
             model.constraints[k].kind);
+}
+template <class Real, class Target>
+void add_load_stiffness(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                        const State<Real>& q, Target& target) {
     for_each_load<Real>(model, branch, inputs, [&](const LoadKind& load, Real factor) {
         std::visit([&](const auto& kind) { detail::add_load_stiffness<Real>(kind, factor, q, target); },
                    load);
     });
+}
+
+// All of ∂G/∂q.
+template <class Real, class Target>
+void add_consistent_tangent(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                            const State<Real>& q, const Vector<Real>& lambda, Target& target) {
+    add_elastic_tangent<Real>(model, inputs, q, target);
+    add_curvature<Real>(model, inputs, q, lambda, target);
+    add_load_stiffness<Real>(model, branch, inputs, q, target);
 }
 
 }  // namespace elastocheck::recursive

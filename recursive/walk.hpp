@@ -84,6 +84,7 @@ enum class Verdict {
     believed,
     unsolved,        // the corrections do not fall, or leave too much
     another_branch,  // an equilibrium, but not the one that was forecast
+    dips,            // on this path, but nearly singular on the way
     turned_over      // on this path, but past a point where the matrix is singular
 };
 
@@ -132,12 +133,17 @@ Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>&
 
 // Why a path does not go on from `node`, judged by the smallest trial of length h that failed.
 template <class Real>
-Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vector<Real>& curvature, Real h) {
+Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vector<Real>& curvature, Real h,
+                    Real length) {
     if (trial.outcome == Outcome::not_finite || trial.outcome == Outcome::loaded_idle_mode)
         return trial.outcome;
-    // Towards a limit point p*, z' ~ (p* - p)^-½, so that z'' (p* - p) = ½ z' and h is about p* - p.
-    if (curvature.norm() * std::abs(h) > Real(0.02) * node.dq.norm()) return Outcome::limit_point;
-    if (trial.verdict == Verdict::turned_over || trial.outcome == Outcome::singular) return Outcome::singular;
+    // Where a singular matrix still has the drivers' rate in its range, z' stays finite and the path goes on past the
+    // point: another crosses it there. Where it has not, z' ~ (p* - p)^-½ and the path turns back at p*; then
+    // z'' (p* - p) = ½ z', and h is about p* - p. A z' that is rounding tells nothing.
+    const bool moves = node.dq.norm() * (std::abs(node.p) + std::abs(h)) > Real(1e-9) * length;
+    if (moves && curvature.norm() * std::abs(h) > Real(0.02) * node.dq.norm()) return Outcome::limit_point;
+    if (trial.outcome == Outcome::singular || trial.verdict == Verdict::dips) return Outcome::singular;
+    if (trial.verdict == Verdict::turned_over) return Outcome::dividing_point;
     return Outcome::branch_lost;
 }
 

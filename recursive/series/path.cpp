@@ -6,6 +6,7 @@
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
 #include "recursive/settle.hpp"
+#include "recursive/stiffness.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
@@ -61,8 +62,10 @@ struct Walk {
     double per_unit;       // metres that an error of one unit of the parameter counts as
     Vector<double> ahead;  // x'(τ) of the motion before: which way is on
     double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
-    int side = 0;      // sign of the determinant where the way began, by arc length of that bordered by x'
-    Vector<double> x;  // where on the polynomial
+    int side = 0;  // sign of the determinant where the way began, by arc length of that bordered by x'
+    Softest<double> softest = {};
+    bool stable = false;  // where the way began, which then is to stay so
+    Vector<double> x;     // where on the polynomial
     Path path;
 
     Walk(March<double>& s_, std::vector<Followed>& curves_, const Options& options_, Drive drive)
@@ -361,6 +364,30 @@ Outcome set_out(Walk& w, Singularity& singularity, End& end) {
     }
 }
 
+// Whether the equilibrium whose factors are in s.system is past a singular point of the way: the determinant has another
+// sign, or the least stiffness where two modes at once have left it as it was.
+bool is_past(Walk& w, double rises) {
+    if (side(w, rises) != w.side) return true;
+    if (!w.stable) return false;
+    const LeastStiffness least = least_stiffness(w.s, w.softest);
+    return least.of_energy && least.value < 0;
+}
+
+// The polynomial goes straight on where the path divides. The march goes to the point, by halves; returns how far the
+// polynomial is the path's.
+double divide(Walk& w, const State<double>& from, double reach) {
+    constexpr int halvings = 40;
+    double before = 0, past = reach;
+    for (int k = 0; k < halvings && !w.by_arc(); ++k) {
+        const double middle = before + (past - before) / 2;
+        move_to(w, from, middle);
+        (factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged && !is_past(w, w.to) ? before : past) =
+            middle;
+    }
+    move_to(w, from, past);
+    return before;
+}
+
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
@@ -371,17 +398,22 @@ Outcome walk(Walk& w) {
         Certificate judged;
         if (const Outcome o = set_out(w, singularity, end); o != Outcome::converged) return o;
         // Going over a knot must not have turned the determinant over, either.
-        if (const int here = side(w, w.to); w.path.expansions.empty())
+        if (const int here = side(w, w.to); w.path.expansions.empty()) {
             w.side = here;
-        else if (here != w.side && !w.by_arc())
+            if (w.e.drive == Drive::rate && !w.by_arc()) {
+                const LeastStiffness least = least_stiffness(s, w.softest);
+                w.stable = least.of_energy && least.value > 0;
+            }
+        } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
-        // A polynomial goes straight on where the path divides, and a branch goes on unstable: the
-        // determinant has gone through zero between here and there.
-        if (side(w, rises_ahead(w)) != w.side) return Outcome::singular;
+        // A polynomial goes straight on where the path divides, and a branch goes on unstable.
+        const bool past = is_past(w, rises_ahead(w));
+        if (past) end.tau = divide(w, from, end.tau);
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
                                      static_cast<int>(end.over.size()), singularity, judged});
+        if (past) return Outcome::dividing_point;
         if (end.last) return Outcome::converged;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
         if (const Outcome o = go_over(w, end.over); o != Outcome::converged) return o;
@@ -412,6 +444,8 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
                    (diagnosis.null_space.cols() > 0
                         ? ", or what was idle or redundant at the design position no longer is"
                         : "");
+        case Outcome::dividing_point:
+            return at + ": another curve of equilibria crosses the branch, which is unstable past this point";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         case Outcome::loaded_idle_mode:
             return at + ": the load pushes what nothing resists: " + idle_modes(diagnosis);

@@ -48,14 +48,11 @@ constexpr const char* not_finite = "a number stopped being finite";
 constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
 constexpr const char* sudden = "the stiffness changes too fast to be followed";
 constexpr const char* unstable = "the equilibrium stops being a minimum of the potential";
+constexpr const char* turns_back = "a limit point, past which no equilibrium continues the branch";
+constexpr const char* divides =
+    "another curve of equilibria crosses the branch: the equilibrium stops being a minimum of the potential";
 
 VectorXd coordinate_scales(const Path& path) { return path.scales.coordinates(coordinates(path.model)); }
-
-std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const VectorXd& xi) {
-    Chart chart = chart_about(from);
-    move_to(chart, coordinate_scales(path).cwiseProduct(xi));
-    return poses(chart);
-}
 
 VectorXd scaled_increment(const Path& path, const std::vector<Pose>& from, const std::vector<Pose>& to) {
     return increment(from, to).cwiseQuotient(coordinate_scales(path));
@@ -117,6 +114,20 @@ bool is_spent(const Modes& first, const Modes& now) {
     return softest < first.count() && now.stiffness[softest] <= spent * first.stiffness[softest];
 }
 
+// What the walk has come to, where its softest mode z is spent. There the tangent is t = -z (z · b) / w + ..., b what the
+// parameter asks for: it grows as the stiffness w falls and the branch turns back, unless the mode is not asked, z · b = 0,
+// and another curve of equilibria crosses. So w |t| is what it was, or goes to zero as w does. Under a dead moment w is of
+// the minimum, and tells nothing of the branch.
+Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
+    if (unsymmetric_stiffness(path, walk.state)) return Failure{Outcome::branch_lost, unstable};
+    constexpr double still_there = 0.02;
+    const auto softest = path.first.idle_motions().cols();
+    const double left = std::abs(walk.state.modes.stiffness[softest] / path.first.stiffness[softest]);
+    return left * largest(t) >= still_there * walk.first_tangent && largest(t) > 0
+               ? Failure{Outcome::limit_point, turns_back}
+               : Failure{Outcome::dividing_point, divides};
+}
+
 Attempt lost(Attempt attempt, const char* why) {
     attempt.failure = {Outcome::branch_lost, why};
     return attempt;
@@ -153,6 +164,12 @@ double next_value(const Path& path, const Walk& walk, const VectorXd& t, double 
 
 }  // namespace
 
+std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const VectorXd& xi) {
+    Chart chart = chart_about(from);
+    move_to(chart, coordinate_scales(path).cwiseProduct(xi));
+    return poses(chart);
+}
+
 Walk walk_from(const Path& path, const State& state) {
     Walk walk{state, first_stride * path.span, {}};
     walk.record.add(state.a, state.modes);
@@ -170,25 +187,30 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
     return state;
 }
 
+// p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (left + H p)
+VectorXd correction(const Path& path, const State& state, const VectorXd& left, const VectorXd& Phi) {
+    const auto A = unsymmetric_stiffness(path, state);
+    if (Phi.isZero(0)) return newton_increment(state, A, left);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+    J.setThreshold(rank_threshold);
+    J.compute(state.at.J_t.transpose());
+    path.counts.factorisations += 1;
+    const VectorXd p = J.solve(-Phi);
+    VectorXd b = left + state.H * p;
+    if (A) b += *A * p;
+    return p + newton_increment(state, A, b);
+}
+
 VectorXd tangent(const Path& path, const State& state) {
     const Prescribed prescribed = at(path.course, state.a);
     const Prescribed& rate = path.course.rate;
     const Chart chart = chart_about(state.poses);
     const VectorXd S = coordinate_scales(path), D = path.scales.rows(path.model);
     VectorXd b = S.cwiseProduct(gradient_rate(path.model, prescribed, rate, chart)) / path.scales.energy();
-    const auto A = unsymmetric_stiffness(path, state);
-    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return newton_increment(state, A, b);
-
+    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return correction(path, state, b, VectorXd());
     const ConstraintRates rates = constraint_rates(path.model, prescribed, rate, chart);
     b += S.cwiseProduct(transposed_times(rates.Phi_qa, D.cwiseProduct(state.at.lambda)));
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
-    J.setThreshold(rank_threshold);
-    J.compute(state.at.J_t.transpose());
-    path.counts.factorisations += 1;
-    const VectorXd p = J.solve(-D.cwiseProduct(rates.Phi_a));
-    b += state.H * p;
-    if (A) b += *A * p;
-    return p + newton_increment(state, A, b);
+    return correction(path, state, b, D.cwiseProduct(rates.Phi_a));
 }
 
 bool is_stationary(const Path& path, const State& state) {
@@ -231,6 +253,7 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
             return Failure{Outcome::iteration_limit, "too many steps were needed on the way"};
         const VectorXd t = tangent(path, state);
         if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
+        if (walk.record.samples.size() == 1) walk.first_tangent = largest(t);
         const double a = next_value(path, walk, t, to), h = a - state.a;
         const Attempt attempt = step(path, walk, a, t * h);
         if (!attempt.failure) {
@@ -245,8 +268,9 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         walk.stride = 0.5 * std::abs(h);
         if (++halved <= halvings && walk.stride > smallest) continue;
-        if (attempt.failure->outcome == Outcome::iteration_limit && is_spent(path.first, state.modes))
-            return Failure{Outcome::branch_lost, unstable};
+        const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||
+                                  attempt.failure->outcome == Outcome::branch_lost;
+        if (may_be_spent && is_spent(path.first, state.modes)) return spent_mode(path, walk, t);
         return attempt.failure;
     }
     return {};

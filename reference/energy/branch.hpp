@@ -43,9 +43,10 @@ struct Path {
 
 // How far a branch has come.
 struct Walk {
-    State state;             // the last equilibrium
-    double stride;           // |step| to try next
-    StiffnessRecord record;  // of the equilibria so far
+    State state;               // the last equilibrium
+    double stride;             // |step| to try next
+    StiffnessRecord record;    // of the equilibria so far
+    double first_tangent = 0;  // the largest entry where it began
 };
 
 Walk walk_from(const Path& path, const State& state);
@@ -63,6 +64,14 @@ struct Attempt {
     std::optional<Failure> failure;
 };
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const Eigen::MatrixXd& idle);
+
+// Where bodies that stand at `from` come to by ξ.
+std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);
+
+// The ξ that answers, to first order, a gradient `left` over and constraints Φ that are not met (Newton's) [6nb]. Nothing
+// of it is idle.
+Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::VectorXd& left,
+                           const Eigen::VectorXd& Phi);
 
 // dξ/da along the branch, as the equilibrium `state` and the constraints have it [6nb].
 Eigen::VectorXd tangent(const Path& path, const State& state);

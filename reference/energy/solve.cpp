@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
-#include "reference/energy/branch.hpp"
+#include "reference/energy/account.hpp"
 #include "reference/energy/conservative.hpp"
 #include "reference/energy/cost.hpp"
 #include "reference/energy/reactions.hpp"
@@ -54,8 +54,10 @@ std::optional<Failure> impossible_length(const Path& path, double a) {
 
 // Why the branch ends before a: if a joint cannot be closed there, that is the reason.
 Failure reason(const Path& path, const State& last, double a, const Failure& failure) {
-    const bool may_open = !path.course.rate.offset.isZero(0) && (failure.outcome == Outcome::branch_lost ||
-                                                                 failure.outcome == Outcome::iteration_limit);
+    const bool may_open =
+        !path.course.rate.offset.isZero(0) &&
+        (failure.outcome == Outcome::branch_lost || failure.outcome == Outcome::limit_point ||
+         failure.outcome == Outcome::dividing_point || failure.outcome == Outcome::iteration_limit);
     if (may_open)
         if (const auto joint = contradicting_joint(path, a, last.poses))
             return {Outcome::inconsistent_constraints, fmt::format("joint '{}' cannot be closed", *joint)};
@@ -114,10 +116,12 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         if (const auto failure = advance(path, walk, a))
             return fail(reason(path, walk.state, a, *failure), "at " + in_units(a),
                         reached + in_units(walk.state.a));
+        Equilibrium point = equilibrium(path, walk.state);
+        if (options.account) give_account(path, walk.state, point);
         if (visit)
-            visit(equilibrium(path, walk.state));
+            visit(point);
         else
-            result.points.push_back(equilibrium(path, walk.state));
+            result.points.push_back(std::move(point));
     }
     return result;
 }

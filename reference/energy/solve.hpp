@@ -20,6 +20,8 @@ struct Options {
     double tolerance = 1e-12;  // on the projected gradient and the constraints, scaled; never a solver's word
     int evaluation_limit = 2000;  // per equilibrium, asked for or internal
     int recentre_limit = 20;      // charts, likewise
+    bool account =
+        false;  // every point carries its bound, and the stiffness that is left there (account.hpp)
 };
 
 // The equilibria at `values` of the branch's parameter, in the order they are to be visited. They are minima

@@ -59,6 +59,24 @@ VectorXd gap(Walk& walk, double a, VectorXd x) {
 // Of the scaled Φ: less is met.
 constexpr double closed = 1e-9;
 
+// Whether the branch turns back just ahead. With u the left null vector of J where it is singular, M u = 0, the tangent
+// near there is x' = -(u · dE/dt) / μ v + ..., μ the least stiffness: it grows as μ falls unless u · dE/dt = 0, that is,
+// unless dE/dt is in J's range, and another curve crosses this one. So μ |x'| is what it was, or goes to zero as μ does.
+bool turns_back(const Walk& walk) {
+    constexpr double gone = 0.15, still_there = 0.02;  // of what they were at a = 0
+    const double left = walk.here.stiffness.least / walk.first_stiffness;
+    return walk.stage == Stage::branch && std::abs(left) <= gone &&
+           std::abs(left) * pose_size(walk.system, walk.here.tangent) >= still_there * walk.first_tangent;
+}
+
+// Past a singular point the same curve goes on, with an eigenvalue of M that is negative: one more curve went through
+// it. Where the constraints divide, M does not tell.
+bool has_divided(const Walk& walk, const Trial& trial) {
+    const Stiffness& past = trial.station.stiffness;
+    return trial.verdict == Verdict::turned_over && past.least < -past.round_off &&
+           constraints_keep_their_side(walk.system, walk.here.linearised, trial.station.linearised);
+}
+
 }  // namespace
 
 Failure unanswerable(const System& system, const VectorXd& left) {
@@ -79,6 +97,10 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         settling ? fmt::format("while settling at {}, {:.0f} % of the way", at(0), 100 * walk.here.t)
                  : fmt::format("between {} and {}", at(walk.here.t), at(t));
 
+    if (!settling && has_divided(walk, trial))
+        return {Outcome::dividing_point,
+                "the branch divides: another curve of equilibria crosses it, and past that it is unstable, " +
+                    where};
     if (trial.verdict == Verdict::turned_over)
         return {Outcome::singular,
                 "the system is singular and the branch may divide or lose its stability " + where};
@@ -99,6 +121,9 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
                                        at(walk.here.t), joints_in(system, Phi))};
     if (const std::string bushing = bushing_without_angles(system, walk.here.x); !bushing.empty())
         return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};
+    if (turns_back(walk))
+        return {Outcome::limit_point,
+                "a limit point, past which no equilibrium continues the branch, " + where};
     if (trial.verdict == Verdict::past_knot)
         return {Outcome::iteration_limit, "no step ends at the knot of a law " + where};
     if (trial.verdict == Verdict::out_of_reach)

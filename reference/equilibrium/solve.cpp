@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "reference/equilibrium/walk.hpp"
+#include "reference/equilibrium/account.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
@@ -44,6 +44,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         failed = advance(walk, *a);
         if (failed) break;
         Equilibrium point = state_of(system, loading_at(walk, *a), walk.here.x);
+        if (options.account) give_account(walk, point);
         if (visit)
             visit(point);
         else

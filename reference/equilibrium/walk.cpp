@@ -164,7 +164,7 @@ std::optional<Failure> change_pieces(Walk& walk, double direction) {
             if (side == 0) continue;
             int& before = changed[at.element][at.axis];
             if (before == -side)
-                return Failure{Outcome::branch_lost,
+                return Failure{Outcome::limit_point,
                                fmt::format("the branch turns back where the law of '{}' has a knot, {}",
                                            walk.system.model->elastics[at.element].name, where())};
             before = side;
@@ -232,6 +232,8 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
     walk.length = std::max(std::abs(walk.system.branch->to), reach);
     walk.before.reset();
     walk.here = station_at(walk, 0, walk.here.x, &walk.here.linearised);
+    walk.first_stiffness = walk.here.stiffness.least;
+    walk.first_tangent = pose_size(walk.system, walk.here.tangent);
     if (over_step(walk.here.stiffness, walk.here.stiffness, walk.here.stiffness) == Stability::kept)
         return std::nullopt;
     return Failure{Outcome::singular, fmt::format("the equilibrium that settles at {} is unstable",

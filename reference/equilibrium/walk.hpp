@@ -40,7 +40,9 @@ struct Station {
 struct Walk {
     const System& system;
     const Options& options;
-    double length = 1;  // of the way in t, by which the smallest step is measured
+    double length = 1;           // of the way in t, by which the smallest step is measured
+    double first_stiffness = 1;  // the least where the branch begins, and how fast it sets out [1/t]
+    double first_tangent = 0;
     Stage stage = Stage::settling;
     Pieces pieces = {};  // that the walk is on
     Station here = {};

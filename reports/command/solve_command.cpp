@@ -105,12 +105,13 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
         const auto ways = compare::ways_of(model, branch, how.steps);
+        compare::Analyses analyses;
         compare::Walked whole;
         whole.curve.unit = compare::unit_of(branch.unit);
         const EquilibriumPath path = compare::walk(
             ways, request.gait,
             [&](const Equilibrium& state) {
-                return compare::row_of(model, channels, ways.front(), request.gait, state);
+                return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },
             [&](const compare::Row& row) {
                 if (delivery.as_json) {

@@ -156,15 +156,22 @@ std::string inspection(const Inspected& inspected) {
         line("  {:<30} {}", head, meaning);
     }
     line("\nredundant constraints");
-    for (const auto& r : std::span(d.redundant).first(shown(d.redundant.size())))
+    for (const auto& r : std::span(d.redundant).first(shown(d.redundant.size()))) {
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
              model.joints[static_cast<std::size_t>(r.joint)].name, r.rows,
              r.contradicts ? ", and contradict it" : "");
+        std::string among;
+        for (const auto& [joint, share] : std::span(r.shares).first(shown(r.shares.size())))
+            among += fmt::format("{}'{}' {:.0f} %", among.empty() ? "" : ", ",
+                                 model.joints[static_cast<std::size_t>(joint)].name, 100 * share);
+        line("    among {}{}", among, shown(r.shares.size()) < r.shares.size() ? ", ..." : "");
+    }
     rest(d.redundant.size(), "joints");
     if (d.redundant.empty()) line("  none");
     line("\nidle modes (nothing resists them; they are held, and reported here)");
-    for (const auto& mode : std::span(d.idle).first(shown(d.idle.size()))) line("  {}", mode.description);
-    rest(d.idle.size(), "modes");
+    const auto idle = recursive::told_idle_modes(d);
+    for (const auto& mode : std::span(idle).first(shown(idle.size()))) line("  {}", mode);
+    rest(idle.size(), "modes");
     if (d.idle.empty()) line("  none");
     line("\nleft out or condensed, because no output depends on it");
     std::map<std::string, std::size_t> left_out;

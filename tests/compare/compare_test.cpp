@@ -367,6 +367,25 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
         }
 }
 
+TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
+    const auto& comparison = mcpherson();
+    const Model model = compile(support::scene("chrono_mcpherson"));
+    const auto c =
+        std::ranges::find_if(comparison.channels, &Channel::may_be_undefined) - comparison.channels.begin();
+    ASSERT_LT(c, std::ssize(comparison.channels));
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
+        BranchComparison wrong = comparison.branches[0];
+        auto& value = wrong.runs[static_cast<std::size_t>(leg)].curve.values[3][static_cast<std::size_t>(c)];
+        value = value == undefined ? 1 : undefined;
+        const auto found = disagreements(model, comparison.channels, model.branches[0], wrong);
+        ASSERT_EQ(found.count, 1) << name(leg);
+        EXPECT_NE(found.worst[0].what.find(
+                      "whether " + comparison.channels[static_cast<std::size_t>(c)].name + " has a value"),
+                  std::string::npos)
+            << found.worst[0].what;
+    }
+}
+
 TEST(Judgement, ALegThatIsWrongByTenBoundsIsFound) {
     // The energy leg is given a spring that is stiffer by a few parts in 1e6.
     const Scene right = support::scene("pinned_bar");
@@ -472,7 +491,7 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     scene.branches[0].to = 300;
     scene.branches[0].steps = 60;
     const auto found = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(found.outcome, Outcome::branch_lost);
+    EXPECT_EQ(found.outcome, Outcome::limit_point);
     EXPECT_TRUE(found.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << found.detail;
     EXPECT_EQ(found.curve.a.back(), 300);
     EXPECT_LT(found.curve.a.front(), -150);
@@ -481,7 +500,7 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     // Nor is it lost behind a way that succeeds.
     std::swap(scene.branches[0].from, scene.branches[0].to);
     const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(second.outcome, Outcome::branch_lost);
+    EXPECT_EQ(second.outcome, Outcome::limit_point);
     EXPECT_TRUE(second.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << second.detail;
 }
 

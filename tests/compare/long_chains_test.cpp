@@ -135,7 +135,7 @@ TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
                 Branch branch = model.branches[0];
                 branch.to = share * P;
                 const auto path = walked(model, branch, leg);
-                EXPECT_EQ(path.outcome, share < 1 ? Outcome::converged : Outcome::singular)
+                EXPECT_EQ(path.outcome, share < 1 ? Outcome::converged : Outcome::dividing_point)
                     << n << " " << name(leg) << " at " << share << ": " << path.detail;
             }
         errors.push_back(1 - P / limit);

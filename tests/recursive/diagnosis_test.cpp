@@ -45,6 +45,39 @@ TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
     ASSERT_EQ(d.idle.size(), 1u);
     EXPECT_EQ(d.idle[0].description,
               "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'");
+    EXPECT_TRUE(d.idle[0].spins);
+    EXPECT_EQ(idle_modes(d),
+              "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount', moves no output");
+}
+
+// Two links between ball joints carry a block that slides: told together, as a person would.
+TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
+    const std::string begin =
+        "elastocheck: 1\nname: links\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {a: [0, 0, 0], b: [0, 0, 1], c: [0.5, 0, 0], d: [0.5, 0, 1], off: [0.2, 0, 0.5]}\n"
+        "bodies: {block: {origin: b}, front: {origin: a}, rear: {origin: c}}\n"
+        "joints:\n  f0: {type: spherical, bodies: [front, ground], at: a}\n"
+        "  f1: {type: spherical, bodies: [front, block], at: b}\n"
+        "  r0: {type: spherical, bodies: [rear, ground], at: c}\n"
+        "  r1: {type: spherical, bodies: [rear, block], at: d}\n"
+        "bushings: {k: {bodies: [block, ground], at: b, rates: [1e4, 1e4, 1e4], rotational_rates: [1e3, 1e3, "
+        "1e3]}}\n"
+        "loads: {push: {on: block, at: b, force: [1, 0, 0]}}\nbranches: {push: {load: push, to: 10, steps: "
+        "1}}\n";
+    const auto silent = diagnose(
+        compile(parse_scene(begin + "probes: {b: {on: block, at: b}}\n", "links"), Detail::everything));
+    ASSERT_EQ(silent.idle.size(), 2u);
+    EXPECT_EQ(idle_modes(silent), "both 'front' and 'rear' spin about themselves, which moves no output");
+    const auto seen = diagnose(
+        compile(parse_scene(begin + "probes: {b: {on: block, at: b}, side: {on: front, at: off}}\n", "links"),
+                Detail::everything));
+    ASSERT_EQ(seen.idle.size(), 2u);
+    EXPECT_NE(idle_modes(seen).find("front: rotation about the line through 'f0' and 'f1', moves 'side'"),
+              std::string::npos)
+        << idle_modes(seen);
+    EXPECT_NE(idle_modes(seen).find("rear: rotation about the line through 'r0' and 'r1', moves no output"),
+              std::string::npos)
+        << idle_modes(seen);
 }
 
 TEST(Diagnosis, RatesOfAnySizeHideNoMode) {

@@ -37,7 +37,7 @@ TEST(Outcomes, SnapThroughIsNeverJumpedOver) {
                 for (int i = 0; i <= steps; ++i) loads.push_back(to * i / steps);
                 const EquilibriumPath path = solve(scene, 0, loads);
                 const std::string what = fmt::format("h {} to {} in {}: {}", h, to, steps, path.detail);
-                EXPECT_EQ(path.outcome, Outcome::branch_lost) << what;
+                EXPECT_EQ(path.outcome, Outcome::limit_point) << what;
                 EXPECT_EQ(path.points.size(), std::ceil(steps / beyond)) << what;
                 EXPECT_NE(path.detail.find("branch 'down'"), std::string::npos) << what;
             }
@@ -67,7 +67,7 @@ TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
         const double loads[] = {0};
         const auto path = solve(scene, 0, loads);
         if (pull > limit_load(0.08)) {
-            EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+            EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
             EXPECT_TRUE(path.points.empty());
         } else {
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -95,7 +95,7 @@ TEST(Outcomes, BucklingIsNotPassedOver) {
     model.elastics = {{"side", side}};
     const Branch branch = load_branch("press", {{"down", DeadForce{{0, {0, 0, 0.5}}, {0, 0, -1}}}}, 2e4, 40);
     const auto path = solve(model, branch, sweep(branch));
-    EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
     EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
     // Upright, the frame turns with the rod: lateral rate k at height L, so P_crit = k L (load [N]).
     ASSERT_FALSE(path.points.empty());

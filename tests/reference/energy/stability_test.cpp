@@ -46,7 +46,7 @@ std::vector<double> values_to(double to, int steps) {
 void expect_lost(const Scene& scene, double critical, int steps, const std::string& what) {
     const auto values = values_to(scene.branches[0].to, steps);
     const auto path = solve(scene, 0, values);
-    EXPECT_EQ(path.outcome, Outcome::branch_lost) << what << ": " << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::dividing_point) << what << ": " << path.detail;
     EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << what << ": " << path.detail;
     const auto before = std::ranges::count_if(
         values, [&](double a) { return std::abs(a) <= std::abs(critical) * (1 - 1e-9); });

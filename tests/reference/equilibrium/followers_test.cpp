@@ -79,7 +79,7 @@ TEST(EquilibriumFollowers, AColumnUnderAFollowerForceNeverDiverges) {
             std::vector<double> loads;
             for (int n = 0; n <= steps; ++n) loads.push_back(10 * c / L * n / steps);
             const auto path = solve(model, model.branches[0], loads);
-            EXPECT_EQ(path.outcome, follows ? Outcome::converged : Outcome::singular)
+            EXPECT_EQ(path.outcome, follows ? Outcome::converged : Outcome::dividing_point)
                 << steps << ": " << path.detail;
         }
     }
@@ -97,7 +97,7 @@ TEST(EquilibriumFollowers, DivergenceUnderADeadWeightIsNotHiddenByAFollower) {
         std::vector<double> loads;
         for (int n = 0; n <= steps; ++n) loads.push_back(3929.4 * n / steps);
         const auto path = solve(model, model.branches[0], loads);
-        EXPECT_EQ(path.outcome, Outcome::singular) << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
         EXPECT_EQ(path.points.size(), static_cast<std::size_t>(
                                           std::ranges::count_if(loads, [&](double D) { return D < k / L; })));
     }

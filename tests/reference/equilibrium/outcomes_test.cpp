@@ -31,7 +31,7 @@ double arch_force(double z) {
     return 2 * 100e3 * (l - l_0) * z / l;
 }
 
-TEST(EquilibriumOutcome, ArchIsLostAtItsLimitForAnySteps) {
+TEST(EquilibriumOutcome, ArchEndsAtItsLimitForAnySteps) {
     const Model model = compile(scene("two_spring_arch"));
     const auto& branch = model.branches[0];
     for (const int steps : {1, 2, 3, 5, 10, 50, 1000})
@@ -40,7 +40,7 @@ TEST(EquilibriumOutcome, ArchIsLostAtItsLimitForAnySteps) {
             for (int n = 0; n <= steps; ++n) loads.push_back(to * n / steps);
             const auto path = solve(model, branch, loads);
             const auto where = fmt::format("to {} N in {} steps: {}", to, steps, path.detail);
-            EXPECT_EQ(path.outcome, Outcome::branch_lost) << where;
+            EXPECT_EQ(path.outcome, Outcome::limit_point) << where;
             EXPECT_NE(path.detail.find("'down'"), std::string::npos) << where;
             ASSERT_FALSE(path.points.empty()) << where;
             const std::size_t reachable = static_cast<std::size_t>(
@@ -57,7 +57,7 @@ TEST(EquilibriumOutcome, ArchIsFollowedToWithinAHairOfItsLimit) {
     const Model model = compile(scene("two_spring_arch"));
     const std::vector<double> loads = {-200, -211, -211.5, -211.516, -211.6};
     const auto path = solve(model, model.branches[0], loads);
-    EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
     EXPECT_EQ(path.points.size(), 4u);
     expect_points_in_balance(model, model.branches[0], path);
 }
@@ -88,14 +88,14 @@ TEST(EquilibriumOutcome, ABranchMayBeVisitedInAnyOrder) {
 
 // An upright bar on a torsion spring under its weight loses stability at P = k_R / L; standing upright
 // remains an equilibrium beyond, but no longer the branch's only continuation.
-TEST(EquilibriumOutcome, BucklingIsReportedAsSingular) {
+TEST(EquilibriumOutcome, BucklingIsADividingPoint) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 100);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
     const Model model = compile(s);
     std::vector<double> loads;
     for (int n = 0; n <= 30; ++n) loads.push_back(10.5 * n);
     const auto path = solve(model, model.branches[0], loads);
-    EXPECT_EQ(path.outcome, Outcome::singular) << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
     EXPECT_EQ(path.points.size(), 20u);  // 199.5 N is still stable, 210 N no more
     expect_points_in_balance(model, model.branches[0], path);
 }

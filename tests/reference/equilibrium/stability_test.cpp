@@ -9,8 +9,8 @@ namespace {
 
 constexpr int point_counts[] = {1, 2, 3, 4, 5, 7, 10, 20, 33, 100, 1001};
 
-// Whatever the number of points, the branch is singular at `at`, and all points before it are there.
-void expect_singular_at(const Scene& s, double to, double at) {
+// Whatever the number of points, the branch divides at `at`, and all points before it are there.
+void expect_dividing_at(const Scene& s, double to, double at) {
     const Model whole = compile(s);
     const Model model = on_branch(whole, whole.branches[0]);
     for (const int steps : point_counts) {
@@ -21,7 +21,7 @@ void expect_singular_at(const Scene& s, double to, double at) {
             before += std::abs(points.back()) < std::abs(at);
         }
         const auto path = solve(model, model.branches[0], points);
-        EXPECT_EQ(path.outcome, Outcome::singular) << steps << " steps: " << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::dividing_point) << steps << " steps: " << path.detail;
         EXPECT_NE(path.detail.find("divide"), std::string::npos) << path.detail;
         EXPECT_EQ(path.points.size(), before) << steps << " steps: " << path.detail;
     }
@@ -69,8 +69,8 @@ struct Arch {
 TEST(EquilibriumStability, AnUnstableStretchEndsTheBranchWhereverThePointsFall) {
     const Arch arch;
     for (const double z_c : {0.05, 0.02, 0.005, 0.001}) {
-        expect_singular_at(arch.scene(arch.side_rate(z_c), true), -2 * arch.h, z_c - arch.h);
-        expect_singular_at(arch.scene(arch.side_rate(z_c), false), arch.load(-arch.h), arch.load(z_c));
+        expect_dividing_at(arch.scene(arch.side_rate(z_c), true), -2 * arch.h, z_c - arch.h);
+        expect_dividing_at(arch.scene(arch.side_rate(z_c), false), arch.load(-arch.h), arch.load(z_c));
     }
 }
 
@@ -91,8 +91,8 @@ TEST(EquilibriumStability, AnArchThatNeverLeavesItsPlaneGoesThrough) {
 TEST(EquilibriumStability, AStraightColumnEndsAtItsBucklingLoad) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
-    expect_singular_at(s, 3929.4, 1000 / 0.5);
-    expect_singular_at(s, 4000, 1000 / 0.5);  // with points that hit it
+    expect_dividing_at(s, 3929.4, 1000 / 0.5);
+    expect_dividing_at(s, 4000, 1000 / 0.5);  // with points that hit it
 }
 
 // Two bars in a line, torsion springs c in both hinges: c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L θ₂, whence
@@ -108,8 +108,8 @@ TEST(EquilibriumStability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
     s.elastics.push_back({"upper torsion", torsion});
     s.branches = {pull({1, {0, 0, 0.5}}, {0, 0, -1})};
     s.probes.push_back({"top", {1, {0, 0, 0.5}}});
-    expect_singular_at(s, 1969.1, 2000 * (3 - std::sqrt(5)) / 2);
-    expect_singular_at(s, 8000, 2000 * (3 - std::sqrt(5)) / 2);  // past the second one too, at 5236 N
+    expect_dividing_at(s, 1969.1, 2000 * (3 - std::sqrt(5)) / 2);
+    expect_dividing_at(s, 8000, 2000 * (3 - std::sqrt(5)) / 2);  // past the second one too, at 5236 N
 }
 
 // Free to lean in two planes with the same stiffness: both eigenvalues pass at once and the determinant keeps
@@ -118,7 +118,7 @@ TEST(EquilibriumStability, AColumnThatBucklesInTwoPlanesAtOnceIsNoticed) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.joints = {{"ball", Spherical{{0, {0, 0, 0}}, {ground, {0, 0, 0}}}}};
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
-    expect_singular_at(s, 3929.4, 1000 / 0.5);
+    expect_dividing_at(s, 3929.4, 1000 / 0.5);
 }
 
 // Upright under a weight beyond its buckling load, standing there from the start.

@@ -1,0 +1,207 @@
+#include "recursive/account.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "recursive/stiffness.hpp"
+#include "recursive/walk.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Real = long double;
+
+constexpr int corrections = 12;  // at most; they fall quadratically
+constexpr int multipliers = 3;   // solves for λ alone
+
+// The largest of any body: of the origin, of the orientation.
+struct Size {
+    Real length = 0, angle = 0;
+};
+template <class Motion>
+Size size_of(const Motion& dq) {
+    Size size;
+    for (Eigen::Index b = 0; b < dq.size() / 6; ++b) {
+        size.length = std::max(size.length, dq.template segment<3>(6 * b).norm());
+        size.angle = std::max(size.angle, dq.template segment<3>(6 * b + 3).norm());
+    }
+    return size;
+}
+
+struct Accountant {
+    March<Real> s;
+    bool turns_back;
+    Vector<Real> lambda;
+    int orientation = 0;  // of the first point
+    double first_stiffness = 0;
+    Softest<Real> softest = {};
+    Node<Real> last_found = {};  // on the branch
+    Real noise = 0;              // of the forces as they are evaluated, as |W⁻¹ f|
+
+    Accountant(const Model& model, const Branch& branch, const Analysis& analysis, bool back)
+        : s(model, branch, analysis), turns_back(back), lambda(Vector<Real>::Zero(s.m())) {
+        s.consistent = true;
+    }
+
+    // The Newton correction at (q, λ), left in s.x.
+    Outcome correct(const State<Real>& q) {
+        if (const Outcome outcome = factorise_at(s, q, lambda); outcome != Outcome::converged) return outcome;
+        residual_at(s, q, lambda);
+        back_substitute(s);
+        return s.x.allFinite() ? Outcome::converged : Outcome::not_finite;
+    }
+
+    // R: what rounding makes of a correction with the factors now in the system.
+    Size rounding(const State<Real>& q) {
+        const int n = s.n(), m = s.m();
+        Vector<Real> c(n + m), e = Vector<Real>::Zero(n + m);
+        for (BodyId b = 0; b < q.bodies(); ++b) {
+            c.segment<3>(6 * b).setConstant(q[b].r.norm() + static_cast<Real>(s.length));
+            c.segment<3>(6 * b + 3).setConstant(1);
+        }
+        c.tail(m) = lambda.cwiseAbs();
+        for_each_entry(s.system.M, [&](int i, int j, int at) {
+            e[i] += std::abs(s.system.M.values[static_cast<std::size_t>(at)]) * c[j];
+        });
+        external_force<Real>(s.model, s.branch, s.inputs, q, s.force);
+        e.head(n) += s.force.cwiseAbs();
+        e *= 4 * std::numeric_limits<Real>::epsilon();
+        noise = e.head(n).cwiseQuotient(s.system.weight.head(n)).norm();
+        Size worst;
+        for (int probe = 0; probe < 3; ++probe) {
+            Vector<Real> signed_e = e;
+            for (Eigen::Index k = 0; k < n + m; ++k)
+                if (scattered<Real>(k + probe * (n + m)) < 0) signed_e[k] = -signed_e[k];
+            s.upper = signed_e.head(n);
+            s.lower = signed_e.tail(m);
+            back_substitute(s);
+            const Size size = size_of(s.x.head(n));
+            worst = {std::max(worst.length, size.length), std::max(worst.angle, size.angle)};
+        }
+        return worst;
+    }
+
+    // From q to the equilibrium near, and how far that was.
+    ErrorBound bound(State<Real>& q) {
+        const ErrorBound none;
+        for (int k = 0; k < multipliers; ++k) {
+            if (correct(q) != Outcome::converged) return none;
+            lambda += s.x.tail(s.m());
+        }
+        Size way, last, rounded;
+        Real before = std::numeric_limits<Real>::infinity();
+        bool arrived = false;
+        for (int k = 0; k < corrections && !arrived; ++k) {
+            if (correct(q) != Outcome::converged) return none;
+            const Real size = std::sqrt(size_of_solution(s));
+            last = size_of(s.x.head(s.n()));
+            if (!(last.angle <= Real(guard::largest_turn))) return none;
+            s.dq = s.x.head(s.n());
+            advance(q, s.dq);
+            lambda += s.x.tail(s.m());
+            way = {way.length + last.length, way.angle + last.angle};
+            rounded = rounding(q);
+            arrived = size <= rounded.length + static_cast<Real>(s.length) * rounded.angle;
+            if (!arrived && !(size <= before / 2)) return none;
+            before = size;
+        }
+        if (!arrived) return none;
+        if (orientation == 0) orientation = s.system.lu.orientation;
+        if (!turns_back && s.system.lu.orientation != orientation) return none;
+        // What the border has taken up, the equations have not: a load on what is idle, joints that contradict each other.
+        residual_at(s, q, lambda);
+        const Real open = s.lower.norm(), left = size_of_force(s, s.upper);
+        external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);
+        elastic_force<Real>(s.model, s.inputs, q, s.force);
+        const Real acts = size_of_force(s, s.applied) + size_of_force(s, s.force);
+        if (!(open <= Real(guard::closed)) || !(left <= 1e-9L * acts + noise)) return none;
+        // A pose is written down with the digits of a double.
+        Real reach = 0;
+        for (BodyId b = 0; b < q.bodies(); ++b) reach = std::max(reach, q[b].r.norm());
+        constexpr Real digits = std::numeric_limits<double>::epsilon();
+        return {static_cast<double>(way.length + last.length + 3 * rounded.length + open + digits * reach),
+                static_cast<double>(way.angle + last.angle + 3 * rounded.angle + open + 4 * digits)};
+    }
+
+    // Where forces have no energy, with the sign of the determinant.
+    double stiffness_left() {
+        if (s.free <= 0) return 1;
+        const LeastStiffness least = least_stiffness(s, softest);
+        const double sign = least.of_energy || s.system.lu.orientation == orientation ? 1 : -1;
+        if (first_stiffness == 0) first_stiffness = least.value;
+        return sign * least.value / first_stiffness;
+    }
+
+    Going<Real> going() const {
+        constexpr Real near = 1e-4L;  // of L, or rad: what a step along the branch need not be told apart
+        return {Drive::rate, near * static_cast<Real>(s.length), near};
+    }
+    // From the last equilibrium found along the branch to a; q is where that leads.
+    bool follow(Real a, State<Real>& q) {
+        constexpr int shortest = 256;  // of the way
+        const Vector<Real> straight = Vector<Real>::Zero(s.n()), lambda_straight = Vector<Real>::Zero(s.m());
+        Node<Real> here = last_found, next = here;
+        const Real way = a - here.p;
+        for (Real h = way; here.p != a;) {
+            next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
+            const Real tried = next.p - here.p;
+            if (try_step(s, going(), here, straight, lambda_straight, next).verdict == Verdict::believed) {
+                std::swap(here, next);
+                h = 2 * tried;
+            } else if (h = tried / 4; !(std::abs(h) * shortest >= std::abs(way))) {
+                return false;
+            }
+        }
+        q = here.q;
+        lambda = here.lambda;
+        return true;
+    }
+    // Where Newton's method does not lead from the point to the equilibrium, the branch does: then the distance.
+    ErrorBound bound_by_branch(const Equilibrium& point, State<Real>& q) {
+        if (orientation == 0 || turns_back || !follow(static_cast<Real>(point.load), q)) return {};
+        go_to(s, {1, static_cast<Real>(point.load)});
+        ErrorBound sum = bound(q);
+        const State<Real> from = state_of<Real>(point.poses);
+        Real length = 0, angle = 0;
+        for (BodyId b = 0; b < q.bodies(); ++b) {
+            length = std::max(length, (q[b].r - from[b].r).norm());
+            const Eigen::Quaternion<Real> turn = q[b].p * from[b].p.conjugate();
+            angle = std::max(angle, 2 * std::atan2(turn.vec().norm(), std::abs(turn.w())));
+        }
+        sum.length += static_cast<double>(length);
+        sum.angle += static_cast<double>(angle);
+        return sum;
+    }
+
+    void operator()(Equilibrium& point) {
+        const auto a = static_cast<Real>(point.load);
+        go_to(s, {1, a});
+        State<Real> q = state_of<Real>(point.poses);
+        point.bound = bound(q);
+        if (!std::isfinite(point.bound.length)) {
+            q = state_of<Real>(point.poses);
+            point.bound = bound_by_branch(point, q);
+            go_to(s, {1, a});
+        }
+        if (std::isfinite(point.bound.length)) {
+            point.stiffness_left = stiffness_left();
+            last_found = {q, lambda, {}, {}, a, 0};
+            differentiate(s, going(), last_found);
+        } else if (orientation != 0) {
+            q = state_of<Real>(point.poses);
+            lambda.setZero();
+            if (correct(q) == Outcome::converged) point.stiffness_left = stiffness_left();
+        }
+    }
+};
+
+}  // namespace
+
+std::function<void(Equilibrium&)> accountant(const Model& model, const Branch& branch,
+                                             const Analysis& analysis, bool turns_back) {
+    return [kept = std::make_shared<Accountant>(model, branch, analysis, turns_back)](Equilibrium& point) {
+        (*kept)(point);
+    };
+}
+
+}  // namespace elastocheck::recursive

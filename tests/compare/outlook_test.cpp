@@ -1,0 +1,57 @@
+// Where a branch will end, told before it does.
+#include <gtest/gtest.h>
+
+#include "compare/legs.hpp"
+#include "compare/outlook.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+EquilibriumPath accounted(const Model& model, double to, Leg leg) {
+    Branch branch = model.branches[0];
+    branch.to = to;
+    branch.steps = 20;
+    return walk(ways_of(model, branch),
+                {.leg = leg, .recursion = {.method = *recursive::find_method("chord")}, .account = true});
+}
+
+TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
+    const Model model = compile(support::scene("two_spring_arch"));  // the limit is at -211.5166 N
+    for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series})
+        for (const auto& [to, within] : {std::pair{-150., 4.}, {-200., 0.5}, {-211., 0.05}}) {
+            const auto path = accounted(model, to, leg);
+            ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
+            const auto gone = stiffness_gone_near(path.points);
+            ASSERT_TRUE(gone.has_value()) << name(leg);
+            EXPECT_NEAR(*gone, -211.5166, within) << name(leg) << " from " << to;
+            EXPECT_TRUE(outlook(path.points, ParameterUnit::newton)
+                            .starts_with("at this rate the stiffness is gone near -21"))
+                << outlook(path.points, ParameterUnit::newton);
+        }
+}
+
+TEST(Outlook, ABucklingLoadIsAnnouncedFromHalfTheWay) {
+    const Model model = compile(read_scene(std::string(ELASTOCHECK_SCENES) +
+                                           "/../../tests/recursive/found/straight-column-one-body.yaml"));
+    for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series}) {
+        const auto path = accounted(model, 1000, leg);  // it buckles at k / L = 1000 / 0.5
+        ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
+        const auto gone = stiffness_gone_near(path.points);
+        ASSERT_TRUE(gone.has_value()) << name(leg);
+        EXPECT_NEAR(*gone, 2000, 0.1) << name(leg);
+    }
+}
+
+TEST(Outlook, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    EXPECT_EQ(outlook(accounted(model, 150, Leg::equilibrium).points, ParameterUnit::newton), "");
+    const auto untold = walk(ways_of(model, model.branches[0]), {.leg = Leg::recursive});
+    EXPECT_FALSE(stiffness_gone_near(untold.points).has_value());
+    EXPECT_FALSE(stiffness_gone_near({}).has_value());
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

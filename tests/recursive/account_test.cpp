@@ -1,0 +1,222 @@
+// What points say of themselves: a bound that holds, and is no excuse; a stiffness that is gone where the branch is.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/solve.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/recursive/random_scenes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+// The worst of what is asked of bounds, of one leg or method.
+struct Judged {
+    int points = 0, unbounded = 0;
+    double tightest = 0;  // error over bound: 1 at most
+    double loosest = 0;   // bound over the larger of the error and 1e-11 m, 1e-11 rad
+    std::string where;
+};
+
+// Of bodies that no idle mode moves: what it leaves open is no error.
+std::vector<bool> resisted(const Diagnosis& diagnosis, std::size_t bodies) {
+    std::vector<bool> still(bodies, true);
+    for (std::size_t b = 0; b < bodies; ++b)
+        for (const auto& mode : diagnosis.idle)
+            for (Eigen::SparseVector<double>::InnerIterator at(mode.dq); at; ++at)
+                if (at.index() / 6 == static_cast<Eigen::Index>(b) && std::abs(at.value()) > 1e-6)
+                    still[b] = false;
+    return still;
+}
+
+void judge(Judged& judged, const std::vector<bool>& still, const Equilibrium& point, const Equilibrium& truth,
+           const std::string& what) {
+    ++judged.points;
+    if (!std::isfinite(point.bound.length) || !std::isfinite(point.bound.angle)) {
+        ++judged.unbounded;
+        judged.where += "\nno bound: " + what;
+        return;
+    }
+    double length = 0, angle = 0;
+    for (std::size_t b = 0; b < still.size(); ++b) {
+        if (!still[b]) continue;
+        length = std::max(length, (point.poses[b].r - truth.poses[b].r).norm());
+        const auto between = point.poses[b].p.normalized().conjugate() * truth.poses[b].p.normalized();
+        angle = std::max(angle, 2 * std::atan2(between.vec().norm(), std::abs(between.w())));
+    }
+    const double allowed_length = point.bound.length + truth.bound.length,
+                 allowed_angle = point.bound.angle + truth.bound.angle;
+    EXPECT_TRUE(length <= allowed_length && angle <= allowed_angle)
+        << what << ": " << length << " m, " << angle << " rad off, the bound is " << allowed_length << " and "
+        << allowed_angle;
+    judged.tightest = std::max({judged.tightest, length / allowed_length, angle / allowed_angle});
+    judged.loosest = std::max({judged.loosest, point.bound.length / std::max(length, 1e-11),
+                               point.bound.angle / std::max(angle, 1e-11)});
+}
+
+std::vector<double> every_point(const Branch& branch) {
+    std::vector<double> a;
+    for (int k = 0; k <= branch.steps; ++k) a.push_back(branch.to * k / branch.steps);
+    return a;
+}
+
+void judge_branch(std::map<std::string, Judged>& all, const Model& model, const Branch& branch,
+                  bool conservative, const std::string& what) {
+    const Analysis analysis = analyse(model);
+    const auto still = resisted(analysis.diagnosis, model.bodies.size());
+    const auto truth = reference::equilibrium::solve(model, branch, every_point(branch), {.account = true});
+    if (truth.outcome != Outcome::converged) return;
+    const auto of = [&](const std::string& who, const EquilibriumPath& path) {
+        if (path.outcome != Outcome::converged) return;
+        ASSERT_EQ(path.points.size(), truth.points.size()) << what << " " << who;
+        for (std::size_t k = 0; k < path.points.size(); ++k)
+            judge(all[who], still, path.points[k], truth.points[k],
+                  fmt::format("{} {} at {:.6g}", what, who, path.points[k].load));
+    };
+    of("equilibrium", truth);
+    if (conservative)
+        of("energy", reference::energy::solve(model, branch, every_point(branch), {.account = true}));
+    for (const Method& method : methods)
+        of(std::string(method.name), solve(model, branch, {.method = method, .account = true}, analysis));
+}
+
+void print(const std::map<std::string, Judged>& all) {
+    for (const auto& [who, judged] : all)
+        fmt::print(
+            "{:12} {:6} points, {:4} without a bound, error at most {:.3g} of the bound, bound at most "
+            "{:.3g} "
+            "times the error{}\n",
+            who, judged.points, judged.unbounded, judged.tightest, judged.loosest,
+            judged.where.substr(0, 400));
+}
+
+TEST(Account, BoundsHoldOnEverySmallScene) {
+    std::map<std::string, Judged> all;
+    for (const std::string& name : support::small_scene_names()) {
+        const Scene scene = support::scene(name);
+        const Model model = compile(scene);
+        for (const Branch& whole : model.branches)
+            for (Branch way : ways(whole)) {
+                way.steps = std::min(way.steps, 12);
+                judge_branch(all, on_branch(model, way), way, support::has_potential(scene),
+                             name + " " + way.name);
+            }
+    }
+    print(all);
+}
+
+TEST(Account, BoundsHoldOnRandomScenes) {
+    std::map<std::string, Judged> all;
+    const char* asked = std::getenv("RANDOM_SCENES");
+    const int scenes = asked ? std::atoi(asked) : 60;
+    for (int number = 0; number < scenes; ++number) {
+        const Model model = compile(random_scene(number));
+        Branch branch = model.branches[0];
+        branch.steps = 5;
+        judge_branch(all, model, branch, true, fmt::format("scene {}", number));
+    }
+    print(all);
+}
+
+// ---- The stiffness that is left.
+
+// Of the arch of two springs, which only goes up and down: F'(z) over F'(z₀).
+double arch_stiffness(double z) {
+    const double l = std::hypot(0.3, z), l_0 = std::hypot(0.3, 0.08);
+    return 2e5 * (1 - l_0 / l + l_0 * z * z / (l * l * l));
+}
+
+TEST(Account, TellsTheStiffnessThatIsLeftOfAnArch) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch branch = model.branches[0];
+    branch.to = -211.5;  // the limit is at -211.5166 N
+    branch.steps = 20;
+    const auto judge = [&](const char* who, const EquilibriumPath& path) {
+        ASSERT_EQ(path.outcome, Outcome::converged) << who << path.detail;
+        for (const auto& point : path.points)
+            EXPECT_NEAR(point.stiffness_left, arch_stiffness(point.poses[0].r.z()) / arch_stiffness(0.08),
+                        1e-6)
+                << who << " at " << point.load;
+        EXPECT_LT(path.points.back().stiffness_left, 0.02) << who;
+    };
+    judge("equilibrium",
+          reference::equilibrium::solve(model, branch, every_point(branch), {.account = true}));
+    judge("energy", reference::energy::solve(model, branch, every_point(branch), {.account = true}));
+    judge("series", solve(model, branch, {.method = *find_method("series"), .account = true}));
+}
+
+// Past the limit point, which a path by arc length passes, it is negative.
+TEST(Account, StiffnessIsNegativePastALimitPoint) {
+    Model model = compile(support::scene("two_spring_arch"));
+    Branch& branch = model.branches[0];
+    branch.to = -400;
+    const Method arc{"series", 0, Series{.arc_length = true}};
+    const auto path = solve(model, branch, {.method = arc, .steps = 60, .account = true});
+    ASSERT_FALSE(path.points.empty());
+    int negative = 0;
+    for (const auto& point : path.points) {
+        const double exact = arch_stiffness(point.poses[0].r.z()) / arch_stiffness(0.08);
+        EXPECT_NEAR(point.stiffness_left, exact, 1e-6) << point.load;
+        negative += point.stiffness_left < 0;
+        EXPECT_LE(point.bound.length, 1e-9) << point.load;
+    }
+    EXPECT_GT(negative, 5);
+}
+
+// Two modes that become unstable at once leave the determinant as it was: a bar on a ball joint, with one torsion
+// spring for both ways to fall.
+TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: any way\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {foot: [0, 0, 0], head: [0, 0, 0.5]}\nbodies: {bar: {origin: foot}}\n"
+        "joints: {foot: {type: spherical, bodies: [bar, ground], at: foot}}\n"
+        "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], rotational_rates: [100, "
+        "100, 100]}}\n"
+        "loads: {weight: {on: bar, at: head, force: [0, 0, -1]}}\n"
+        "branches: {press: {load: weight, to: 350, steps: 20}}\nprobes: {head: {on: bar, at: head}}\n",
+        "any way"));
+    const Branch& branch = model.branches[0];
+    for (const Method& method : methods) {
+        const auto path = solve(model, branch, {.method = method, .account = true});
+        EXPECT_EQ(path.outcome, Outcome::dividing_point)
+            << method.name << " " << path.detail;  // at 100 / 0.5
+        ASSERT_FALSE(path.points.empty()) << method.name;
+        EXPECT_NEAR(path.points.back().load, 192.5, 1e-9) << method.name;
+        for (const auto& point : path.points)
+            EXPECT_NEAR(point.stiffness_left, 1 - point.load / 200, 1e-6) << method.name << " " << point.load;
+    }
+    EXPECT_EQ(reference::equilibrium::solve(model, branch, every_point(branch)).outcome,
+              Outcome::dividing_point);
+    EXPECT_EQ(reference::energy::solve(model, branch, every_point(branch)).outcome, Outcome::dividing_point);
+}
+
+// Without being asked nobody gives account.
+TEST(Account, IsGivenWhereItIsAsked) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    Branch branch = model.branches[0];
+    branch.to = -100;
+    for (const bool asked : {false, true}) {
+        for (const Method& method : methods)
+            for (const auto& point : solve(model, branch, {.method = method, .account = asked}).points) {
+                EXPECT_EQ(std::isfinite(point.bound.length), asked) << method.name;
+                EXPECT_EQ(std::isnan(point.stiffness_left), !asked) << method.name;
+            }
+        const double loads[] = {0, -50, -100};
+        for (const auto& path : {reference::equilibrium::solve(model, branch, loads, {.account = asked}),
+                                 reference::energy::solve(model, branch, loads, {.account = asked})})
+            for (const auto& point : path.points) {
+                EXPECT_EQ(std::isfinite(point.bound.length), asked);
+                EXPECT_EQ(std::isnan(point.stiffness_left), !asked);
+            }
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive

@@ -1,0 +1,101 @@
+// The limit of methods that turn stored forces one step late, known before it is met.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/delay.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+// θ tan θ = 1, F = k_R θ / (L cos θ): where F L sin θ is k_R (models/scenes/pendulum.yaml).
+const double pendulum_limit = 600 * 0.8603335890193797 / (0.4 * std::cos(0.8603335890193797));
+
+TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
+    Scene scene = support::scene("pendulum");
+    for (auto& branch : scene.branches) branch.to *= 2;
+    const Model model = compile(scene);
+    const Analysis analysis = analyse(model);
+    for (const auto& branch : model.branches)
+        for (const Method& method : methods) {
+            const auto limit = stability_limit(model, branch, method, analysis);
+            ASSERT_EQ(limit.has_value(), std::holds_alternative<Linear>(method.kind)) << method.name;
+            EXPECT_NEAR(std::abs(limit.value_or(pendulum_limit)), pendulum_limit, 1) << method.name;
+        }
+}
+
+TEST(Delay, IsSaidWhereThePublishedMethodDiverges) {
+    Scene scene = support::scene("pendulum");
+    scene.branches[0].to *= 2;
+    const Model model = compile(scene);
+    const auto path = solve(model, model.branches[0]);
+    ASSERT_EQ(path.outcome, Outcome::diverged);
+    EXPECT_NE(path.detail.find("by the model the method is stable to 1978"), std::string::npos)
+        << path.detail;
+    EXPECT_GT(path.points.back().load, pendulum_limit * 0.99);
+}
+
+TEST(Delay, BelowItsLimitThereIsNone) {
+    const Model model = compile(support::scene("pendulum"));
+    for (const auto& branch : model.branches)
+        EXPECT_FALSE(stability_limit(model, branch, methods[0], analyse(model)).has_value());
+}
+
+// A bar that hangs from its hinge on a torsion spring, drawn down by its weight P at L: T K_G = P L / k. With a hinge away
+// from the body's origin the same is said by the curvature of the joint and its reaction.
+TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
+    for (const char* origin : {"[0, 0, 0]", "[0.1, 0, 0.3]"}) {
+        const Model model = compile(parse_scene(
+            std::string("elastocheck: 1\nname: hanging\nunits: {length: m, angle: rad, force: N}\n"
+                        "points: {foot: [0, 0, 0], head: [0, 0, -0.5], o: ") +
+                origin +
+                "}\nbodies: {bar: {origin: o}}\n"
+                "joints: {foot: {type: revolute, bodies: [bar, ground], at: foot, axis: y}}\n"
+                "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], rotational_rates: "
+                "[100, 100, "
+                "100]}}\n"
+                "loads: {weight: {on: bar, at: head, force: [0, 0, -1]}}\n"
+                "branches: {hang: {load: weight, to: 350, steps: 20}, press: {load: weight, to: -150, steps: "
+                "20}}\n"
+                "probes: {head: {on: bar, at: head}}\n",
+            "hanging"));
+        const Analysis analysis = analyse(model);
+        const auto path = solve(model, model.branches[0], {.method = *find_method("series")}, analysis);
+        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+        for (const auto& point : path.points)
+            EXPECT_NEAR(delayed_stiffness(model, model.branches[0], methods[0], analysis, point),
+                        point.load * 0.5 / 100, 1e-9)
+                << origin;
+        const auto limit = stability_limit(model, model.branches[0], methods[0], analysis);
+        ASSERT_TRUE(limit.has_value());
+        EXPECT_NEAR(*limit, 200, 1e-6);
+        // Pressed, what turns late is negative: that is the branch's end, no fault of the method.
+        EXPECT_FALSE(stability_limit(model, model.branches[1], methods[0], analysis).has_value());
+    }
+}
+
+// What levers and axes leave of an element's own tangent is together all of it.
+TEST(Delay, LeversAndAxesTogetherAreEverything) {
+    const Model model = compile(support::scene("chrono_mcpherson_preload"));
+    const Branch& branch = model.branches[0];
+    const Analysis analysis = analyse(model);
+    const auto path = solve(model, branch, {.method = *find_method("series"), .steps = 4}, analysis);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    const auto of = [&](const Follow& follow) {
+        return delayed_stiffness(model, branch, {"", 0, Linear{.follow = follow}}, analysis,
+                                 path.points.back());
+    };
+    const double none = of({}), lever = of({.lever = true}), axis = of({.axis = true}), both = of(everything);
+    for (const double share : {none, lever, axis, both})
+        EXPECT_TRUE(std::isfinite(share) && share >= 0) << share;
+    EXPECT_NE(lever, none);
+    EXPECT_NE(axis, none);
+    EXPECT_NE(both, lever);
+    EXPECT_NE(both, axis);
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive
