@@ -268,8 +268,10 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         walk.stride = 0.5 * std::abs(h);
         if (++halved <= halvings && walk.stride > smallest) continue;
-        const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||
-                                  attempt.failure->outcome == Outcome::branch_lost;
+        // Where a bushing's law ends, that is the reason.
+        const bool may_be_spent =
+            attempt.failure->outcome == Outcome::iteration_limit ||
+            (attempt.failure->outcome == Outcome::branch_lost && attempt.failure->what != turned_over);
         if (may_be_spent && is_spent(path.first, state.modes)) return spent_mode(path, walk, t);
         return attempt.failure;
     }

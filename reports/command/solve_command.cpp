@@ -34,7 +34,7 @@ void write_rates(const Model& model, const std::vector<Channel>& asked, const So
         throw std::invalid_argument("--rates: of positions and angles only, and --channels has none");
     FileToBe csv(request.rates, rates_file);
     csv.add(rates_header(channels));
-    const auto& [leg, how, refine, every] = request.gait;
+    const auto& [leg, how, refine, every, account] = request.gait;
     for (const auto& branch : model.branches)
         for (const auto& way : compare::ways_of(model, branch, how.steps)) {
             const auto path = recursive::series::follow(way.model, way.branch,
@@ -83,7 +83,7 @@ std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<s
 
 int solve(const std::string& file, const Settings& settings, const SolveRequest& request,
           const Delivery& delivery) {
-    const auto& [leg, how, refine, every] = request.gait;
+    const auto& [leg, how, refine, every, account] = request.gait;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     const LoadedScene loaded = load_scene(file, settings, request.detail);

@@ -21,7 +21,11 @@ void expect_dividing_at(const Scene& s, double to, double at) {
             before += std::abs(points.back()) < std::abs(at);
         }
         const auto path = solve(model, model.branches[0], points);
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << steps << " steps: " << path.detail;
+        // A stretch narrower than the smallest step is stable on both sides of it: that is not told apart.
+        EXPECT_TRUE(
+            path.outcome == Outcome::dividing_point ||
+            (path.outcome == Outcome::singular && path.detail.find("may divide") != std::string::npos))
+            << steps << " steps: " << path.detail;
         EXPECT_NE(path.detail.find("divide"), std::string::npos) << path.detail;
         EXPECT_EQ(path.points.size(), before) << steps << " steps: " << path.detail;
     }
