@@ -54,16 +54,9 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
             },
             [&](const Consistent& method) {
                 if (const Outcome o = settle(s); o != Outcome::converged) return finish(o, settling);
-                Softest<Real> softest;
-                const LeastStiffness first = least_stiffness(s, softest);
                 Outcome o = equal_steps(method, s.q);
                 if (o == Outcome::converged && method.solve == Consistent::Solve::once)
                     o = check_last_step(s);
-                // Two modes that become unstable at once leave the determinant's sign as it was.
-                if (o == Outcome::converged && first.of_energy && first.value > 0 &&
-                    factorise_at(s, s.q, s.lambda) == Outcome::converged &&
-                    least_stiffness(s, softest).value < 0)
-                    o = Outcome::singular;
                 return finish(o, stopped);
             },
             [&](const Adaptive& method) {
