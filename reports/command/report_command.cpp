@@ -135,7 +135,6 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
-<<<<<<< HEAD
 // The map and what is wrong; the cells stay where they are.
 json read_stress(const std::string& file) {
     json stress;
@@ -151,8 +150,6 @@ json read_stress(const std::string& file) {
     return stress;
 }
 
-=======
->>>>>>> hostile
 // Of each scene its answer, and whether it passes.
 json answer_document(const json& result, const std::vector<Answer>& answers, const std::string& page) {
     json scenes = json::array();
