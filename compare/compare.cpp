@@ -9,6 +9,7 @@
 
 #include "compare/characteristics.hpp"
 #include "recursive/diagnosis.hpp"
+#include "reference/certificate/certificate.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -139,6 +140,49 @@ bool is_determined(const Channel& channel, const std::vector<bool>& determined,
     });
 }
 
+// Whether the legs are on two branches, each at an equilibrium of its own: then how far their outputs are apart says nothing
+// of either. Each state is proved, and the two boxes have nothing in common. "the energy leg is on another equilibrium than
+// the equilibrium leg at -120 N, each proved: body 'a' is 160 mm away"; empty where this is not so. What an idle motion
+// moves is anywhere along it.
+std::string on_two_branches(const Model& model, const Branch& asked, const LegRun& truth,
+                            const LegRun& other) {
+    using namespace reference::certificate;
+    const auto ways = ways_of(model, asked);
+    std::vector<bool> idle(model.bodies.size());
+    for (const auto& mode : recursive::diagnose(ways.back().model).idle)
+        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
+            if (std::abs(entry.value()) > 1e-6) idle[static_cast<std::size_t>(entry.index() / 6)] = true;
+    for (const auto landmark : {&Landmarks::back, &Landmarks::front, &Landmarks::middle, &Landmarks::start}) {
+        const auto &here = truth.landmarks.*landmark, &there = other.landmarks.*landmark;
+        if (!here || !there || here->load != there->load) continue;
+        std::size_t farthest = 0;
+        double length = 0, angle = 0;
+        for (std::size_t b = 0; b < here->poses.size(); ++b) {
+            if (idle[b]) continue;
+            const double apart = (here->poses[b].r - there->poses[b].r).norm();
+            if (apart > length) length = apart, farthest = b;
+            angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
+        }
+        const auto way =
+            std::ranges::find_if(ways, [&](const Way& w) { return w.branch.to * here->load >= 0; });
+        if (way == ways.end()) continue;
+        const Certificate of_here = certify(way->model, way->branch, *here);
+        if (of_here.answer != Answer::proved) continue;
+        const Certificate of_there = certify(way->model, way->branch, *there);
+        if (of_there.answer != Answer::proved) continue;
+        if (!(length > of_here.error.length + of_there.error.length ||
+              angle > of_here.error.angle + of_there.error.angle))
+            continue;
+        const Unit unit = unit_of(asked.unit);
+        return fmt::format(
+            "the {} leg is on another equilibrium than the {} leg at {:.6g} {}, each proved: body '{}' is "
+            "{:.3g} mm away",
+            name(other.leg), name(truth.leg), in_unit(unit) * here->load, symbol(unit),
+            model.bodies[farthest].name, 1e3 * length);
+    }
+    return {};
+}
+
 bool is_undefined_somewhere(const Channel& channel, std::size_t c, const std::vector<LegRun>& runs) {
     return channel.may_be_undefined() && std::ranges::any_of(runs, [&](const LegRun& run) {
                return std::ranges::any_of(run.curve.values,
@@ -186,6 +230,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     const auto& reading = branch.uncertainty.equal_parameter;
     if (!reading.not_compared.empty())
         objections.add("the references were not compared: " + reading.not_compared);
+    Objections apart;
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!branch.determined[c]) continue;
         const double off = reading.channels[c].max,
@@ -193,11 +238,15 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                                  ? bound_of_characteristic(equilibrium.curve.channel(c))
                                  : bound_of(channels[c].unit, branch.bounds);
         if (const double part = share(off, bound); !(part <= 1))
-            objections.add(
-                fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
-                            channels[c].name, off, symbol(channels[c].unit), bound),
-                part);
+            apart.add(fmt::format("the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
+                                  channels[c].name, off, symbol(channels[c].unit), bound),
+                      part);
     }
+    if (!apart.empty())
+        if (const auto two = on_two_branches(model, asked, equilibrium, second); !two.empty())
+            objections.add(two), apart = {};
+    for (const auto& one : apart.worst) objections.add(one.what, one.share);
+    objections.count += apart.count - static_cast<int>(apart.worst.size());
     // Whoever can judge states without having made them: the series is of the recursive leg's equations.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge}, {&second, Leg::equilibrium}};

@@ -284,9 +284,12 @@ struct Builder {
         const At p = point(), q = other_than(p);
         const std::string law = rate_or_curve(0.05, 0);
         const bool is_curve = law.starts_with("curve");
+        // What leaves a free length.
+        const double length = (q.position - p.position).norm(),
+                     most = is_curve ? 0 : std::min(force, 0.3 * length * std::stod(law.substr(6)));
         std::string fields = law;
         if (!is_curve && random.chance(0.4))
-            fields += ", preload: " + signed_number(force);
+            fields += ", preload: " + signed_number(most);
         else if (random.chance(0.1))
             fields += fmt::format(", free_length: {:.4f}",
                                   (q.position - p.position).norm() * random.between(0.8, 1.2));
@@ -294,8 +297,10 @@ struct Builder {
         if (random.chance(0.1)) fields += ", rebound_stop: " + stop();
         text.springs +=
             fmt::format("  {}: {{{}, from: {}, to: {}, {}}}\n", spring, pair(i, j), p.name, q.name, fields);
-        drivables.push_back({fmt::format("springs.{}.free_length", spring), 0.05});
-        if (!is_curve) drivables.push_back({fmt::format("springs.{}.preload", spring), force});
+        if (is_curve || random.chance(0.5))
+            drivables.push_back({fmt::format("springs.{}.free_length", spring), 0.05});
+        else
+            drivables.push_back({fmt::format("springs.{}.preload", spring), most});
     }
 
     void torsion_spring(const std::string& i, const std::string& j) {

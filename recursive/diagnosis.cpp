@@ -307,7 +307,7 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
             moved += z.value() * z.value();
             mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (physical[z.row()] * z.value());
         }
-        if (moved > most) {
+        if (moved > most || mode.body == ground) {  // also where it is no number
             most = moved;
             mode.body = body;
         }

@@ -58,8 +58,9 @@ Known known_state(const System& system, double a, const Equilibrium& state) {
     const Sparse J = derivatives(system, {a}, known.x, counts).J;
     if (!is_finite(J)) return known;
     const MatrixXd V = MatrixXd(null_spaces(J).right).topRows(6 * system.bodies);
+    if (V.cols() == 0) return known;
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(V);
-    if (V.cols() > 0) known.idle = MatrixXd(qr.householderQ()).leftCols(qr.rank());
+    known.idle = MatrixXd(qr.householderQ()).leftCols(qr.rank());
     return known;
 }
 

@@ -16,6 +16,7 @@
 #include "reports/command/completion.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/documentation.hpp"
+#include "reports/command/equilibria_command.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/gate_command.hpp"
 #include "reports/command/grammar.hpp"
@@ -212,6 +213,10 @@ int run(int argc, char** argv) {
         ->check(a_folder());
     add_json(*stress_command, as_json);
 
+    EquilibriaRequest equilibria_request;
+    auto* equilibria_command = add_equilibria_command(app, equilibria_request);
+    add_json(*equilibria_command, as_json);
+
     name_values(app);
 
     try {
@@ -228,6 +233,7 @@ int run(int argc, char** argv) {
         }
         const Delivery delivery{.folder = output, .as_json = as_json, .command = command};
         const Detail detail = keep_all ? Detail::everything : Detail::required;
+        if (*equilibria_command) return equilibria(equilibria_request, delivery, progress);
         if (*stress_command) return stress(stress_request, delivery, progress);
         if (*inspect_command) return inspect(scene, settings, detail, verbose, delivery);
         if (*solve_command || *compare_command) {

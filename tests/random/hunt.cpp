@@ -97,6 +97,7 @@ struct Tally {
     }
     void take(const std::array<std::string, 5>& told) {
         const auto& [seed, solver, verdict, outcome, why] = told;
+        if (log.is_open()) log << fmt::format("{}\n", fmt::join(told, "\t"));
         if (verdict == "done") {
             const double took = std::stod(outcome);
             seconds += took;
@@ -104,7 +105,7 @@ struct Tally {
             return;
         }
         ++table[solver][verdict == "honest" ? outcome : verdict];
-        if (log.is_open()) log << fmt::format("{}\n", fmt::join(told, "\t"));
+
         if (verdict == "wrong" || verdict == "thrown")
             fail(std::stoull(seed), fmt::format("seed {}: {}: {} {}", seed, solver, verdict, why));
     }

@@ -1,0 +1,22 @@
+// All equilibria at one value of a branch's parameter, as people and programs read them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "compare/find_all.hpp"
+#include "compare/table.hpp"
+
+namespace elastocheck::reports {
+
+// Raised when a field changes its meaning or vanishes; new fields may appear without.
+inline constexpr const char* equilibria_schema = "elastocheck/equilibria/1";
+
+compare::Table equilibria_table(const compare::AllEquilibria& all);
+
+std::string equilibria_text(const compare::AllEquilibria& all);
+
+// {"branch", "at", "unit", "outcome", "detail", "proved", "starts", "other_way_round", "equilibria": table, "poses"}
+nlohmann::ordered_json equilibria_json(const Model& model, const compare::AllEquilibria& all);
+
+}  // namespace elastocheck::reports
