@@ -526,8 +526,10 @@ const char* name(Verdict verdict) {
 std::vector<Solver> solvers() {
     std::vector<Solver> all;
     for (const auto& method : recursive::methods)
-        all.push_back({std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
-    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
+        all.push_back({std::string(method.name),
+                       {.leg = Leg::recursive, .recursion = {.method = method}, .account = true}});
+    for (const Leg leg : {Leg::equilibrium, Leg::energy})
+        all.push_back({name(leg), {.leg = leg, .account = true}});
     return all;
 }
 

@@ -203,6 +203,8 @@ Stiffness stiffness(const System& system, const Linearisation& at) {
     const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
     const Index free = n - (m - redundant) - (k - redundant);
     if (free == 0) return {};
+    // Constraints so near to repeating each other that J and Φ_q do not agree on how many do: nothing can be said.
+    if (free < 0) return {nan, nan};
     const Sparse K = -balance_rows(system, at.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
     const bool surely = system.conservative && surely_stable(K, constraint_rows(system, at.J), at.modes,

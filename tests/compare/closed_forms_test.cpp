@@ -196,8 +196,12 @@ TEST(Column, TangentIsSingularAtEulersLoad) {
                 const auto path =
                     walk(ways_of(model, branch),
                          {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
-                EXPECT_EQ(path.outcome, share < 1 ? Outcome::converged : Outcome::dividing_point)
-                    << n << " " << name(leg) << " " << method << " at " << share << ": " << path.detail;
+                // Within its smallest step the equilibrium leg does not tell dividing from turning.
+                const bool ends = path.outcome == Outcome::dividing_point ||
+                                  (leg == Leg::equilibrium && path.outcome == Outcome::singular);
+                EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
+                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " " << method
+                    << " at " << share << ": " << path.detail;
             }
         }
         errors.push_back(1 - P / euler);

@@ -135,8 +135,12 @@ TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
                 Branch branch = model.branches[0];
                 branch.to = share * P;
                 const auto path = walked(model, branch, leg);
-                EXPECT_EQ(path.outcome, share < 1 ? Outcome::converged : Outcome::dividing_point)
-                    << n << " " << name(leg) << " at " << share << ": " << path.detail;
+                // Within its smallest step the equilibrium leg does not tell dividing from turning.
+                const bool ends = path.outcome == Outcome::dividing_point ||
+                                  (leg == Leg::equilibrium && path.outcome == Outcome::singular);
+                EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
+                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " at " << share
+                    << ": " << path.detail;
             }
         errors.push_back(1 - P / limit);
     }

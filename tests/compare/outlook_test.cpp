@@ -1,4 +1,6 @@
 // Where a branch will end, told before it does.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "compare/legs.hpp"
@@ -34,8 +36,9 @@ TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
 }
 
 TEST(Outlook, ABucklingLoadIsAnnouncedFromHalfTheWay) {
-    const Model model = compile(read_scene(std::string(ELASTOCHECK_SCENES) +
-                                           "/../../tests/recursive/found/straight-column-one-body.yaml"));
+    const Model model = compile(read_scene((std::filesystem::path(ELASTOCHECK_SCENES) /
+                                            "../../tests/recursive/found/straight-column-one-body.yaml")
+                                               .string()));
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series}) {
         const auto path = accounted(model, 1000, leg);  // it buckles at k / L = 1000 / 0.5
         ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;

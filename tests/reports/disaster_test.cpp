@@ -28,7 +28,7 @@ using support::Said;
 using support::says;
 using support::text_of;
 
-const std::string scene = std::string(ELASTOCHECK_SCENES) + "/pinned_bar.yaml";
+const std::string scene = (std::filesystem::path(ELASTOCHECK_SCENES) / "pinned_bar.yaml").string();
 const std::string command = "env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " ";
 
 std::set<std::string> names_in(const fs::path& folder) {
