@@ -20,17 +20,19 @@ EquilibriumPath accounted(const Model& model, double to, Leg leg) {
                 {.leg = leg, .recursion = {.method = *recursive::find_method("chord")}, .account = true});
 }
 
+// The square of the stiffness is a line in the load next to the limit only: three points a twentieth of the way apart
+// foresee it to a tenth of what is left.
 TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
     const Model model = compile(support::scene("two_spring_arch"));  // the limit is at -211.5166 N
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series})
-        for (const auto& [to, within] : {std::pair{-150., 4.}, {-200., 0.5}, {-211., 0.05}}) {
+        for (const double to : {-150., -200., -211.}) {
             const auto path = accounted(model, to, leg);
             ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
             const auto gone = stiffness_gone_near(path.points);
             ASSERT_TRUE(gone.has_value()) << name(leg);
-            EXPECT_NEAR(*gone, -211.5166, within) << name(leg) << " from " << to;
+            EXPECT_NEAR(*gone, -211.5166, 0.1 * (211.5166 + to)) << name(leg) << " from " << to;
             EXPECT_TRUE(outlook(path.points, ParameterUnit::newton)
-                            .starts_with("at this rate the stiffness is gone near -21"))
+                            .starts_with("at this rate the stiffness is gone near -2"))
                 << outlook(path.points, ParameterUnit::newton);
         }
 }

@@ -51,8 +51,7 @@ TEST(CertifyCommand, TheToleranceIsWhatIsProved) {
 TEST(CertifyCommand, ALimitPointEndsAPathAndIsProved) {
     const Said said = elastocheck_says("certify " + scenes +
                                        "/two_spring_arch.yaml --set branches.down.to=-400 --points 4");
-    EXPECT_TRUE(contains(said.out, "a limit point is proved, between -211.516594"))
-        << said.out << said.err;
+    EXPECT_TRUE(contains(said.out, "a limit point is proved, between -211.516594")) << said.out << said.err;
 }
 
 TEST(CertifyCommand, WritesItsTableAndDocument) {

@@ -164,7 +164,7 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
                                        (folder.path / "out").string());
     EXPECT_EQ(said.code, 3);
     EXPECT_TRUE(contains(said.out, "INCONCLUSIVE")) << said.out;
-    EXPECT_TRUE(contains(said.out, "branch lost")) << said.out;
+    EXPECT_TRUE(contains(said.out, "limit point")) << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["verdict"]["conclusive"], false);
     EXPECT_FALSE(result["scenes"][0]["verdict"]["reasons"].empty());

@@ -200,7 +200,7 @@ TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
             "solve " + folder.write("arch.yaml", scene) + " --method equilibrium --channels apex_z";
         const Said said = elastocheck_says(command);
         EXPECT_EQ(said.code, 3) << said.err;
-        EXPECT_TRUE(contains(said.err, "equilibrium: branch lost: push to -300 N: ")) << said.err;
+        EXPECT_TRUE(contains(said.err, "equilibrium: limit point: push to -300 N: ")) << said.err;
         const auto rows = cells_of(said.out);
         ASSERT_EQ(rows.size(), 1u + 52) << said.out;  // -210 to 300 N
         EXPECT_EQ(std::stod(rows[1][2]), first ? -210 : 300);
