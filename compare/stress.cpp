@@ -526,10 +526,8 @@ const char* name(Verdict verdict) {
 std::vector<Solver> solvers() {
     std::vector<Solver> all;
     for (const auto& method : recursive::methods)
-        all.push_back({std::string(method.name),
-                       {.leg = Leg::recursive, .recursion = {.method = method}, .account = true}});
-    for (const Leg leg : {Leg::equilibrium, Leg::energy})
-        all.push_back({name(leg), {.leg = leg, .account = true}});
+        all.push_back({std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
     return all;
 }
 

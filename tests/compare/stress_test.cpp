@@ -98,7 +98,7 @@ TEST(Stress, AnHonestOutcomeIsNotWrong) {
 }
 
 TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
-    // The published recursion of the pendulum is off by so much (its head has the closed form), and its account says no less.
+    // The published recursion of the pendulum is off by so much (its head has the closed form), and claims nothing.
     const Survival survival =
         stress(std::vector{Trial{"pendulum", "x", {"as it is", small("pendulum", 60)}}});
     for (const auto& cell : survival.cells) {
@@ -107,7 +107,7 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
             EXPECT_NEAR(cell.error, cell.range * std::pow(10, -cell.digits), 1e-6 * cell.error) << told(cell);
         }
         if (cell.solver == "published") {
-            EXPECT_EQ(cell.verdict, Verdict::right);
+            EXPECT_EQ(cell.verdict, Verdict::unpromised);
             EXPECT_LT(cell.digits, 4);
         }
         if (cell.solver == "equilibrium") {
