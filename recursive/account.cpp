@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "recursive/stiffness.hpp"
 #include "recursive/walk.hpp"
@@ -35,8 +36,8 @@ struct Accountant {
     int orientation = 0;  // of the first point
     double first_stiffness = 0;
     Softest<Real> softest = {};
-    Node<Real> last_found = {};  // on the branch
-    Real noise = 0;              // of the forces as they are evaluated, as |W⁻¹ f|
+    std::optional<Node<Real>> last_found = {};  // on the branch
+    Real noise = 0;                             // of the forces as they are evaluated, as |W⁻¹ f|
 
     Accountant(const Model& model, const Branch& branch, const Analysis& analysis, bool back)
         : s(model, branch, analysis), turns_back(back), lambda(Vector<Real>::Zero(s.m())) {
@@ -140,7 +141,7 @@ struct Accountant {
     bool follow(Real a, State<Real>& q) {
         constexpr int shortest = 256;  // of the way
         const Vector<Real> straight = Vector<Real>::Zero(s.n()), lambda_straight = Vector<Real>::Zero(s.m());
-        Node<Real> here = last_found, next = here;
+        Node<Real> here = *last_found, next = here;
         const Real way = a - here.p;
         for (Real h = way; here.p != a;) {
             next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
@@ -158,7 +159,7 @@ struct Accountant {
     }
     // Where Newton's method does not lead from the point to the equilibrium, the branch does: then the distance.
     ErrorBound bound_by_branch(const Equilibrium& point, State<Real>& q) {
-        if (orientation == 0 || turns_back || !follow(static_cast<Real>(point.load), q)) return {};
+        if (!last_found || turns_back || !follow(static_cast<Real>(point.load), q)) return {};
         go_to(s, {1, static_cast<Real>(point.load)});
         ErrorBound sum = bound(q);
         const State<Real> from = state_of<Real>(point.poses);
@@ -185,8 +186,8 @@ struct Accountant {
         }
         if (std::isfinite(point.bound.length)) {
             point.stiffness_left = stiffness_left();
-            last_found = {q, lambda, {}, {}, a, 0};
-            differentiate(s, going(), last_found);
+            last_found = Node<Real>{q, lambda, {}, {}, a, 0};
+            differentiate(s, going(), *last_found);
         } else if (orientation != 0) {
             q = state_of<Real>(point.poses);
             lambda.setZero();

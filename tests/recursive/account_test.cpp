@@ -198,6 +198,31 @@ TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
 }
 
 // Without being asked nobody gives account.
+// Newton's method comes to rest where two links that contradict each other stay open: at no equilibrium, and on no branch.
+TEST(Account, WhereTheFirstPointHasNoBoundNothingIsPromised) {
+    const Model model = compile(parse_scene(R"(
+elastocheck: 1
+name: two links that contradict each other
+units: {length: mm, angle: rad, force: N, moment: N·m}
+points: {ball: [0, 0, 0], wall: [0, 500, 0], tip: [400, 0, 0]}
+bodies: {bob: {origin: tip}}
+joints:
+  ball: {type: spherical, bodies: [bob, ground], at: ball}
+  link: {type: distance, bodies: [bob, ground], from: ball, to: wall, length: 500.00001}
+bushings: {ball: {bodies: [bob, ground], at: ball, rates: [0, 0, 0], rotational_rates: [600, 600, 600]}}
+loads: {pull: {on: bob, at: tip, force: [0, 0, 1]}}
+branches: {up: {load: pull, to: 500, steps: 4}}
+probes: {tip: {on: bob, at: tip}}
+)",
+                                            "links.yaml"));
+    for (const auto& method : methods) {
+        const auto path = solve(model, model.branches[0], {.method = method, .account = true});
+        for (const auto& point : path.points)
+            EXPECT_EQ(point.bound.length, std::numeric_limits<double>::infinity())
+                << method.name << " at " << point.load;
+    }
+}
+
 TEST(Account, IsGivenWhereItIsAsked) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
