@@ -28,18 +28,6 @@ constexpr double one_state = 1e-6;
 // What is less stiff than this, over the stiffest, is idle.
 constexpr double idle_stiffness = 1e-10;
 
-VectorXd unknowns_of(const System& system, const std::vector<Pose>& poses) {
-    if (poses.size() != static_cast<std::size_t>(system.bodies))
-        throw std::invalid_argument("a state to start from has not one pose a body");
-    VectorXd x = VectorXd::Zero(system.unknowns());
-    for (int body = 0; body < system.bodies; ++body) {
-        const Pose& pose = poses[static_cast<std::size_t>(body)];
-        x.segment<3>(7 * body) = (pose.r - system.centre) / system.length;
-        x.segment<4>(7 * body + 3) = pose.p.normalized().coeffs();
-    }
-    return x;
-}
-
 // A state that is not to be found again. What is idle there says nothing of where it is.
 struct Known {
     VectorXd x;
@@ -53,7 +41,7 @@ struct Known {
 };
 
 Known known_state(const System& system, double a, const Equilibrium& state) {
-    Known known{unknowns_of(system, state.poses), MatrixXd(6 * system.bodies, 0)};
+    Known known{unknowns_at(system, state.poses), MatrixXd(6 * system.bodies, 0)};
     Counts counts;
     const Sparse J = derivatives(system, {a}, known.x, counts).J;
     if (!is_finite(J)) return known;
@@ -90,7 +78,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a, const s
     std::vector<Known> others;
     for (const auto& state : known) others.push_back(known_state(system, a, state));
     const Loading loading{a};
-    VectorXd x = unknowns_of(system, start);
+    VectorXd x = unknowns_at(system, start);
     Counts counts;
     Derivatives by = derivatives(system, loading, x, counts);
     if (!by.E.allFinite() || !is_finite(by.J)) return {Outcome::not_finite};
@@ -132,7 +120,7 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch, 
     const System system = make_system(model, branch, {&state.load, 1});
     if (system.bodies == 0 || system.bodies > most_bodies) return {};
     const Index n = 6 * system.bodies, m = system.constraint_rows;
-    const VectorXd x = unknowns_of(system, state.poses);
+    const VectorXd x = unknowns_at(system, state.poses);
     // The curvature of the constraints takes their reactions.
     VectorXd with_reactions = x;
     Counts counts;
@@ -170,7 +158,7 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch, 
 
 double apart(const Model& model, const Branch& branch, const Equilibrium& a, const Equilibrium& b) {
     const System system = make_system(model, branch, {&a.load, 1});
-    return pose_size(system, known_state(system, a.load, a).from_here(system, unknowns_of(system, b.poses)));
+    return pose_size(system, known_state(system, a.load, a).from_here(system, unknowns_at(system, b.poses)));
 }
 
 }  // namespace elastocheck::reference::equilibrium

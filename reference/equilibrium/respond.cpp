@@ -64,16 +64,6 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
                       disturbance);
 }
 
-VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses) {
-    VectorXd x = VectorXd::Zero(system.unknowns());
-    for (int body = 0; body < system.bodies; ++body) {
-        const Pose& pose = poses[static_cast<std::size_t>(body)];
-        x.segment<3>(7 * body) = (pose.r - system.centre) / system.length;
-        x.segment<4>(7 * body + 3) = pose.p.normalized().coeffs();
-    }
-    return x;
-}
-
 // The reactions that leave least out of balance: E is linear in them. The second time is for what the factors of the
 // first lost in digits.
 void balance(const System& system, const Loading& loading, VectorXd& x, Counts& counts) {

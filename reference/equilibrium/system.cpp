@@ -273,13 +273,22 @@ Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
     return {system.length * x.segment<3>(7 * body), Eigen::Quaterniond(x.segment<4>(7 * body + 3))};
 }
 
-VectorXd design_unknowns(const System& system) {
+VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses) {
+    if (poses.size() != static_cast<std::size_t>(system.bodies))
+        throw std::invalid_argument("a state to start from has not one pose a body");
     VectorXd x = VectorXd::Zero(system.unknowns());
     for (int body = 0; body < system.bodies; ++body) {
-        const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
+        const Pose& pose = poses[static_cast<std::size_t>(body)];
         x.segment<3>(7 * body) = (pose.r - system.centre) / system.length;
         x.segment<4>(7 * body + 3) = pose.p.normalized().coeffs();
     }
+    return x;
+}
+
+VectorXd design_unknowns(const System& system) {
+    std::vector<Pose> poses;
+    for (const Body& body : system.model->bodies) poses.push_back(body.design);
+    VectorXd x = unknowns_at(system, poses);
     x.tail(system.constraint_rows) = system.carried;
     return x;
 }

@@ -93,6 +93,8 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
 Frame<double> frame_of(const System& system, const Eigen::VectorXd& x, BodyId body);
 
 Eigen::VectorXd design_unknowns(const System& system);
+// With the bodies at these poses and no reactions. Throws std::invalid_argument unless there is one a body.
+Eigen::VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses);
 Eigen::VectorXd held_at_design(const System& system);  // E there at a = 0, what is held left out
 Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
