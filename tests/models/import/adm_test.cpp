@@ -490,14 +490,16 @@ MARKER/4, PART = 3, QP = 200, 250, 300
 MARKER/5, PART = 2, QP = 90, 10, 0
 JOINT/1, SPHERICAL, I = 6, J = 7
 MARKER/6, PART = 3, QP = 160, 210, 310
-MARKER/7, PART = 2, QP = 66.90652921104, -5.91151530113, -6.50119826246
+MARKER/7, PART = 2, QP = @
 FIELD/1, I=4, J=8, KMATRIX = 300,20,0,0,0,0, 20,400,0,0,0,0, 0,0,500,0,0,0, 0,0,0,1E6,0,1E5, 0,0,0,0,2E6,0, 0,0,0,1E5,0,3E6
 , LENGTH = 1, 2, 3, 0.05, 0, 0.02, FORCE = 10, 0, 0, 0, 0, 500
 MARKER/8, PART = 1, QP = 201, 251, 301
 SPRINGDAMPER/1, TRANS, I = 4, J = 3, K = 4, LENGTH = 90
 ACCGRAV/, KGRAV = -9806.65
 )";
-    const std::string met = placed_together(with_all);
+    // Where the ball is on the turned part.
+    const Vector3d ball = euler(10, 20, 30).transpose() * (Vector3d(160, 210, 310) - Vector3d(100, 200, 300));
+    const std::string met = replaced(with_all, "@", fmt::format("{}, {}, {}", ball.x(), ball.y(), ball.z()));
     const Scene first = parse_scene(scene_of(met), "scene");
     const importer::Exported exported = importer::export_adm(first, false);
     const Scene second = parse_scene(scene_of(exported.text), "scene");
