@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr std::size_t widest = 118;
 constexpr std::size_t longest_name = 64;
 constexpr double same_place = 1e-9;  // of the model's size
+const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();  // x, tilted out of all planes that models have points in
 constexpr std::size_t most_told = 40;  // of one kind in the head of a scene
 
 bool is_letter_or_digit(char c) {
@@ -136,11 +137,10 @@ std::string Names::take(std::string_view wanted) {
 }
 
 std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
-    const double near = same_place * size_;
-    for (auto found = by_x_.lower_bound(position.x() - near); found != by_x_.end() && found->first <= position.x() + near;
-         ++found)
+    const double near = same_place * size_, key = position.dot(askew);
+    for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near; ++found)
         if ((positions_[found->second] - position).norm() <= near) return entries_[found->second].name;
-    by_x_.emplace(position.x(), positions_.size());
+    by_x_.emplace(key, positions_.size());
     positions_.push_back(position);
     entries_.push_back({names_.take(wanted), triple(position, size_), from});
     return entries_.back().name;

@@ -38,7 +38,6 @@ std::string Conversion::point(const Marker& marker) {
 Value Conversion::function(const std::string& text, double time) {
     std::vector<int> open;  // VARIABLEs within VARIABLEs
     Context context;
-    int left = 1000;
     context.time = time;
     context.variable = [&](int id) {
         Value unknown;
@@ -47,7 +46,7 @@ Value Conversion::function(const std::string& text, double time) {
             unknown.unknown = fmt::format("VARVAL({}): there is no such VARIABLE", id);
             return unknown;
         }
-        if (std::ranges::find(open, id) != open.end() || open.size() > 20 || --left < 0) {
+        if (std::ranges::find(open, id) != open.end() || open.size() > 20 || --variables_left < 0) {
             unknown.unknown = fmt::format("VARVAL({}): it depends on itself", id);
             return unknown;
         }
@@ -197,15 +196,14 @@ void write_bodies(Conversion& c) {
         c.draft.bodies.push_back({c.body(s.id), "{" + fields.text() + "}", s.place()});
     }
     if (!any_mass) c.draft.gravity.reset();
+    std::set<std::string> there{"ground"};
+    for (const Entry& body : c.draft.bodies) there.insert(body.name);
     // A damper holds nothing, and is measured where both its parts are there.
     std::erase_if(c.draft.dampers, [&](const Entry& damper) {
         const auto begin = damper.fields.find('[') + 1, comma = damper.fields.find(", ", begin);
         const std::string names[] = {damper.fields.substr(begin, comma - begin),
                                      damper.fields.substr(comma + 2, damper.fields.find(']') - comma - 2)};
-        const auto is_there = [&](const std::string& name) {
-            return name == "ground" || std::ranges::find(c.draft.bodies, name, &Entry::name) != c.draft.bodies.end();
-        };
-        if (is_there(names[0]) && is_there(names[1])) return false;
+        if (there.contains(names[0]) && there.contains(names[1])) return false;
         c.draft.notes.leave_out("as nothing is attached to them", damper.from);
         return true;
     });

@@ -46,6 +46,7 @@ struct Conversion {
     std::vector<Drive> drives = {};
     std::map<int, const Statement*> variables = {};
     double end_time = 0;                     // of the programme that the file's functions of TIME run through
+    int variables_left = 10'000;             // to be put into functions, over the whole file
 
     // ---- Looking up. Throw SceneError where there is none.
     const Marker& marker(const Arguments& at, std::string_view name) const;

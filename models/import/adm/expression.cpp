@@ -15,6 +15,7 @@ namespace {
 
 constexpr int deepest = 100;
 constexpr std::size_t most_terms = 1000;
+constexpr std::size_t longest_function = 1 << 16;  // [bytes]
 
 Value unknown(std::string why) {
     Value value;
@@ -391,6 +392,7 @@ class Parser {
 }  // namespace
 
 Value evaluate(std::string_view text, const Context& context) {
+    if (text.size() > longest_function) return unknown("longer than any function is");
     Parser parser(text, context);
     Value value = parser.whole();
     if (value.is_known() && !std::isfinite(value.constant)) return unknown("a number beyond all bounds");

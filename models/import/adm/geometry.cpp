@@ -178,7 +178,7 @@ const Shape part_shape{{"GROUND"},
                         "EXACT", "MATERIAL", "VELOCITY"},
                        {}};
 const Shape marker_shape{{"USEXP", "FLOATING"},
-                         {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID"},
+                         {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID", "NODE_LABEL"},
                          {}};
 
 Part read_part(const Dataset& data, const Statement& statement, const Units& units) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <set>
 
 #include "models/import/adm/conversion.hpp"
 #include "models/reader/words.hpp"
@@ -18,6 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double round_off = 1e-6;  // of the model's size, of a radian: not worth a word
+constexpr std::size_t most_motions = 10'000;
 constexpr double assembled = 1e-2;  // beyond, the parts do not meet
 
 const Shape joint_shape{
@@ -295,17 +298,16 @@ void hold(Conversion& c, std::size_t entry) {
     if (!fields.ends_with(", held: true}")) fields.replace(fields.size() - 1, 1, ", held: true}");
 }
 
-void convert_motion(Conversion& c, const Statement& s) {
+void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_the_file) {
     const Arguments at(c.data.file, s, motion_shape);
+    if (c.drives.size() >= most_motions) at.fail(fmt::format("more than {} motions", most_motions));
     const auto by = programme(c, s, at);
     const bool rotates = at.has("ROTATIONAL");
     const double length = c.geometry.units.length;
     if (at.has("JOINT")) {
         const auto found = c.joints.find(at.id("JOINT"));
         if (found == c.joints.end()) {
-            const bool there = std::ranges::any_of(
-                c.data.statements, [&](const Statement& o) { return o.keyword == "JOINT" && o.id == at.id("JOINT"); });
-            if (!there) at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
+            if (!in_the_file.contains(at.id("JOINT"))) at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
             c.draft.notes.miss(s.place(), fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
             return;
         }
@@ -404,8 +406,11 @@ void convert_joints(Conversion& c) {
         if (s.keyword == "JPRIM") convert_jprim(c, s);
         if (s.keyword == "GCON") convert_gcon(c, s);
     }
+    std::set<int> in_the_file;
     for (const Statement& s : c.data.statements)
-        if (s.keyword == "MOTION") convert_motion(c, s);
+        if (s.keyword == "JOINT") in_the_file.insert(s.id);
+    for (const Statement& s : c.data.statements)
+        if (s.keyword == "MOTION") convert_motion(c, s, in_the_file);
     for (const Statement& s : c.data.statements)
         if (s.keyword == "COUPLER") convert_coupler(c, s);
 }

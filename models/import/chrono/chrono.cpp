@@ -205,8 +205,14 @@ void solid_axle(Suspension& s) {
         s.spindle(s.sided("knuckle"));
     });
     shared_tierod(s);
-    const Vector3d a = s.left("Trackbar/Location Axle"), c = s.left("Trackbar/Location Chassis");
-    s.link("trackbar", "Trackbar", 0.5 * (a + c), "ground", c, "axle", a, false, "Trackbar/Location Chassis", "Trackbar/Location Axle");
+    if (s.has("Trackbar")) {  // the links, which are not parallel, hold the axle sideways already
+        s.one_freedom = true;
+        s.draft().notes.warn(s.place("Trackbar"), "links and track bar together leave the axle one freedom, and that hardly: the "
+                                                  "branch moves the left wheel, the right one follows");
+        const Vector3d a = s.left("Trackbar/Location Axle"), c = s.left("Trackbar/Location Chassis");
+        s.link("trackbar", "Trackbar", 0.5 * (a + c), "ground", c, "axle", a, false, "Trackbar/Location Chassis",
+               "Trackbar/Location Axle");
+    }
     // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
     const Vector3d d = s.left("Draglink/Location Bell Crank"), steering = s.left("Draglink/Location Chassis");
     const Vector3d pivot = s.left("Bell Crank/Location Axle"), pin = s.left("Bell Crank/Location Tierod");
@@ -396,6 +402,9 @@ void sae_leafspring(Suspension& s, bool steered) {
 
 // Chrono has the lower shock on the housing, and so has this.
 void hendrickson(Suspension& s) {
+    s.one_freedom = true;
+    s.draft().notes.warn(s.place("Lower Beam"), "beams and rods that turn about y alone keep the axle from rolling: the branch moves "
+                                                "the left wheel, the right one follows");
     s.body("axle", s.left("Axle Housing/COM"), "Axle Housing");
     s.body("transverse_beam", s.left("Transverse Beam/COM"), "Transverse Beam");
     both(s, [&] {
@@ -628,14 +637,15 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
     draft.format = "Chrono::Vehicle " + name;
     draft.units = "{length: m, angle: rad, force: N}";
     draft.remarks = {"m, N, kg, rad as in the file; x forward, y left, z up. Chassis, subchassis and steering are ground.",
-                     "The file has no gravity and no tyre: the branch moves both wheels on jacks."};
+                     "The file has no gravity and no tyre: the branches move the wheels on jacks."};
     if (found->mirrors) draft.mirror = "left -> right";
     Suspension suspension(root, options, draft);
     found->make(suspension);
     suspension.note_unused();
     const char* const range = "from: -0.06, to: 0.06, steps: 120}";
-    draft.branches.push_back({"travel", fmt::format("{{drive: [left.travel, right.travel], {}", range), {}});
-    if (!found->mirrors)
+    draft.branches.push_back(
+        {"travel", fmt::format("{{drive: {}, {}", suspension.one_freedom ? "left.travel" : "[left.travel, right.travel]", range), {}});
+    if (!found->mirrors && !suspension.one_freedom)
         draft.branches.push_back({"roll", fmt::format("{{drive: {{left.travel: 1, right.travel: -1}}, {}", range), {}});
     return draft;
 }

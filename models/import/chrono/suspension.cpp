@@ -98,7 +98,7 @@ void Suspension::note_unused() {
             continue;
         }
         if (part == "Vehicle-Frame Inertia" || part == "Independent" || part == "Steerable" || part == "Antiroll Body" ||
-            part == "Output" || part == "Camber Angle (deg)" || part == "Toe Angle (deg)" || part == "Name" || part == "Type")
+            part == "Output" || part == "Camber Angle (deg)" || part == "Toe Angle (deg)" || part == "Name" || part == "Type" || part == "Template")
             continue;
         if (!used_.contains(part)) {
             notes.miss({item.line, part}, "not known of this template");

@@ -25,6 +25,8 @@ class Suspension {
     const reader::Cursor& file() const { return file_; }
     Draft& draft() { return draft_; }
 
+    bool one_freedom = false;  // of both wheels together: one is driven, the other follows
+
     // ---- The side. `left` alone makes what a mirror turns round.
     int side = +1;
     std::string sided(const std::string& name) const { return name + (side > 0 ? "_left" : "_right"); }

@@ -152,7 +152,7 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
         {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"), "'Vehicle' is no suspension"},
         {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""), "did you mean 'DoubleWishbone'"},
         {"no spring", sample("generic__RigidPinnedAxle.json"), "no spring at all"},
-        {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"), "model.json:11: Spindle.COM: expected a list of 3"},
+        {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"), "model.json:12: Spindle.COM: expected a list of 3"},
         {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""), "Spring.Location Arm: missing"},
         {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""), "Wing: not known of this template"},
     };
@@ -224,7 +224,7 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
              {"no length", replaced(sound, "LENGTH", "WIDTH"), "UNITS.LENGTH: missing"},
              {"no curve", replaced(sound, "[TY_CURVE]", "[T_CURVE]"), "TY_CURVE: missing"},
              {"open", replaced(sound, "[TY_CURVE]", "[TY_CURVE"), "is left open"},
-             {"three in a row", replaced(sound, "1   4000\n", "1 4000 3\n"), ":25: 3 values in a table of 2 columns"},
+             {"three in a row", replaced(sound, "1   4000\n", "1 4000 3\n"), ":24: 3 values in a table of 2 columns"},
              {"a word", replaced(sound, "1   4000\n", "1 much\n"), "'much' is no number"},
              {"falling", replaced(sound, "1   4000\n", "1 -5000\n"), "it may stay, but not fall"},
              {"back", replaced(sound, "1   4000\n", "-2 4000\n"), "is not above the one before"},
