@@ -31,9 +31,6 @@ const std::vector<Room> rooms{
     {"compare",
      {"models", "recursive", "reference/equilibrium", "reference/energy", "reference/certificate"}},
     {"reports",
-    {"compare",
-     {"models", "recursive", "reference/equilibrium", "reference/energy", "reference/certificate"}},
-    {"reports",
      {"models/reader", "models/import", "models", "recursive", "reference/equilibrium", "reference/energy",
       "reference/certificate", "compare"}},
 };
