@@ -29,7 +29,8 @@ double off(const Rows& rows, const Theirs& theirs) {
         for (int n = 1; n < samples; ++n) {
             const double t = (rows[k + 1].first - rows[k].first) * n / samples;
             const auto& c = ours.pieces[k + 1];
-            worst = std::max(worst, std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, rows[k].first + t)));
+            worst = std::max(
+                worst, std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, rows[k].first + t)));
         }
     return worst / largest;
 }
@@ -37,8 +38,8 @@ double off(const Rows& rows, const Theirs& theirs) {
 double hermite(const Rows& rows, const std::vector<double>& slope, std::size_t k, double x) {
     const double h = rows[k + 1].first - rows[k].first, t = (x - rows[k].first) / h;
     const double f0 = rows[k].second, f1 = rows[k + 1].second;
-    return f0 * (1 + 2 * t) * (1 - t) * (1 - t) + f1 * t * t * (3 - 2 * t) + h * slope[k] * t * (1 - t) * (1 - t) -
-           h * slope[k + 1] * t * t * (1 - t);
+    return f0 * (1 + 2 * t) * (1 - t) * (1 - t) + f1 * t * t * (3 - 2 * t) +
+           h * slope[k] * t * (1 - t) * (1 - t) - h * slope[k + 1] * t * t * (1 - t);
 }
 
 double secant(const Rows& rows, std::size_t k) {
@@ -85,13 +86,15 @@ double off_natural(const Rows& rows) {
     for (std::size_t k = n - 1; k-- > 1;) M[k] = (right[k] - h(k) * M[k + 1]) / diagonal[k];
     return off(rows, [&](std::size_t k, double x) {
         const double H = h(k), a = rows[k + 1].first - x, b = x - rows[k].first;
-        return M[k] * a * a * a / (6 * H) + M[k + 1] * b * b * b / (6 * H) + (rows[k].second / H - M[k] * H / 6) * a +
-               (rows[k + 1].second / H - M[k + 1] * H / 6) * b;
+        return M[k] * a * a * a / (6 * H) + M[k + 1] * b * b * b / (6 * H) +
+               (rows[k].second / H - M[k] * H / 6) * a + (rows[k + 1].second / H - M[k + 1] * H / 6) * b;
     });
 }
 
 double off_straight(const Rows& rows) {
-    return off(rows, [&](std::size_t k, double x) { return rows[k].second + secant(rows, k) * (x - rows[k].first); });
+    return off(rows, [&](std::size_t k, double x) {
+        return rows[k].second + secant(rows, k) * (x - rows[k].first);
+    });
 }
 
 double off_power(const Rows& rows, double factor, double exponent) {

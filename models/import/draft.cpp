@@ -14,8 +14,9 @@ using Eigen::Vector3d;
 constexpr std::size_t widest = 118;
 constexpr std::size_t longest_name = 64;
 constexpr double same_place = 1e-9;  // of the model's size
-const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();  // x, tilted out of all planes that models have points in
-constexpr std::size_t most_told = 40;  // of one kind in the head of a scene
+const Vector3d askew =
+    Vector3d(0.6299, 0.5774, 0.5195).normalized();  // x, tilted out of all planes that models have points in
+constexpr std::size_t most_told = 40;               // of one kind in the head of a scene
 
 bool is_letter_or_digit(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -29,7 +30,8 @@ std::string printable(std::string_view text) {
 }
 
 std::string told(const Place& place) {
-    return place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what)) : printable(place.what);
+    return place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
+                          : printable(place.what);
 }
 
 // An entry of a section, broken at commas where it is long; the place it comes from at its end, or above it.
@@ -101,19 +103,22 @@ std::string computed(double x, double scale) {
 }
 
 std::string triple(const Vector3d& v, double scale) {
-    return fmt::format("[{}, {}, {}]", computed(v.x(), scale), computed(v.y(), scale), computed(v.z(), scale));
+    return fmt::format("[{}, {}, {}]", computed(v.x(), scale), computed(v.y(), scale),
+                       computed(v.z(), scale));
 }
 
 std::string direction(const Vector3d& u) {
     for (int k = 0; k < 3; ++k)
         for (const double sign : {1.0, -1.0})
-            if ((u - sign * Vector3d::Unit(k)).norm() <= 1e-12) return fmt::format("{}{}", sign < 0 ? "-" : "", "xyz"[k]);
+            if ((u - sign * Vector3d::Unit(k)).norm() <= 1e-12)
+                return fmt::format("{}{}", sign < 0 ? "-" : "", "xyz"[k]);
     return triple(u);
 }
 
 std::string table(const std::vector<std::pair<double, double>>& rows) {
     std::string text;
-    for (const auto& [x, f] : rows) text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number(x), number(f));
+    for (const auto& [x, f] : rows)
+        text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number(x), number(f));
     return "[" + text + "]";
 }
 
@@ -138,7 +143,8 @@ std::string Names::take(std::string_view wanted) {
 
 std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
     const double near = same_place * size_, key = position.dot(askew);
-    for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near; ++found)
+    for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near;
+         ++found)
         if ((positions_[found->second] - position).norm() <= near) return entries_[found->second].name;
     by_x_.emplace(key, positions_.size());
     positions_.push_back(position);
@@ -159,10 +165,12 @@ std::vector<std::string> told(const Notes& notes) {
         if (what.size() > most_told) list += fmt::format("; and {} more", what.size() - most_told);
         lines.push_back(fmt::format("Left out, {}: {}.", why, list));
     }
-    for (const auto& [place, what] : notes.warnings) lines.push_back(fmt::format("Warning: {}: {}.", told(place), what));
+    for (const auto& [place, what] : notes.warnings)
+        lines.push_back(fmt::format("Warning: {}: {}.", told(place), what));
     for (const auto& [place, what] : notes.missing)
         lines.push_back(fmt::format("MISSING: {}: {}.", told(place), printable(what)));
-    if (!notes.missing.empty()) lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
+    if (!notes.missing.empty())
+        lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
     return lines;
 }
 
@@ -180,8 +188,7 @@ Text write(const Draft& draft) {
     put("name: " + in_quotes(draft.title));
     put("units: " + draft.units);
     if (draft.mirror) put("mirror: " + *draft.mirror);
-    if (draft.gravity)
-        put("gravity: " + triple(*draft.gravity));
+    if (draft.gravity) put("gravity: " + triple(*draft.gravity));
     write_section("points", draft.points.entries(), text);
     write_section("bodies", draft.bodies, text);
     write_section("joints", draft.joints, text);
@@ -195,7 +202,8 @@ Text write(const Draft& draft) {
     if (draft.wheels.size() == 1 && draft.wheels[0].name == "wheel") {  // the short form for one
         const Entry& wheel = draft.wheels[0];
         put("");
-        put(fmt::format("wheel: {}{}", wheel.fields, wheel.from.what.empty() ? "" : "  # " + told(wheel.from)));
+        put(fmt::format("wheel: {}{}", wheel.fields,
+                        wheel.from.what.empty() ? "" : "  # " + told(wheel.from)));
     } else {
         write_section("wheels", draft.wheels, text);
     }

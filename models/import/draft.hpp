@@ -22,8 +22,9 @@ struct Place {
 
 // ---- Numbers and fields as they stand in a scene.
 
-std::string number(double x);   // the shortest text that reads back as x
-std::string computed(double x, double scale = 1);  // twelve digits, and nothing below 1e-12 of scale: x was calculated
+std::string number(double x);  // the shortest text that reads back as x
+std::string computed(double x,
+                     double scale = 1);  // twelve digits, and nothing below 1e-12 of scale: x was calculated
 std::string triple(const Eigen::Vector3d& v, double scale = 1);  // "[1, 2, 3]", computed
 std::string direction(const Eigen::Vector3d& u);                 // "x", "-y", "[0.6, 0, 0.8]"
 std::string table(const std::vector<std::pair<double, double>>& rows);
@@ -73,7 +74,7 @@ class Hardpoints {
 // ---- What is told in the head of the scene, and by the command.
 
 struct Notes {
-    std::map<std::string, int> understood;  // "JOINT" -> 12
+    std::map<std::string, int> understood;               // "JOINT" -> 12
     std::map<std::string, std::vector<Place>> left_out;  // why -> what: it has no static meaning
     std::vector<std::pair<Place, std::string>> warnings;
     std::vector<std::pair<Place, std::string>> missing;  // it has a static meaning, and the scene has it not
@@ -85,16 +86,16 @@ struct Notes {
 };
 
 struct Draft {
-    std::string title;   // of the scene
-    std::string source;  // the file, as the user named it
-    std::string format;  // "ADAMS dataset"
-    std::vector<std::string> remarks;  // on the head: units, axes
-    std::string units;   // "{length: mm, angle: rad, force: N}"
+    std::string title;                  // of the scene
+    std::string source;                 // the file, as the user named it
+    std::string format;                 // "ADAMS dataset"
+    std::vector<std::string> remarks;   // on the head: units, axes
+    std::string units;                  // "{length: mm, angle: rad, force: N}"
     std::optional<std::string> mirror;  // "left -> right"
     Hardpoints points{1};
     std::optional<Eigen::Vector3d> gravity;  // [m/s²]
-    std::vector<Entry> bodies, joints, bushings, springs, stops, torsion_springs, static_loads, loads, branches, wheels,
-        probes, dampers;
+    std::vector<Entry> bodies, joints, bushings, springs, stops, torsion_springs, static_loads, loads,
+        branches, wheels, probes, dampers;
     Notes notes;
 };
 

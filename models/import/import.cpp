@@ -16,19 +16,23 @@ constexpr std::size_t largest_file = 16 << 20;  // [bytes]
 constexpr std::size_t most_errors = 20;
 constexpr std::string_view name_of_text = "scene";
 
-std::string where(const Place& place) { return place.line > 0 ? fmt::format(":{}", place.line) : std::string(); }
+std::string where(const Place& place) {
+    return place.line > 0 ? fmt::format(":{}", place.line) : std::string();
+}
 
 // All that is missing, a line each, as one error.
 [[noreturn]] void refuse(const std::string& file, const Notes& notes) {
     std::string message;
     for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
         const auto& [place, what] = notes.missing[k];
-        message += fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place), reader::shown(place.what), what);
+        message +=
+            fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place), reader::shown(place.what), what);
     }
     if (notes.missing.size() > most_errors)
         message += fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
-    message += fmt::format("\n{} a scene cannot represent; --allow-missing imports the rest, and says so in its head",
-                           notes.missing.size() == 1 ? "This" : fmt::format("These {}", notes.missing.size()));
+    message += fmt::format(
+        "\n{} a scene cannot represent; --allow-missing imports the rest, and says so in its head",
+        notes.missing.size() == 1 ? "This" : fmt::format("These {}", notes.missing.size()));
     throw SceneError(message);
 }
 
@@ -38,9 +42,11 @@ std::string where(const Place& place) { return place.line > 0 ? fmt::format(":{}
     if (message.starts_with(name_of_text)) {
         message.remove_prefix(name_of_text.size() + 1);
         const auto [end, error] = std::from_chars(message.data(), message.data() + message.size(), line);
-        if (error == std::errc{}) message.remove_prefix(std::min<std::size_t>(end - message.data() + 2, message.size()));
+        if (error == std::errc{})
+            message.remove_prefix(std::min<std::size_t>(end - message.data() + 2, message.size()));
     }
-    const Place from = line > 0 && line <= static_cast<int>(text.line_of.size()) ? text.line_of[line - 1] : Place{};
+    const Place from =
+        line > 0 && line <= static_cast<int>(text.line_of.size()) ? text.line_of[line - 1] : Place{};
     throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
                                  from.what.empty() ? "" : reader::shown(from.what) + ": ",
                                  fmt::format("the scene made of it is refused: {}", message)));
@@ -58,10 +64,12 @@ std::string extension(const std::string& file) {
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
     const std::string ending = extension(file);
     if (ending != ".adm" && ending != ".json" && ending != ".sub")
-        reader::fail(file, 0, "",
-                     fmt::format("{} is no ending that is known here; allowed: .adm (ADAMS datasets), .json (Chrono::Vehicle "
-                                 "suspensions), .sub (hardpoints of Adams/Car)",
-                                 reader::quote(ending)));
+        reader::fail(
+            file, 0, "",
+            fmt::format(
+                "{} is no ending that is known here; allowed: .adm (ADAMS datasets), .json (Chrono::Vehicle "
+                "suspensions), .sub (hardpoints of Adams/Car)",
+                reader::quote(ending)));
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                                             : import_subsystem(text, file, options);
@@ -91,7 +99,8 @@ Imported import_file(const std::filesystem::path& file, const Options& options) 
     const std::string name = file.string();
     const reader::TextFile read = reader::read_text(file, largest_file);
     if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
-    if (read.text.size() > largest_file) reader::fail(name, 0, "", "larger than 16 MiB, which no model of a suspension is");
+    if (read.text.size() > largest_file)
+        reader::fail(name, 0, "", "larger than 16 MiB, which no model of a suspension is");
     return import_text(read.text, name, options);
 }
 

@@ -12,9 +12,10 @@
 namespace elastocheck::importer {
 
 struct Options {
-    std::string wheel;            // the body that is the wheel carrier, or a marker on it; empty: what the format says
-    bool drop_dynamics = false;   // what acts against motion alone is left out whole: dampers, friction, masses without gravity
-    bool allow_missing = false;   // what cannot be represented is a warning instead of an error
+    std::string wheel;  // the body that is the wheel carrier, or a marker on it; empty: what the format says
+    bool drop_dynamics =
+        false;  // what acts against motion alone is left out whole: dampers, friction, masses without gravity
+    bool allow_missing = false;  // what cannot be represented is a warning instead of an error
 };
 
 struct Imported {

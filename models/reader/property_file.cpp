@@ -63,19 +63,27 @@ struct Named {
     double si;
 };
 constexpr double inch = 0.0254, pound = 0.45359237 * 9.80665;
-constexpr Named lengths[] = {{"MM", 1e-3},   {"MILLIMETER", 1e-3}, {"METER", 1},        {"METERS", 1}, {"M", 1},
-                             {"CM", 1e-2},   {"CENTIMETER", 1e-2}, {"INCH", inch},      {"IN", inch},  {"FOOT", 12 * inch},
-                             {"MILLIMETERS", 1e-3}, {"KM", 1e3},   {"KILOMETER", 1e3}};
+constexpr Named lengths[] = {{"MM", 1e-3},      {"MILLIMETER", 1e-3}, {"METER", 1},          {"METERS", 1},
+                             {"M", 1},          {"CM", 1e-2},         {"CENTIMETER", 1e-2},  {"INCH", inch},
+                             {"IN", inch},      {"FOOT", 12 * inch},  {"MILLIMETERS", 1e-3}, {"KM", 1e3},
+                             {"KILOMETER", 1e3}};
 constexpr Named angles[] = {{"DEGREES", std::numbers::pi / 180},
                             {"DEGREE", std::numbers::pi / 180},
                             {"DEG", std::numbers::pi / 180},
                             {"RADIANS", 1},
                             {"RADIAN", 1},
                             {"RAD", 1}};
-constexpr Named forces[] = {{"NEWTON", 1},      {"NEWTONS", 1},  {"N", 1},
-                            {"KNEWTON", 1e3},   {"KN", 1e3},     {"POUND_FORCE", pound},
-                            {"LBF", pound},     {"KPOUND_FORCE", 1e3 * pound}, {"KILOGRAM_FORCE", 9.80665},
-                            {"KGF", 9.80665},   {"DYNE", 1e-5}};
+constexpr Named forces[] = {{"NEWTON", 1},
+                            {"NEWTONS", 1},
+                            {"N", 1},
+                            {"KNEWTON", 1e3},
+                            {"KN", 1e3},
+                            {"POUND_FORCE", pound},
+                            {"LBF", pound},
+                            {"KPOUND_FORCE", 1e3 * pound},
+                            {"KILOGRAM_FORCE", 9.80665},
+                            {"KGF", 9.80665},
+                            {"DYNE", 1e-5}};
 
 template <std::size_t n>
 double unit(const PropertyFile& file, const PropertyBlock& block, std::size_t k, const Named (&table)[n]) {
@@ -86,7 +94,8 @@ double unit(const PropertyFile& file, const PropertyBlock& block, std::size_t k,
         names.emplace_back(entry.name);
     }
     fail(file.file, block.lines[k], "UNITS." + block.values[k].first,
-         fmt::format("{} is no unit that is known here{}", quote(block.values[k].second), did_you_mean(word, names, "known")));
+         fmt::format("{} is no unit that is known here{}", quote(block.values[k].second),
+                     did_you_mean(word, names, "known")));
 }
 
 void read_units(PropertyFile& file) {
@@ -106,7 +115,8 @@ void read_units(PropertyFile& file) {
 }  // namespace
 
 const PropertyBlock* PropertyFile::find(std::string_view block) const {
-    const auto found = std::ranges::find_if(blocks, [&](const PropertyBlock& b) { return b.name == block && b.subblock.empty(); });
+    const auto found = std::ranges::find_if(
+        blocks, [&](const PropertyBlock& b) { return b.name == block && b.subblock.empty(); });
     return found == blocks.end() ? nullptr : &*found;
 }
 
@@ -156,11 +166,13 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         const std::size_t equals = line.find('='), quoted = line.find('\'');
         if (equals != line.npos && equals < quoted) {
             const auto given = words(line.substr(equals + 1));
-            block.values.emplace_back(capitals(trimmed(line.substr(0, equals))), given.empty() ? "" : given.front());
+            block.values.emplace_back(capitals(trimmed(line.substr(0, equals))),
+                                      given.empty() ? "" : given.front());
             block.lines.push_back(line_number);
             continue;
         }
-        if (block.table.columns.empty()) wrong(fmt::format("expected NAME = value, or columns {{...}}, found {}", quote(line)));
+        if (block.table.columns.empty())
+            wrong(fmt::format("expected NAME = value, or columns {{...}}, found {}", quote(line)));
         auto row = words(line);
         if (row.size() != block.table.columns.size())
             wrong(fmt::format("{} values in a table of {} columns", row.size(), block.table.columns.size()));
@@ -173,9 +185,11 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
     return file;
 }
 
-std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block, double x_unit, double f_unit) {
+std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block, double x_unit,
+                                   double f_unit) {
     if (block.table.columns.size() != 2)
-        fail(file.file, block.line, block.name, fmt::format("{} columns; a curve has two", block.table.columns.size()));
+        fail(file.file, block.line, block.name,
+             fmt::format("{} columns; a curve has two", block.table.columns.size()));
     std::vector<TablePoint> points;
     for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
         double value[2] = {0, 0};
@@ -184,16 +198,19 @@ std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock
             if (text.starts_with('+')) text.remove_prefix(1);
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value[k]);
             if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value[k]))
-                fail(file.file, block.table.lines[n], block.name, fmt::format("{} is no number", quote(text)));
+                fail(file.file, block.table.lines[n], block.name,
+                     fmt::format("{} is no number", quote(text)));
         }
         if (n > 0 && !(value[0] * x_unit > points.back().x))
-            fail(file.file, block.table.lines[n], block.name, fmt::format("{} is not above the one before", value[0]));
+            fail(file.file, block.table.lines[n], block.name,
+                 fmt::format("{} is not above the one before", value[0]));
         if (n > 0 && value[1] * f_unit < points.back().f)
             fail(file.file, block.table.lines[n], block.name,
                  fmt::format("force {} is below the one before; it may stay, but not fall", value[1]));
         points.push_back({value[0] * x_unit, value[1] * f_unit});
     }
-    if (points.size() < 2) fail(file.file, block.line, block.name, "fewer than two rows; a curve has two or more");
+    if (points.size() < 2)
+        fail(file.file, block.line, block.name, "fewer than two rows; a curve has two or more");
     if (points.size() > 10'000) fail(file.file, block.line, block.name, "more than 10000 rows");
     return points;
 }

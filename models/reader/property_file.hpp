@@ -44,6 +44,7 @@ struct PropertyFile {
 PropertyFile parse_property_file(std::string_view text, const std::string& file);
 
 // The rows of a table of numbers, two columns, as a law is made of them: rising, the second not falling.
-std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block, double x_unit, double f_unit);
+std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block, double x_unit,
+                                   double f_unit);
 
 }  // namespace elastocheck::reader

@@ -23,7 +23,9 @@ constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
 
 importer::Options options(const ImportRequest& request) {
-    return {.wheel = request.wheel, .drop_dynamics = !request.drop.empty(), .allow_missing = request.allow_missing};
+    return {.wheel = request.wheel,
+            .drop_dynamics = !request.drop.empty(),
+            .allow_missing = request.allow_missing};
 }
 
 std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
@@ -38,18 +40,24 @@ int print_table(const ImportRequest& request) {
         std::string outcome;
         try {
             const importer::Imported result = importer::import_file(file, options(request));
-            outcome = result.notes.missing.empty() ? "imported" : fmt::format("imported, {} missing", result.notes.missing.size());
+            outcome = result.notes.missing.empty()
+                          ? "imported"
+                          : fmt::format("imported, {} missing", result.notes.missing.size());
             if (!result.notes.warnings.empty())
-                outcome += fmt::format(", {} warning{}", result.notes.warnings.size(), result.notes.warnings.size() == 1 ? "" : "s");
+                outcome += fmt::format(", {} warning{}", result.notes.warnings.size(),
+                                       result.notes.warnings.size() == 1 ? "" : "s");
             row.update({{"bodies", result.bodies}, {"joints", result.joints}, {"elements", result.elements}});
         } catch (const SceneError& error) {
             outcome = first_line(error.what());
             if (outcome.starts_with(file)) outcome = "refused: " + name + outcome.substr(file.size());
         }
         row["outcome"] = outcome;
-        const auto count = [&](const char* key) { return row.contains(key) ? std::to_string(row[key].get<int>()) : "-"; };
+        const auto count = [&](const char* key) {
+            return row.contains(key) ? std::to_string(row[key].get<int>()) : "-";
+        };
         if (!request.as_json)
-            print("| {} | {} | {} | {} | {} |\n", name, count("bodies"), count("joints"), count("elements"), outcome);
+            print("| {} | {} | {} | {} | {} |\n", name, count("bodies"), count("joints"), count("elements"),
+                  outcome);
         rows.push_back(row);
     }
     if (request.as_json) print_document({{"schema", import_schema}, {"files", rows}});
@@ -60,11 +68,18 @@ int print_table(const ImportRequest& request) {
 
 CLI::App* add_import_command(CLI::App& app, ImportRequest& request) {
     auto* command = app.add_subcommand(
-        "import", "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints .sub");
-    command->add_option("FILE", request.files, "the model (.adm, .json, .sub)")->required()->check(a_file("*"));
-    command->add_option("-o,--output", request.output, "write the scene to this file instead")->check(a_file("*.yaml"));
-    command->add_option("--wheel", request.wheel, "the part that carries the wheel, or a marker at its centre: name or id (.adm)");
-    command->add_option("--drop", request.drop, "dynamics: leave out whole what acts against motion alone, friction too")
+        "import",
+        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints .sub");
+    command->add_option("FILE", request.files, "the model (.adm, .json, .sub)")
+        ->required()
+        ->check(a_file("*"));
+    command->add_option("-o,--output", request.output, "write the scene to this file instead")
+        ->check(a_file("*.yaml"));
+    command->add_option("--wheel", request.wheel,
+                        "the part that carries the wheel, or a marker at its centre: name or id (.adm)");
+    command
+        ->add_option("--drop", request.drop,
+                     "dynamics: leave out whole what acts against motion alone, friction too")
         ->check(one_of({"dynamics"}));
     command->add_flag("--allow-missing", request.allow_missing,
                       "warn of what a scene cannot represent, instead of refusing the file");
@@ -75,7 +90,8 @@ CLI::App* add_import_command(CLI::App& app, ImportRequest& request) {
 
 int import(const ImportRequest& request) {
     if (request.table) return print_table(request);
-    if (request.files.size() > 1) throw std::invalid_argument("import: one FILE at a time makes a scene; several with --table");
+    if (request.files.size() > 1)
+        throw std::invalid_argument("import: one FILE at a time makes a scene; several with --table");
     const importer::Imported result = importer::import_file(request.files.front(), options(request));
     if (!request.output.empty()) write_whole(request.output, result.yaml, scene_file);
     const auto lines = importer::told(result.notes);
@@ -94,19 +110,24 @@ int import(const ImportRequest& request) {
     if (request.output.empty()) {
         print("{}", result.yaml);
         for (const auto& line : lines)
-            if (line.starts_with("Warning") || line.starts_with("MISSING")) complain("elastocheck: {}\n", line);
+            if (line.starts_with("Warning") || line.starts_with("MISSING"))
+                complain("elastocheck: {}\n", line);
         return fine;
     }
     for (const auto& line : lines) print("{}\n", line);
-    print("{}: {} bodies, {} joints, {} elements\n", request.output, result.bodies, result.joints, result.elements);
+    print("{}: {} bodies, {} joints, {} elements\n", request.output, result.bodies, result.joints,
+          result.elements);
     return fine;
 }
 
 CLI::App* add_export_command(CLI::App& app, ExportRequest& request) {
-    auto* command = app.add_subcommand("export", "Write a scene as another program's model, trimmed: ADAMS .adm");
+    auto* command =
+        app.add_subcommand("export", "Write a scene as another program's model, trimmed: ADAMS .adm");
     command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    command->add_option("--format", request.format, "adm (default): an ADAMS dataset")->check(one_of({"adm"}));
-    command->add_option("-o,--output", request.output, "write it to this file instead")->check(a_file("*.adm"));
+    command->add_option("--format", request.format, "adm (default): an ADAMS dataset")
+        ->check(one_of({"adm"}));
+    command->add_option("-o,--output", request.output, "write it to this file instead")
+        ->check(a_file("*.adm"));
     command->add_flag("--allow-missing", request.allow_missing,
                       "warn of what the other program has no element for, instead of refusing the scene");
     add_settings(*command, request.settings);

@@ -12,7 +12,8 @@ namespace {
 
 // With what a scene cannot represent, and without; with a wheel that is hardly ever there.
 void import(std::string_view input, const std::string& file) {
-    for (const auto& options : {importer::Options{}, importer::Options{"", true, true}, importer::Options{"wheel", false, true}}) {
+    for (const auto& options :
+         {importer::Options{}, importer::Options{"", true, true}, importer::Options{"wheel", false, true}}) {
         try {
             const importer::Imported result = importer::import_text(input, file, options);
             if (result.yaml.empty()) throw std::logic_error("nothing was written");

@@ -26,13 +26,15 @@ const Marker& Conversion::marker(const Arguments& at, std::string_view name) con
 std::string Conversion::name(Names& names, const Statement& statement) const {
     if (!statement.name.empty()) return names.take(statement.name);
     std::string word = statement.keyword;
-    for (char& letter : word) letter = static_cast<char>(letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter);
+    for (char& letter : word)
+        letter = static_cast<char>(letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter);
     return names.take(fmt::format("{}_{}", word, statement.id));
 }
 
 std::string Conversion::point(const Marker& marker) {
     const Statement& s = *marker.statement;
-    return draft.points.at(marker.pose.r, s.name.empty() ? fmt::format("marker_{}", s.id) : s.name, s.place());
+    return draft.points.at(marker.pose.r, s.name.empty() ? fmt::format("marker_{}", s.id) : s.name,
+                           s.place());
 }
 
 Value Conversion::function(const std::string& text, double time) {
@@ -69,15 +71,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::string_view converted[] = {"JOINT",  "JPRIM", "GCON", "COUPLER", "MOTION", "BUSHING", "FIELD",
-                                          "BEAM",   "SPRINGDAMPER", "SFORCE", "VFORCE", "VTORQUE", "GFORCE",
-                                          "PART",   "POINT_MASS", "MARKER", "UNITS", "ACCGRAV", "SPLINE"};
+constexpr std::string_view converted[] = {"JOINT",   "JPRIM",   "GCON",    "COUPLER",      "MOTION",
+                                          "BUSHING", "FIELD",   "BEAM",    "SPRINGDAMPER", "SFORCE",
+                                          "VFORCE",  "VTORQUE", "GFORCE",  "PART",         "POINT_MASS",
+                                          "MARKER",  "UNITS",   "ACCGRAV", "SPLINE"};
 // Pictures, results, settings of a solver, and what only a force or a motion that uses it gives a meaning.
-constexpr std::string_view told_nothing[] = {"GRAPHICS", "REQUEST", "OUTPUT", "RESULTS", "PREFERENCES", "INTEGRATOR",
-                                             "EQUILIBRIUM", "KINEMATICS", "DEBUG", "STRING", "MATERIAL", "ADAMS", "IC",
-                                             "LSSOLVER", "LIST", "INFO", "SOLVER", "LINEAR", "EXECUTION"};
-constexpr std::string_view used_or_not[] = {"VARIABLE", "ARRAY", "DIFF", "LSE", "GSE", "TFSISO", "MATRIX", "CURVE", "SURFACE",
-                                            "SENSOR", "PINPUT", "POUTPUT", "CONTROL", "COSIM", "SECTION", "FE_NODE"};
+constexpr std::string_view told_nothing[] = {
+    "GRAPHICS",   "REQUEST", "OUTPUT", "RESULTS",  "PREFERENCES", "INTEGRATOR", "EQUILIBRIUM",
+    "KINEMATICS", "DEBUG",   "STRING", "MATERIAL", "ADAMS",       "IC",         "LSSOLVER",
+    "LIST",       "INFO",    "SOLVER", "LINEAR",   "EXECUTION"};
+constexpr std::string_view used_or_not[] = {"VARIABLE", "ARRAY", "DIFF",    "LSE",    "GSE",    "TFSISO",
+                                            "MATRIX",   "CURVE", "SURFACE", "SENSOR", "PINPUT", "POUTPUT",
+                                            "CONTROL",  "COSIM", "SECTION", "FE_NODE"};
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> no_place{{
     {"CONTACT", "a contact between parts"},
     {"PTCV", "a point on a curve"},
@@ -111,8 +116,10 @@ void sort_out(Conversion& c) {
         if (is_in(told_nothing, word)) {
             notes.left_out.try_emplace("saying nothing of the mechanism");
             auto& list = notes.left_out["saying nothing of the mechanism"];
-            const auto same = std::ranges::find_if(list, [&](const Place& p) { return p.what.starts_with(word + " "); });
-            if (same == list.end()) list.push_back({0, word + " (lines " + std::to_string(s.line) + ")"});
+            const auto same =
+                std::ranges::find_if(list, [&](const Place& p) { return p.what.starts_with(word + " "); });
+            if (same == list.end())
+                list.push_back({0, word + " (lines " + std::to_string(s.line) + ")"});
             else if (same->what.size() < 60)
                 same->what.insert(same->what.size() - 1, ", " + std::to_string(s.line));
             else if (!same->what.ends_with("...)"))
@@ -127,12 +134,15 @@ void sort_out(Conversion& c) {
             if (c.options.drop_dynamics)
                 notes.leave_out("by --drop dynamics", s.place());
             else
-                notes.miss(s.place(), "friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+                notes.miss(s.place(),
+                           "friction holds, too, and a scene has none (--drop dynamics leaves it out)");
             continue;
         }
-        const auto found = std::ranges::find(no_place, word, &std::pair<std::string_view, std::string_view>::first);
-        notes.miss(s.place(), found == no_place.end() ? "it has no place in a scene"
-                                                      : fmt::format("{}, which has no place in a scene", found->second));
+        const auto found =
+            std::ranges::find(no_place, word, &std::pair<std::string_view, std::string_view>::first);
+        notes.miss(s.place(), found == no_place.end()
+                                  ? "it has no place in a scene"
+                                  : fmt::format("{}, which has no place in a scene", found->second));
     }
 }
 
@@ -239,7 +249,9 @@ void write_wheel(Conversion& c) {
         if (candidate.is_ground) continue;
         known.push_back(c.body(id));
         if (c.body(id) == wanted || is_called(*candidate.statement, wanted)) {
-            if (part) reader::fail(c.data.file, 0, "--wheel", fmt::format("{} are several parts", reader::quote(wanted)));
+            if (part)
+                reader::fail(c.data.file, 0, "--wheel",
+                             fmt::format("{} are several parts", reader::quote(wanted)));
             part = &candidate;
         }
     }
@@ -247,8 +259,9 @@ void write_wheel(Conversion& c) {
         for (const auto& [id, candidate] : c.geometry.markers)
             if (!candidate.floats && is_called(*candidate.statement, wanted)) {
                 if (marker)
-                    reader::fail(c.data.file, 0, "--wheel",
-                                 fmt::format("{} are several markers; name one by its id", reader::quote(wanted)));
+                    reader::fail(
+                        c.data.file, 0, "--wheel",
+                        fmt::format("{} are several markers; name one by its id", reader::quote(wanted)));
                 marker = &candidate;
             }
     if (!part && !marker)
@@ -260,29 +273,34 @@ void write_wheel(Conversion& c) {
         if (&candidate == part) body = id;
     if (marker) body = marker->part;
     if (!c.geometry.parts.contains(body) || c.is_ground(body) || !c.held.contains(body))
-        reader::fail(c.data.file, 0, "--wheel", fmt::format("{} is not on a part that moves", reader::quote(wanted)));
+        reader::fail(c.data.file, 0, "--wheel",
+                     fmt::format("{} is not on a part that moves", reader::quote(wanted)));
     const Statement& s = marker ? *marker->statement : *part->statement;
     const std::string centre = marker ? c.point(*marker) : origin(c, body, *part);
-    const Vector3d position = marker ? marker->pose.r
-                              : part->cm ? c.geometry.markers.at(part->cm).pose.r : part->pose.r;
+    const Vector3d position = marker     ? marker->pose.r
+                              : part->cm ? c.geometry.markers.at(part->cm).pose.r
+                                         : part->pose.r;
     Vector3d axis = Vector3d::UnitY();
     if (marker)
         for (int k = 0; k < 3; ++k)
-            if (const Vector3d u = marker->pose.A.col(k); std::abs(u.y()) > 0.9) axis = u.y() > 0 ? u : Vector3d(-u);
+            if (const Vector3d u = marker->pose.A.col(k); std::abs(u.y()) > 0.9)
+                axis = u.y() > 0 ? u : Vector3d(-u);
     const bool left = position.y() >= 0;
     if (!left) axis = -axis;
     c.draft.wheels.push_back({"wheel",
-                              "{" + Fields{}
-                                        .add("body", c.body(body))
-                                        .add("centre", centre)
-                                        .add("spin_axis", direction(axis))
-                                        .add("side", left ? "left" : "right")
-                                        .text() +
+                              "{" +
+                                  Fields{}
+                                      .add("body", c.body(body))
+                                      .add("centre", centre)
+                                      .add("spin_axis", direction(axis))
+                                      .add("side", left ? "left" : "right")
+                                      .text() +
                                   "}",
                               s.place()});
     c.draft.remarks.emplace_back("The file's axes are read as ISO 8855: x forward, y left, z up.");
     const double stroke = 0.06 / c.geometry.units.metre * c.geometry.units.length;
-    const std::string range = fmt::format(", from: {}, to: {}, steps: 120", computed(-stroke), computed(stroke));
+    const std::string range =
+        fmt::format(", from: {}, to: {}, steps: 120", computed(-stroke), computed(stroke));
     c.draft.branches.push_back({"travel", "{drive: travel" + range, {}});
 }
 
@@ -291,8 +309,10 @@ void write_probes(Conversion& c) {
     for (const Entry& body : c.draft.bodies) {
         const std::string_view fields = body.fields;
         const auto begin = std::string_view("{origin: ").size();
-        c.draft.probes.push_back(
-            {body.name, fmt::format("{{on: {}, at: {}}}", body.name, fields.substr(begin, fields.find_first_of(",}") - begin)), {}});
+        c.draft.probes.push_back({body.name,
+                                  fmt::format("{{on: {}, at: {}}}", body.name,
+                                              fields.substr(begin, fields.find_first_of(",}") - begin)),
+                                  {}});
     }
 }
 
@@ -304,18 +324,22 @@ void write_drives(Conversion& c) {
             if (drive.start != 0 && drive.end == 0) continue;
             const double change = drive.end - (std::abs(drive.start) > 0 ? 0 : drive.start);
             if (first == 0) first = change;
-            rates += fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive.quantity, computed(change / first));
+            rates +=
+                fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive.quantity, computed(change / first));
         } else if (drive.start != 0) {
-            holds += fmt::format("{}{}: {}", holds.empty() ? "" : ", ", drive.quantity, computed(drive.start));
+            holds +=
+                fmt::format("{}{}: {}", holds.empty() ? "" : ", ", drive.quantity, computed(drive.start));
         }
     }
     if (!rates.empty())
-        c.draft.branches.push_back({"motion", fmt::format("{{drive: {{{}}}, to: {}, steps: 100", rates, computed(first)), {}});
+        c.draft.branches.push_back(
+            {"motion", fmt::format("{{drive: {{{}}}, to: {}, steps: 100", rates, computed(first)), {}});
     for (const Drive& drive : c.drives)
         if (drive.start != 0)
-            c.draft.notes.warn({0, drive.quantity},
-                               fmt::format("the file's motion starts {:.4g} from where the parts are drawn{}", drive.start,
-                                           drive.moves() ? "; the branch begins as drawn" : "; the branches hold it there"));
+            c.draft.notes.warn(
+                {0, drive.quantity},
+                fmt::format("the file's motion starts {:.4g} from where the parts are drawn{}", drive.start,
+                            drive.moves() ? "; the branch begins as drawn" : "; the branches hold it there"));
     if (c.draft.branches.empty()) {
         if (c.draft.gravity) {
             double mass = 0;
@@ -325,29 +349,37 @@ void write_drives(Conversion& c) {
             for (const auto& [id, part] : c.geometry.parts) {
                 if (part.is_ground || !c.held.contains(id) || part.mass == 0) continue;
                 const std::string load = c.load_names.take("weight_of_" + c.body(id));
-                c.draft.loads.push_back({load,
-                                         fmt::format("{{on: {}, at: {}, force: {}}}", c.body(id), origin(c, id, part),
-                                                     triple(part.mass / mass * c.draft.gravity->normalized())),
-                                         {}});
+                c.draft.loads.push_back(
+                    {load,
+                     fmt::format("{{on: {}, at: {}, force: {}}}", c.body(id), origin(c, id, part),
+                                 triple(part.mass / mass * c.draft.gravity->normalized())),
+                     {}});
                 names += (names.empty() ? "" : ", ") + load;
             }
-            const double weight = mass * c.draft.gravity->norm() / (c.geometry.units.force_name == "kN" ? 1000 : 1);
+            const double weight =
+                mass * c.draft.gravity->norm() / (c.geometry.units.force_name == "kN" ? 1000 : 1);
             c.draft.branches.push_back(
-                {"more_weight", fmt::format("{{load: [{}], to: {}, steps: 10", names, computed(0.1 * weight)), {}});
+                {"more_weight",
+                 fmt::format("{{load: [{}], to: {}, steps: 10", names, computed(0.1 * weight)),
+                 {}});
             c.draft.remarks.emplace_back(
-                "The file drives nothing: the branch begins at rest under gravity and goes on to a tenth more weight.");
+                "The file drives nothing: the branch begins at rest under gravity and goes on to a tenth "
+                "more weight.");
         } else if (!c.draft.bodies.empty()) {
-            const auto& [name, fields, from] = c.draft.probes.empty() ? c.draft.bodies.front() : c.draft.probes.front();
+            const auto& [name, fields, from] =
+                c.draft.probes.empty() ? c.draft.bodies.front() : c.draft.probes.front();
             const auto at = fields.rfind(": ") + 2;
             c.draft.loads.push_back({"push",
                                      fmt::format("{{on: {}, at: {}, force: [0, 0, 1]}}", name,
                                                  fields.substr(at, fields.size() - 1 - at)),
                                      {}});
             c.draft.branches.push_back({"push", "{load: push, to: 1, steps: 10", {}});
-            c.draft.remarks.emplace_back("The file drives nothing: the branch pushes its first part. Put your own in its place.");
+            c.draft.remarks.emplace_back(
+                "The file drives nothing: the branch pushes its first part. Put your own in its place.");
         }
     }
-    for (Entry& branch : c.draft.branches) branch.fields += holds.empty() ? "}" : fmt::format(", hold: {{{}}}}}", holds);
+    for (Entry& branch : c.draft.branches)
+        branch.fields += holds.empty() ? "}" : fmt::format(", hold: {{{}}}}}", holds);
 }
 
 }  // namespace
@@ -369,7 +401,8 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     draft.source = file;
     draft.format = "ADAMS dataset";
     draft.points = Hardpoints(geometry.size);
-    draft.units = fmt::format("{{length: {}, angle: rad, force: {}}}", geometry.units.length_name, geometry.units.force_name);
+    draft.units = fmt::format("{{length: {}, angle: rad, force: {}}}", geometry.units.length_name,
+                              geometry.units.force_name);
     draft.remarks.push_back(geometry.units.remark);
     Conversion c{data, geometry, options, draft};
     name_bodies(c);

@@ -14,9 +14,9 @@ namespace elastocheck::importer::adm {
 
 // A joint that a MOTION or a COUPLER may speak of.
 struct WrittenJoint {
-    std::string kind;     // ADAMS': "REVOLUTE"
+    std::string kind;       // ADAMS': "REVOLUTE"
     std::size_t entry = 0;  // in Draft::joints
-    int i = 0, j = 0;     // markers
+    int i = 0, j = 0;       // markers
 };
 
 // What moves or is held along an offset of a joint, counted from the design position [length of the scene, rad].
@@ -45,8 +45,8 @@ struct Conversion {
     std::map<int, Table> splines = {};
     std::vector<Drive> drives = {};
     std::map<int, const Statement*> variables = {};
-    double end_time = 0;                     // of the programme that the file's functions of TIME run through
-    int variables_left = 10'000;             // to be put into functions, over the whole file
+    double end_time = 0;          // of the programme that the file's functions of TIME run through
+    int variables_left = 10'000;  // to be put into functions, over the whole file
 
     // ---- Looking up. Throw SceneError where there is none.
     const Marker& marker(const Arguments& at, std::string_view name) const;
@@ -67,7 +67,7 @@ struct Conversion {
 };
 
 void read_splines(Conversion& c);
-void convert_joints(Conversion& c);   // JOINT, JPRIM, GCON, COUPLER, MOTION
-void convert_forces(Conversion& c);   // BUSHING, FIELD, BEAM, SPRINGDAMPER, SFORCE, VFORCE, VTORQUE, GFORCE
+void convert_joints(Conversion& c);  // JOINT, JPRIM, GCON, COUPLER, MOTION
+void convert_forces(Conversion& c);  // BUSHING, FIELD, BEAM, SPRINGDAMPER, SFORCE, VFORCE, VTORQUE, GFORCE
 
 }  // namespace elastocheck::importer::adm

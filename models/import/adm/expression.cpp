@@ -117,8 +117,8 @@ const Function functions[] = {
 };
 
 constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
-constexpr std::string_view at_rest[] = {"VR", "VM", "VX", "VY", "VZ", "WM", "WX", "WY", "WZ", "ACCM", "ACCX", "ACCY",
-                                        "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
+constexpr std::string_view at_rest[] = {"VR",   "VM",   "VX",   "VY",   "VZ",   "WM",   "WX",   "WY",  "WZ",
+                                        "ACCM", "ACCX", "ACCY", "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
 
 class Parser {
   public:
@@ -255,8 +255,10 @@ class Parser {
             for (;;) {
                 arguments.push_back(expression());
                 if (take(')')) break;
-                if (!take(',') && !take(':')) return give_up(fmt::format("{}(: a bracket is left open", name));
-                if (arguments.size() > 64) return give_up(fmt::format("{}(: more arguments than it has", name));
+                if (!take(',') && !take(':'))
+                    return give_up(fmt::format("{}(: a bracket is left open", name));
+                if (arguments.size() > 64)
+                    return give_up(fmt::format("{}(: more arguments than it has", name));
             }
         return apply(name, arguments);
     }
@@ -297,7 +299,8 @@ class Parser {
             return context_.variable(*variable);
         }
         const auto found = std::ranges::find(functions, name, &Function::name);
-        if (found == std::end(functions)) return unknown(fmt::format("{}(...), which is not known here", name));
+        if (found == std::end(functions))
+            return unknown(fmt::format("{}(...), which is not known here", name));
         Numbers numbers;
         Value result;
         for (const Value& value : p) {
@@ -340,7 +343,8 @@ class Parser {
     Value spline(const std::string& name, const std::vector<Value>& p) const {
         if (p.size() < 3 || p.size() > 4) return unknown(name + " of other than three or four arguments");
         if (!p[1].is_constant() || p[1].constant != 0) return unknown(name + " of a second variable");
-        if (p.size() == 4 && !(p[3].is_constant() && p[3].constant == 0)) return unknown("a derivative of " + name);
+        if (p.size() == 4 && !(p[3].is_constant() && p[3].constant == 0))
+            return unknown("a derivative of " + name);
         const auto number = id(p[2]);
         if (!number) return unknown(name + " of what is no spline");
         CurveTerm term;
@@ -365,13 +369,15 @@ class Parser {
         return sum(contact(p[0], p[2], p[4], p[5], 1),
                    scaled(contact(scaled(p[0], -1), scaled(p[3], -1), p[4], p[5], 1), -1));
     }
-    static Value contact(const Value& x, const Value& at, const Value& rate, const Value& exponent, double factor) {
+    static Value contact(const Value& x, const Value& at, const Value& rate, const Value& exponent,
+                         double factor) {
         CurveTerm term;
         term.kind = CurveTerm::Kind::impact;
         term.factor = factor;
         for (const Value* value : {&at, &rate, &exponent})
             if (!value->is_constant())
-                return unknown(value->is_known() ? "IMPACT or BISTOP with parameters that move" : value->unknown);
+                return unknown(value->is_known() ? "IMPACT or BISTOP with parameters that move"
+                                                 : value->unknown);
         if (const std::string why = only_measure(x, term); !why.empty()) return unknown(why);
         term.contact = at.constant;
         term.rate = rate.constant;

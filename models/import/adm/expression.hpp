@@ -29,8 +29,9 @@ struct CurveTerm {
     double factor = 1;  // of the curve
     Measure of;
     double scale = 1, offset = 0;
-    int spline = 0;                         // its id
-    double contact = 0, rate = 0, exponent = 1;  // of an impact: rate · (contact - x)^exponent below contact, else 0
+    int spline = 0;  // its id
+    double contact = 0, rate = 0,
+           exponent = 1;  // of an impact: rate · (contact - x)^exponent below contact, else 0
 };
 
 struct Value {

@@ -31,28 +31,28 @@ constexpr double far = 0.05;     // of the model's size: markers of a bushing th
 const char* const formulation = "{angles: projected, conjugate: false}";
 
 const Shape bushing_shape{{}, {"I", "J", "K", "KT", "C", "CT", "FORCE", "TORQUE"}, {}};
-const Shape field_shape{{},
-                        {"I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FORMULATION"},
-                        {"FUNCTION"}};
+const Shape field_shape{
+    {}, {"I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FORMULATION"}, {"FUNCTION"}};
 const Shape beam_shape{{"LINEAR", "STRING", "NONLINEAR"},
-                       {"I", "J", "LENGTH", "AREA", "IXX", "IYY", "IZZ", "EMODULUS", "GMODULUS", "ASY", "ASZ", "CRATIO",
-                        "CMATRIX", "FORMULATION"},
+                       {"I", "J", "LENGTH", "AREA", "IXX", "IYY", "IZZ", "EMODULUS", "GMODULUS", "ASY", "ASZ",
+                        "CRATIO", "CMATRIX", "FORMULATION"},
                        {}};
 const Shape spring_shape{{"TRANSLATIONAL", "ROTATIONAL"},
                          {"I", "J", "K", "C", "KT", "CT", "LENGTH", "ANGLE", "FORCE", "TORQUE"},
                          {}};
 const Shape sforce_shape{{"TRANSLATIONAL", "ROTATIONAL", "ACTIONONLY"}, {"I", "J", "ROUTINE"}, {"FUNCTION"}};
-const Shape vector_shape{{},
-                         {"I", "JFLOAT", "RM", "ROUTINE"},
-                         {"FX", "FY", "FZ", "TX", "TY", "TZ", "FUNCTION"}};
+const Shape vector_shape{
+    {}, {"I", "JFLOAT", "RM", "ROUTINE"}, {"FX", "FY", "FZ", "TX", "TY", "TZ", "FUNCTION"}};
 
-Vector3d vector(const std::vector<double>& v) { return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]); }
+Vector3d vector(const std::vector<double>& v) {
+    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
+}
 
 // What is understood of one element, in the units of the scene.
 struct SixLaws {
     Matrix6 K = Matrix6::Zero();
-    Vector6 x_0 = Vector6::Zero();      // length, angles
-    Vector6 preload = Vector6::Zero();  // on I at x_0
+    Vector6 x_0 = Vector6::Zero();                                      // length, angles
+    Vector6 preload = Vector6::Zero();                                  // on I at x_0
     std::array<std::vector<std::pair<double, double>>, 6> curves = {};  // restoring, over x; empty: by K
     std::array<bool, 6> goes_on = {true, true, true, true, true, true};
 };
@@ -114,7 +114,8 @@ struct Element {
     }
 };
 
-bool ends_are_there(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J) {
+bool ends_are_there(Conversion& c, const Statement& s, const Arguments& at, const Marker& I,
+                    const Marker& J) {
     for (const Marker* m : {&I, &J})
         if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
     for (const Marker* m : {&I, &J})
@@ -127,7 +128,8 @@ bool ends_are_there(Conversion& c, const Statement& s, const Arguments& at, cons
     return false;
 }
 
-void no_damping(Conversion& c, const Statement& s, const Arguments& at, std::initializer_list<const char*> names) {
+void no_damping(Conversion& c, const Statement& s, const Arguments& at,
+                std::initializer_list<const char*> names) {
     for (const char* name : names)
         if (at.has(name)) {
             c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
@@ -156,8 +158,9 @@ std::string fault(Matrix6& K) {
             const double larger = std::max(std::abs(K(i, k)), std::abs(K(k, i)));
             const double rows = std::sqrt(std::abs(K(i, i) * K(k, k)));
             if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * rows))
-                return fmt::format("its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across", K(i, k), i + 1,
-                                   k + 1, K(k, i));
+                return fmt::format(
+                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across", K(i, k),
+                    i + 1, k + 1, K(k, i));
         }
     K = (0.5 * (K + K.transpose())).eval();
     Vector6 d = K.diagonal();
@@ -175,9 +178,11 @@ std::string fault(Matrix6& K) {
 
 void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written, const Matrix6& K) {
     const double off = (written - K).cwiseAbs().maxCoeff();
-    if (off > 0) c.draft.notes.warn(s.place(), fmt::format("its stiffness is not quite symmetric; here it is the mean with "
-                                                          "its transpose, {:.3g} of its largest entry away",
-                                                          off / K.cwiseAbs().maxCoeff()));
+    if (off > 0)
+        c.draft.notes.warn(s.place(),
+                           fmt::format("its stiffness is not quite symmetric; here it is the mean with "
+                                       "its transpose, {:.3g} of its largest entry away",
+                                       off / K.cwiseAbs().maxCoeff()));
 }
 
 void convert_bushing(Conversion& c, const Statement& s) {
@@ -190,12 +195,14 @@ void convert_bushing(Conversion& c, const Statement& s) {
     K.diagonal().tail<3>() = vector(at.numbers("KT", 3, 3));
     Vector6 F;
     F << vector(at.numbers("FORCE", 3, 3)), vector(at.numbers("TORQUE", 3, 3));
-    if (K.diagonal().minCoeff() < 0) return c.draft.notes.miss(s.place(), "a negative rate, which no element of a scene has");
+    if (K.diagonal().minCoeff() < 0)
+        return c.draft.notes.miss(s.place(), "a negative rate, which no element of a scene has");
     no_damping(c, s, at, {"C", "CT"});
     const double apart = (I.pose.r - J.pose.r).norm();
     if (apart > far * c.geometry.size)
-        c.draft.notes.warn(s.place(), fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
-                                                  units.length_name));
+        c.draft.notes.warn(
+            s.place(), fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
+                                   units.length_name));
     c.draft.notes.count("BUSHING");
     Element{c, s, at, I, J.part, J.pose}.put({.K = in_scene_units(K, units), .preload = forces(F, units)});
 }
@@ -206,7 +213,8 @@ void convert_field(Conversion& c, const Statement& s) {
     if (at.has("FUNCTION")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
     const std::string formulated = at.word("FORMULATION");
     if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
-        return c.draft.notes.miss(s.place(), fmt::format("FORMULATION={}, whose law is not known here", formulated));
+        return c.draft.notes.miss(s.place(),
+                                  fmt::format("FORMULATION={}, whose law is not known here", formulated));
     if (!ends_are_there(c, s, at, I, J)) return;
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
@@ -222,7 +230,8 @@ void convert_field(Conversion& c, const Statement& s) {
         laws.x_0 = Eigen::Map<const Vector6>(length.data());
         laws.x_0.head<3>() *= units.length;
     }
-    if (at.has("FORCE")) laws.preload = forces(Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
+    if (at.has("FORCE"))
+        laws.preload = forces(Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
     no_damping(c, s, at, {"CMATRIX", "CRATIO"});
     c.draft.notes.count("FIELD");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
@@ -233,16 +242,19 @@ void convert_beam(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, beam_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const std::string formulated = at.word("FORMULATION");
-    if (at.has("STRING") || at.has("NONLINEAR") || (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
-        return c.draft.notes.miss(s.place(), "a beam with another formulation than LINEAR, whose law is not known here");
+    if (at.has("STRING") || at.has("NONLINEAR") ||
+        (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
+        return c.draft.notes.miss(s.place(),
+                                  "a beam with another formulation than LINEAR, whose law is not known here");
     if (!ends_are_there(c, s, at, I, J)) return;
     const auto positive = [&](const char* name) {
         const double x = at.number(name, 0);
-        if (!(x > 0)) at.fail(fmt::format("{} is {}; it must be above zero", name, at.has(name) ? "not" : "missing"));
+        if (!(x > 0))
+            at.fail(fmt::format("{} is {}; it must be above zero", name, at.has(name) ? "not" : "missing"));
         return x;
     };
-    const double L = positive("LENGTH"), A = positive("AREA"), Ix = positive("IXX"), Iy = positive("IYY"), Iz = positive("IZZ"),
-                 E = positive("EMODULUS"), G = positive("GMODULUS");
+    const double L = positive("LENGTH"), A = positive("AREA"), Ix = positive("IXX"), Iy = positive("IYY"),
+                 Iz = positive("IZZ"), E = positive("EMODULUS"), G = positive("GMODULUS");
     const double Py = 12 * E * Iz * at.number("ASY", 0) / (G * A * L * L),
                  Pz = 12 * E * Iy * at.number("ASZ", 0) / (G * A * L * L);
     if (!(Py >= 0) || !(Pz >= 0)) at.fail("ASY or ASZ is negative");
@@ -260,8 +272,9 @@ void convert_beam(Conversion& c, const Statement& s) {
     laws.x_0[0] = L * units.length;
     const double apart = (J.pose.A.transpose() * (I.pose.r - J.pose.r) - laws.x_0.head<3>()).norm();
     if (apart > 1e-3 * laws.x_0[0])
-        c.draft.notes.warn(s.place(), fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded", apart,
-                                                  units.length_name));
+        c.draft.notes.warn(s.place(),
+                           fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded", apart,
+                                       units.length_name));
     no_damping(c, s, at, {"CMATRIX", "CRATIO"});
     c.draft.notes.count("BEAM");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
@@ -271,13 +284,13 @@ void convert_beam(Conversion& c, const Statement& s) {
 
 // The laws of one deformation u = scale · x + offset that a Value is made of, as the restoring force f(x) = -value.
 struct OneLaw {
-    double rate = 0;                                // of x
-    double at_zero = 0;                             // f(0)
-    std::vector<std::pair<double, double>> curve;   // in place of both
+    double rate = 0;                               // of x
+    double at_zero = 0;                            // f(0)
+    std::vector<std::pair<double, double>> curve;  // in place of both
     bool goes_on = true;
     struct Stop {
         bool bump = true;
-        double touches = 0;                         // x
+        double touches = 0;                            // x
         std::vector<std::pair<double, double>> curve;  // over the penetration
         double rate = 0;
     };
@@ -287,8 +300,8 @@ struct OneLaw {
 constexpr int rows_of_power = 24;
 
 // All the terms in the one measure; what cannot be is said.
-std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from, double x_to, double unit,
-                    double force, OneLaw& law) {
+std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from, double x_to,
+                    double unit, double force, OneLaw& law) {
     for (const auto& [measure, k] : value.linear) law.rate += -k * force / unit;
     law.at_zero = -value.constant * force;
     bool has_table = false;
@@ -300,20 +313,25 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
             stop.bump = term.scale > 0;
             stop.touches = (term.contact - term.offset) / term.scale * unit;
             // Over the penetration p of x: factor · rate · (|scale| p)^e.
-            const double factor = std::abs(term.factor) * term.rate * std::pow(std::abs(term.scale) / unit, term.exponent) * force;
+            const double factor = std::abs(term.factor) * term.rate *
+                                  std::pow(std::abs(term.scale) / unit, term.exponent) * force;
             if (term.exponent == 1) {
                 stop.rate = factor;
             } else {
-                const double depth = std::max(std::abs(stop.bump ? stop.touches - x_from : x_to - stop.touches), 1e-3 * (x_to - x_from));
+                const double depth =
+                    std::max(std::abs(stop.bump ? stop.touches - x_from : x_to - stop.touches),
+                             1e-3 * (x_to - x_from));
                 for (int n = 0; n <= rows_of_power; ++n) {
                     const double p = depth * n * n / (rows_of_power * rows_of_power);
                     stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
                 }
-                c.draft.notes.warn(s.place(),
-                                   fmt::format("a contact with exponent {:g} is a table of {} rows up to {:.4g}; between them off "
-                                               "by up to {:.2g} of its largest force",
-                                               term.exponent, rows_of_power + 1, depth,
-                                               off_power(stop.curve, factor, term.exponent)));
+                c.draft.notes.warn(
+                    s.place(),
+                    fmt::format(
+                        "a contact with exponent {:g} is a table of {} rows up to {:.4g}; between them off "
+                        "by up to {:.2g} of its largest force",
+                        term.exponent, rows_of_power + 1, depth,
+                        off_power(stop.curve, factor, term.exponent)));
             }
             law.stops.push_back(stop);
             continue;
@@ -321,32 +339,39 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
         if (has_table) return "a sum of two splines";
         has_table = true;
         const auto found = c.splines.find(term.spline);
-        if (found == c.splines.end()) return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
+        if (found == c.splines.end())
+            return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
         const Table& points = found->second;
         law.goes_on = points.goes_on;
         for (std::size_t n = 0; n < points.x.size(); ++n)
-            law.curve.emplace_back((points.x[n] - term.offset) / term.scale * unit, -term.factor * points.y[n] * force);
+            law.curve.emplace_back((points.x[n] - term.offset) / term.scale * unit,
+                                   -term.factor * points.y[n] * force);
         if (term.scale < 0) std::ranges::reverse(law.curve);
-        const double off = term.kind == CurveTerm::Kind::akima ? off_akima(law.curve) : off_natural(law.curve);
+        const double off =
+            term.kind == CurveTerm::Kind::akima ? off_akima(law.curve) : off_natural(law.curve);
         if (off > 1e-6)
-            c.draft.notes.warn(s.place(), fmt::format("between the points of SPLINE/{} the file has {}, a scene the monotone "
-                                                      "interpolant: up to {:.2g} of the largest force apart",
-                                                      term.spline,
-                                                      term.kind == CurveTerm::Kind::akima ? "Akima's curve" : "a cubic spline", off));
+            c.draft.notes.warn(
+                s.place(),
+                fmt::format("between the points of SPLINE/{} the file has {}, a scene the monotone "
+                            "interpolant: up to {:.2g} of the largest force apart",
+                            term.spline,
+                            term.kind == CurveTerm::Kind::akima ? "Akima's curve" : "a cubic spline", off));
     }
     if (has_table)
         for (auto& [x, f] : law.curve) f += law.rate * x + law.at_zero;
     for (std::size_t n = 1; n < law.curve.size(); ++n)
         if (!(law.curve[n].second >= law.curve[n - 1].second))
-            return fmt::format("a force that falls as it is deformed (at {:.6g}), which no element of a scene has",
-                               law.curve[n].first);
+            return fmt::format(
+                "a force that falls as it is deformed (at {:.6g}), which no element of a scene has",
+                law.curve[n].first);
     if (!has_table && law.rate < 0) return "a negative rate, which no element of a scene has";
     return {};
 }
 
 Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
     Fields fields;
-    fields.add("clearance", computed(stop.bump ? drawn - stop.touches : stop.touches - drawn, std::max(1.0, std::abs(drawn))));
+    fields.add("clearance", computed(stop.bump ? drawn - stop.touches : stop.touches - drawn,
+                                     std::max(1.0, std::abs(drawn))));
     if (stop.curve.empty())
         fields.add("rate", stop.rate);
     else
@@ -355,14 +380,16 @@ Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
 }
 
 // A force along the line from I to J, positive apart; `value` is of DM(I, J).
-void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Value& value, bool is_damper) {
+void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Value& value,
+                bool is_damper) {
     const Units& units = c.geometry.units;
     const double drawn = (I.pose.r - J.pose.r).norm();
     const std::string name = c.name(c.element_names, s);
     const auto ends = [&] {
         return Fields{}.add("bodies", c.pair(I.part, J.part)).add("from", c.point(I)).add("to", c.point(J));
     };
-    if (!(drawn > 1e-9 * c.geometry.size)) return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
+    if (!(drawn > 1e-9 * c.geometry.size))
+        return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
     OneLaw law;
     const std::string why = one_law(c, s, value, 0, 2 * drawn, units.length, units.force, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
@@ -370,16 +397,19 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         return c.draft.notes.miss(s.place(), "more than one stop a way");
     const bool is_nothing = law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
     if (is_nothing) {
-        if (!is_damper || c.options.drop_dynamics) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        if (!is_damper || c.options.drop_dynamics)
+            return c.draft.notes.leave_out("exerting nothing at rest", s.place());
         // A damper holds nothing: it is drawn where both its parts are held by something else.
-        c.draft.dampers.push_back({name,
-                                   "{" + Fields{}
-                                             .add("bodies", fmt::format("[{}, {}]", c.body(I.part), c.body(J.part)))
-                                             .add("from", c.point(I))
-                                             .add("to", c.point(J))
-                                             .text() +
-                                       "}",
-                                   s.place()});
+        c.draft.dampers.push_back(
+            {name,
+             "{" +
+                 Fields{}
+                     .add("bodies", fmt::format("[{}, {}]", c.body(I.part), c.body(J.part)))
+                     .add("from", c.point(I))
+                     .add("to", c.point(J))
+                     .text() +
+                 "}",
+             s.place()});
         return;
     }
     Fields fields = ends();
@@ -397,11 +427,14 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         }
     } else if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve",
+                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
     } else if (law.at_zero != 0) {
-        fields.add("curve", "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
+        fields.add("curve",
+                   "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
     } else {
-        for (const auto& stop : law.stops) fields.add(stop.bump ? "bump" : "rebound", "{" + stop_fields(stop, drawn).text() + "}");
+        for (const auto& stop : law.stops)
+            fields.add(stop.bump ? "bump" : "rebound", "{" + stop_fields(stop, drawn).text() + "}");
         c.draft.stops.push_back({name, "{" + fields.text() + "}", s.place()});
         return;
     }
@@ -411,27 +444,32 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
 }
 
 // A torque about z, positive on I; `value` is of AZ(I, J).
-void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J, const Value& value) {
+void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J,
+                 const Value& value) {
     const Units& units = c.geometry.units;
     const Vector3d z = J.pose.A.col(2);
     if (const double off = z.cross(Vector3d(I.pose.A.col(2))).norm(); off > 1e-2)
         at.fail(fmt::format("the axes z of I and J are {:.3g} rad apart; a torque needs one axis", off));
-    const double drawn = std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
+    const double drawn =
+        std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
     OneLaw law;
     const std::string why = one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
-    if (!law.stops.empty()) return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
+    if (!law.stops.empty())
+        return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
     if (law.curve.empty() && law.rate == 0 && law.at_zero == 0)
         return c.draft.notes.leave_out("exerting nothing at rest", s.place());
     Fields fields;
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve",
+                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
     } else {
         fields.add("rate", law.rate);
         const double moment = law.at_zero + law.rate * drawn;
-        if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate))) fields.add("preload_moment", computed(moment));
+        if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate)))
+            fields.add("preload_moment", computed(moment));
     }
     c.draft.torsion_springs.push_back({c.name(c.element_names, s), "{" + fields.text() + "}", s.place()});
 }
@@ -454,24 +492,26 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
     if (damps && k != 0) no_damping(c, s, at, {rotates ? "CT" : "C"});
     if (rotates)
-        put_torsion(c, s, at, I, J, linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
+        put_torsion(c, s, at, I, J,
+                    linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
     else
-        put_spring(c, s, I, J, linear_in(Measure::Kind::DM, k, at.number("LENGTH", 0), at.number("FORCE", 0)), damps);
+        put_spring(c, s, I, J, linear_in(Measure::Kind::DM, k, at.number("LENGTH", 0), at.number("FORCE", 0)),
+                   damps);
 }
 
 // ---- Forces by expressions.
 
 // A force or a torque that is the same wherever the parts are, in the axes of `axes`, which the part turns with, or stand
 // still: on I alone.
-void put_load(Conversion& c, const Statement& s, const Marker& I, const Vector3d& force, const Vector3d& moment, bool follows,
-              const char* suffix = "") {
+void put_load(Conversion& c, const Statement& s, const Marker& I, const Vector3d& force,
+              const Vector3d& moment, bool follows, const char* suffix = "") {
     const std::string name = c.name(c.load_names, s);
     const std::string ending = follows ? ", follows: true}" : "}";
     if (!force.isZero(0))
-        c.draft.static_loads.push_back({name + suffix,
-                                        fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(force),
-                                                    ending),
-                                        s.place()});
+        c.draft.static_loads.push_back(
+            {name + suffix,
+             fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(force), ending),
+             s.place()});
     if (!moment.isZero(0))
         c.draft.static_loads.push_back(
             {c.load_names.take(name + suffix + ".moment"),
@@ -486,8 +526,9 @@ std::string settled(Conversion& c, const Statement& s, const std::string& text, 
     const Value last = c.function(text, c.end_time);
     if (last.is_known() && last.constant == value.constant && last.linear == value.linear) return {};
     if (!last.is_constant() || !value.is_constant()) return "a force of displacements that changes with time";
-    c.draft.notes.warn(s.place(), fmt::format("a load that goes from {:g} to {:g} over {:g} of time; held here at its end", value.constant,
-                                              last.constant, c.end_time));
+    c.draft.notes.warn(
+        s.place(), fmt::format("a load that goes from {:g} to {:g} over {:g} of time; held here at its end",
+                               value.constant, last.constant, c.end_time));
     value = last;
     return {};
 }
@@ -501,18 +542,22 @@ void convert_sforce(Conversion& c, const Statement& s) {
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
     Value value;
-    if (const std::string why = settled(c, s, *text, value); !why.empty()) return c.draft.notes.miss(s.place(), why);
+    if (const std::string why = settled(c, s, *text, value); !why.empty())
+        return c.draft.notes.miss(s.place(), why);
     if (value.is_constant() && value.constant == 0 && !value.of_velocity) {
         c.draft.notes.leave_out("exerting nothing at rest", s.place());
         return;
     }
     if (at.has("ACTIONONLY")) {
-        if (I.floats || c.is_flexible(I) || c.is_ground(I.part)) return c.draft.notes.leave_out("acting on ground alone", s.place());
-        if (!value.is_constant()) return c.draft.notes.miss(s.place(), "a force on one part alone that depends on displacements");
+        if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
+            return c.draft.notes.leave_out("acting on ground alone", s.place());
+        if (!value.is_constant())
+            return c.draft.notes.miss(s.place(), "a force on one part alone that depends on displacements");
         if (value.constant == 0) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
         const bool follows = J.part == I.part;
         if (!follows && !c.is_ground(J.part))
-            return c.draft.notes.miss(s.place(), "a force on one part alone along an axis of another that moves");
+            return c.draft.notes.miss(s.place(),
+                                      "a force on one part alone along an axis of another that moves");
         const Vector3d z = J.pose.A.col(2) * value.constant * c.geometry.units.force;
         c.draft.notes.count("SFORCE");
         if (rotates)
@@ -561,7 +606,8 @@ void convert_vector(Conversion& c, const Statement& s) {
     if (!at.has("RM")) return miss("without RM it is not known in what axes it acts");
     const Marker& RM = c.marker(at, "RM");
     if (RM.floats || I.floats) at.fail("I and RM must not float");
-    if (c.is_flexible(I) || c.is_flexible(RM) || c.is_flexible(floating)) return miss("it is on a flexible body, which is missing");
+    if (c.is_flexible(I) || c.is_flexible(RM) || c.is_flexible(floating))
+        return miss("it is on a flexible body, which is missing");
     const Units& units = c.geometry.units;
     std::array<Value, 6> component;
     bool is_constant = true, is_zero = true, damps = false;
@@ -582,14 +628,16 @@ void convert_vector(Conversion& c, const Statement& s) {
     for (int k = 0; k < 6; ++k) F[k] = component[static_cast<std::size_t>(k)].constant;
     F = forces(F, units);
     const bool on_ground = c.is_ground(floating.part);
-    if (is_constant && (on_ground || c.is_ground(I.part)) && (c.is_ground(RM.part) || RM.part == I.part || RM.part == floating.part)) {
+    if (is_constant && (on_ground || c.is_ground(I.part)) &&
+        (c.is_ground(RM.part) || RM.part == I.part || RM.part == floating.part)) {
         // On one moving part: a load that keeps its direction, or turns with it.
         const bool turns = !c.is_ground(RM.part);
         if (!on_ground) return miss("a constant force on a part at a marker of ground's");
         c.draft.notes.count(s.keyword);
         return put_load(c, s, I, RM.pose.A * F.head<3>(), RM.pose.A * F.tail<3>(), turns);
     }
-    if (RM.part != floating.part) return miss("a force between two parts in the axes of neither the one it reacts on");
+    if (RM.part != floating.part)
+        return miss("a force between two parts in the axes of neither the one it reacts on");
     // Displacements of I from one marker on the other part, in RM's axes, and angles against axes that are RM's.
     const Marker* from = nullptr;
     const auto axis_of = [&](const Measure& m, double& sign) -> int {
@@ -610,7 +658,8 @@ void convert_vector(Conversion& c, const Statement& s) {
         from = &origin;
         return k;
     };
-    const char* const other = "a force by a displacement other than of its own marker, in the axes it acts in";
+    const char* const other =
+        "a force by a displacement other than of its own marker, in the axes it acts in";
     Matrix6 K = Matrix6::Zero();
     std::array<Value, 6> own;
     for (std::size_t r = 0; r < 6; ++r) {
@@ -621,8 +670,10 @@ void convert_vector(Conversion& c, const Statement& s) {
             K(static_cast<int>(r), axis) += -sign * k;
         }
         for (CurveTerm term : component[r].curves) {
-            if (axis_of(term.of, sign) != static_cast<int>(r)) return miss(fmt::format("{}: {}", names[r], other));
-            if (term.kind == CurveTerm::Kind::impact) return miss(fmt::format("{}: a contact in one direction of a vector", names[r]));
+            if (axis_of(term.of, sign) != static_cast<int>(r))
+                return miss(fmt::format("{}: {}", names[r], other));
+            if (term.kind == CurveTerm::Kind::impact)
+                return miss(fmt::format("{}: a contact in one direction of a vector", names[r]));
             term.scale *= sign;
             own[r].curves.push_back(term);
         }
@@ -644,11 +695,13 @@ void convert_vector(Conversion& c, const Statement& s) {
         if (!why.empty()) return miss(fmt::format("{}: {}", names[r], why));
         for (auto& [x, f] : law.curve) f += rate * x;
         laws.K(row, row) = 0;
-        if (!laws.K.row(row).isZero(0)) return miss(fmt::format("{}: a spline beside a coupled stiffness", names[r]));
+        if (!laws.K.row(row).isZero(0))
+            return miss(fmt::format("{}: a spline beside a coupled stiffness", names[r]));
         laws.curves[r] = law.curve;
         laws.goes_on[r] = law.goes_on;
     }
-    const bool has_curves = std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
+    const bool has_curves =
+        std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
     if (has_curves && !(laws.K - Matrix6(laws.K.diagonal().asDiagonal())).isZero(0))
         return miss("a spline beside a coupled stiffness");
     if (damps) c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
@@ -663,13 +716,17 @@ void read_splines(Conversion& c) {
     for (const Statement& s : c.data.statements) {
         if (s.keyword != "SPLINE") continue;
         const Arguments at(c.data.file, s, shape);
-        if (at.has("FILE") || at.has("Z")) continue;  // of points elsewhere, or of two variables: missing where it is used
-        Table table{.x = at.numbers("X", 2, 10'000), .y = at.numbers("Y", 2, 10'000), .goes_on = at.has("LINEAR_EXTRAPOLATE"),
+        if (at.has("FILE") || at.has("Z"))
+            continue;  // of points elsewhere, or of two variables: missing where it is used
+        Table table{.x = at.numbers("X", 2, 10'000),
+                    .y = at.numbers("Y", 2, 10'000),
+                    .goes_on = at.has("LINEAR_EXTRAPOLATE"),
                     .statement = &s};
         if (table.x.empty() || table.x.size() != table.y.size())
             at.fail(fmt::format("{} X and {} Y; as many of both are needed", table.x.size(), table.y.size()));
         for (std::size_t n = 1; n < table.x.size(); ++n)
-            if (!(table.x[n] > table.x[n - 1])) at.fail(fmt::format("X: {:g} is not above the one before", table.x[n]));
+            if (!(table.x[n] > table.x[n - 1]))
+                at.fail(fmt::format("X: {:g} is not above the one before", table.x[n]));
         if (!c.splines.emplace(s.id, table).second) at.fail("there is one with this id already");
         c.draft.notes.count("SPLINE");
     }

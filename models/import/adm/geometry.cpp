@@ -21,12 +21,13 @@ struct Named {
     std::string_view name;
     double si;
 };
-constexpr std::size_t longest_chain = 100;  // of markers in markers
+constexpr std::size_t longest_chain = 100;                          // of markers in markers
 constexpr double pound = 0.45359237, g_n = 9.80665, inch = 0.0254;  // [kg], [m/s²], [m]
 
-constexpr Named lengths[] = {{"MILLIMETER", 1e-3}, {"METER", 1},        {"CENTIMETER", 1e-2}, {"KILOMETER", 1e3},
-                             {"INCH", inch},       {"FOOT", 12 * inch}, {"YARD", 36 * inch},  {"MILE", 63360 * inch},
-                             {"MICROINCH", 1e-6 * inch}, {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6}, {"NANOMETER", 1e-9},
+constexpr Named lengths[] = {{"MILLIMETER", 1e-3},  {"METER", 1},           {"CENTIMETER", 1e-2},
+                             {"KILOMETER", 1e3},    {"INCH", inch},         {"FOOT", 12 * inch},
+                             {"YARD", 36 * inch},   {"MILE", 63360 * inch}, {"MICROINCH", 1e-6 * inch},
+                             {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6},   {"NANOMETER", 1e-9},
                              {"ANGSTROM", 1e-10}};
 constexpr Named forces[] = {{"NEWTON", 1},
                             {"KNEWTON", 1e3},
@@ -36,8 +37,8 @@ constexpr Named forces[] = {{"NEWTON", 1},
                             {"MICRONEWTON", 1e-6},
                             {"NANONEWTON", 1e-9},
                             {"DYNE", 1e-5},
-                            {"POUND_FORCE", pound * g_n},
-                            {"KPOUND_FORCE", 1e3 * pound * g_n},
+                            {"POUND_FORCE", pound* g_n},
+                            {"KPOUND_FORCE", 1e3 * pound* g_n},
                             {"OUNCE_FORCE", pound / 16 * g_n},
                             {"KILOGRAM_FORCE", g_n},
                             {"POUNDAL", pound * 12 * inch}};
@@ -49,12 +50,13 @@ constexpr Named masses[] = {{"KILOGRAM", 1},
                             {"POUND_MASS", pound},
                             {"KPOUND_MASS", 1e3 * pound},
                             {"OUNCE_MASS", pound / 16},
-                            {"SLUG", pound * g_n / (12 * inch)},
-                            {"SLINCH", pound * g_n / inch},
+                            {"SLUG", pound* g_n / (12 * inch)},
+                            {"SLINCH", pound* g_n / inch},
                             {"TONNE", 1e3},
                             {"US_TON", 2000 * pound}};
-constexpr Named times[] = {{"SECOND", 1},       {"MILLISECOND", 1e-3}, {"MILLISECONDS", 1e-3}, {"MICROSECOND", 1e-6},
-                           {"NANOSECOND", 1e-9}, {"MINUTE", 60},        {"HOUR", 3600},         {"DAY", 86400}};
+constexpr Named times[] = {{"SECOND", 1},         {"MILLISECOND", 1e-3}, {"MILLISECONDS", 1e-3},
+                           {"MICROSECOND", 1e-6}, {"NANOSECOND", 1e-9},  {"MINUTE", 60},
+                           {"HOUR", 3600},        {"DAY", 86400}};
 
 template <std::size_t n>
 double unit(const Arguments& at, std::string_view argument, const Named (&table)[n]) {
@@ -81,8 +83,7 @@ Units read_units(const Dataset& data) {
             if (found) fail(data.file, statement, "a second UNITS statement; allowed: one");
             found = &statement;
         }
-    if (!found)
-        reader::fail(data.file, data.last_line, "UNITS", "missing: without it no number has a unit");
+    if (!found) reader::fail(data.file, data.last_line, "UNITS", "missing: without it no number has a unit");
     const Arguments at(data.file, *found, {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
     double force = 1, mass = 1, length = 1, time = 1;
     if (at.has("SYSTEM")) {
@@ -95,8 +96,9 @@ Units read_units(const Dataset& data) {
         } else if (system == "IPS") {
             force = pound * g_n, mass = pound, length = inch;
         } else
-            at.fail(fmt::format("SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
-                                reader::quote(system)));
+            at.fail(
+                fmt::format("SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
+                            reader::quote(system)));
     }
     if (at.has("FORCE")) force = unit(at, "FORCE", forces);
     if (at.has("MASS")) mass = unit(at, "MASS", masses);
@@ -113,11 +115,13 @@ Units read_units(const Dataset& data) {
     units.force_name = force == 1e3 ? "kN" : "N";
     units.length = length == 1 ? 1 : length == 1e-3 ? 1 : length * 1000;
     units.force = force == 1e3 ? 1 : force;
-    const auto as_written = [&](std::string_view name) { return at.has(name) ? at.word(name) : std::string("(default)"); };
+    const auto as_written = [&](std::string_view name) {
+        return at.has(name) ? at.word(name) : std::string("(default)");
+    };
     units.remark = at.has("SYSTEM")
                        ? fmt::format("Units of the file: SYSTEM={}", at.word("SYSTEM"))
-                       : fmt::format("Units of the file: {}, {}, {}, {}", as_written("FORCE"), as_written("MASS"),
-                                     as_written("LENGTH"), as_written("TIME"));
+                       : fmt::format("Units of the file: {}, {}, {}, {}", as_written("FORCE"),
+                                     as_written("MASS"), as_written("LENGTH"), as_written("TIME"));
     units.remark += fmt::format("; here {}, {}, kg, rad{}.", units.length_name, units.force_name,
                                 units.length != 1 || units.force != 1
                                     ? ", as a scene does not have the file's: numbers are converted"
@@ -131,16 +135,20 @@ Matrix3d about(int axis, double angle) {
 // Body-fixed about z, the new x, the new z.
 Matrix3d euler_313(const std::vector<double>& a) { return about(2, a[0]) * about(0, a[1]) * about(2, a[2]); }
 
-Vector3d vector(const std::vector<double>& v) { return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]); }
+Vector3d vector(const std::vector<double>& v) {
+    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
+}
 
 // Origin and axes from `origin` (QP, QG), REULER, or two points z and x: z is along the first, x in the half plane of the
 // second; with USEXP the other way round.
-Frame read_frame(const Arguments& at, const char* origin, const char* z_name, const char* x_name, double length) {
+Frame read_frame(const Arguments& at, const char* origin, const char* z_name, const char* x_name,
+                 double length) {
     Frame frame;
     const Vector3d q = vector(at.numbers(origin, 3, 3));
     frame.r = length * q;
     if (at.has("REULER")) {
-        if (at.has(z_name) || at.has(x_name)) at.fail(fmt::format("REULER together with {} or {}", z_name, x_name));
+        if (at.has(z_name) || at.has(x_name))
+            at.fail(fmt::format("REULER together with {} or {}", z_name, x_name));
         frame.A = euler_313(at.angles("REULER", 3));
         return frame;
     }
@@ -149,7 +157,8 @@ Frame read_frame(const Arguments& at, const char* origin, const char* z_name, co
     const auto towards = [&](const char* name, Vector3d& u) {
         if (!at.has(name)) return false;
         u = vector(at.numbers(name, 3, 3)) - q;
-        if (!(u.norm() > 0)) at.fail(fmt::format("{} is where {} is; it must be another point", name, origin));
+        if (!(u.norm() > 0))
+            at.fail(fmt::format("{} is where {} is; it must be another point", name, origin));
         u.normalize();
         return true;
     };
@@ -159,8 +168,10 @@ Frame read_frame(const Arguments& at, const char* origin, const char* z_name, co
     if (use_x && !has_x) at.fail(fmt::format("USEXP without {}", x_name));
     if (!use_x && !has_z) at.fail(fmt::format("{} without {}", x_name, z_name));
     Vector3d second = use_x ? z : x;
-    if (!(use_x ? has_z : has_x)) second = std::abs(first.dot(second)) < 0.9 ? second : Vector3d(Vector3d::UnitY());
-    if (!(first.cross(second).norm() > 1e-9)) at.fail(fmt::format("{} and {} are on one line with {}", z_name, x_name, origin));
+    if (!(use_x ? has_z : has_x))
+        second = std::abs(first.dot(second)) < 0.9 ? second : Vector3d(Vector3d::UnitY());
+    if (!(first.cross(second).norm() > 1e-9))
+        at.fail(fmt::format("{} and {} are on one line with {}", z_name, x_name, origin));
     if (use_x) {
         frame.A.col(0) = x;
         frame.A.col(1) = second.cross(x).normalized();
@@ -174,12 +185,13 @@ Frame read_frame(const Arguments& at, const char* origin, const char* z_name, co
 }
 
 const Shape part_shape{{"GROUND"},
-                       {"MASS", "CM", "IM", "IP", "QG", "REULER", "ZG", "XG", "VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM",
-                        "EXACT", "MATERIAL", "VELOCITY"},
+                       {"MASS", "CM", "IM", "IP", "QG", "REULER", "ZG", "XG", "VX", "VY", "VZ", "WX", "WY",
+                        "WZ", "VM", "WM", "EXACT", "MATERIAL", "VELOCITY"},
                        {}};
-const Shape marker_shape{{"USEXP", "FLOATING"},
-                         {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID", "NODE_LABEL"},
-                         {}};
+const Shape marker_shape{
+    {"USEXP", "FLOATING"},
+    {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID", "NODE_LABEL"},
+    {}};
 
 Part read_part(const Dataset& data, const Statement& statement, const Units& units) {
     const Arguments at(data.file, statement, part_shape);
@@ -205,7 +217,8 @@ Geometry read_geometry(const Dataset& data) {
         if (statement.id == 0) fail(data.file, statement, "has no id");
         if (!map.emplace(statement.id, std::move(entry)).second)
             fail(data.file, statement,
-                 fmt::format("there is one with this id already, in line {}", map.at(statement.id).statement->line));
+                 fmt::format("there is one with this id already, in line {}",
+                             map.at(statement.id).statement->line));
     };
     int ground = 0;
     for (const Statement& statement : data.statements) {
@@ -224,8 +237,8 @@ Geometry read_geometry(const Dataset& data) {
     std::set<int> flexible;
     for (const Statement& statement : data.statements) {
         if (statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART") flexible.insert(statement.id);
-        if (statement.keyword == "PART" || statement.keyword == "POINT_MASS" || statement.keyword == "FLEX_BODY" ||
-            statement.keyword == "FE_PART")
+        if (statement.keyword == "PART" || statement.keyword == "POINT_MASS" ||
+            statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
             last_body = statement.id;
         if (statement.keyword != "MARKER") continue;
         const Arguments at(data.file, statement, marker_shape);
@@ -251,10 +264,12 @@ Geometry read_geometry(const Dataset& data) {
             const int next = local.at(at).second;
             if (!next) break;
             const auto& from = *geometry.markers.at(at).statement;
-            if (!geometry.markers.contains(next)) fail(data.file, from, fmt::format("RM: there is no MARKER/{}", next));
+            if (!geometry.markers.contains(next))
+                fail(data.file, from, fmt::format("RM: there is no MARKER/{}", next));
             if (chain.size() == longest_chain || std::ranges::find(chain, next) != chain.end())
-                fail(data.file, from, fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}", next,
-                                                  longest_chain));
+                fail(data.file, from,
+                     fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}", next,
+                                 longest_chain));
             if (geometry.markers.at(next).part != geometry.markers.at(at).part)
                 fail(data.file, from, fmt::format("RM: MARKER/{} is on another part", next));
             at = next;
@@ -262,7 +277,8 @@ Geometry read_geometry(const Dataset& data) {
         for (std::size_t k = chain.size() - 1; k-- > 0;)
             local.at(chain[k]) = {placed(local.at(chain[k + 1]).first, local.at(chain[k]).first), 0};
         const auto part = geometry.parts.find(marker.part);
-        marker.pose = part == geometry.parts.end() ? local.at(id).first : placed(part->second.pose, local.at(id).first);
+        marker.pose =
+            part == geometry.parts.end() ? local.at(id).first : placed(part->second.pose, local.at(id).first);
     }
 
     Eigen::AlignedBox3d box;

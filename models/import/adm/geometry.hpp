@@ -15,7 +15,7 @@
 namespace elastocheck::importer::adm {
 
 struct Units {
-    double length = 1;        // of the scene's unit, for one of the file's
+    double length = 1;  // of the scene's unit, for one of the file's
     double force = 1;
     double mass = 1;          // [kg]
     double metre = 1;         // for one of the file's lengths

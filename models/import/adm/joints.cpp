@@ -24,19 +24,19 @@ constexpr std::size_t most_motions = 10'000;
 constexpr double assembled = 1e-2;  // beyond, the parts do not meet
 
 const Shape joint_shape{
-    {"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE", "UNIVERSAL", "CONVEL", "RACKPIN",
-     "SCREW"},
-    {"I", "J", "IC", "ICTRAN", "ICROT", "PD", "PITCH", "FRICTION", "DELTA_V", "INNER_RADIUS", "OUTER_RADIUS", "MAXFRIC",
-     "MU1", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "IMPLICIT"},
+    {"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE", "UNIVERSAL",
+     "CONVEL", "RACKPIN", "SCREW"},
+    {"I", "J", "IC", "ICTRAN", "ICROT", "PD", "PITCH", "FRICTION", "DELTA_V", "INNER_RADIUS", "OUTER_RADIUS",
+     "MAXFRIC", "MU1", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "IMPLICIT"},
     {}};
 const Shape jprim_shape{
     {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"}, {"I", "J"}, {}};
 const Shape gcon_shape{{}, {"I"}, {"FUNCTION"}};
 const Shape coupler_shape{{}, {"JOINTS", "TYPE", "SCALES"}, {"FUNCTION"}};
-const Shape motion_shape{
-    {"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT", "VELOCITY", "ACCELERATION"},
-    {"JOINT", "I", "J", "ICDISP", "ICVEL"},
-    {"FUNCTION"}};
+const Shape motion_shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT",
+                          "VELOCITY", "ACCELERATION"},
+                         {"JOINT", "I", "J", "ICDISP", "ICVEL"},
+                         {"FUNCTION"}};
 
 struct JointConversion {
     Conversion& c;
@@ -52,30 +52,38 @@ struct JointConversion {
         if (off <= round_off * scale) return;
         const std::string told = fmt::format("{} {:.3g} {}", what, off, unit);
         if (!(off <= assembled * scale))
-            at.fail(told + ": the parts do not meet as they stand in the file; assemble the model before it is written");
+            at.fail(
+                told +
+                ": the parts do not meet as they stand in the file; assemble the model before it is written");
         c.draft.notes.warn(place(), told + " in the file; here they meet");
     }
     void require_meeting() const {
-        require_small((I.pose.r - J.pose.r).norm(), c.geometry.size, "I and J are apart by", c.geometry.units.length_name);
+        require_small((I.pose.r - J.pose.r).norm(), c.geometry.size, "I and J are apart by",
+                      c.geometry.units.length_name);
     }
     void require_on_line() const {
         const Vector3d d = I.pose.r - J.pose.r, z = axis(J, 2);
-        require_small((d - z * z.dot(d)).norm(), c.geometry.size, "I is off the axis of J by", c.geometry.units.length_name);
+        require_small((d - z * z.dot(d)).norm(), c.geometry.size, "I is off the axis of J by",
+                      c.geometry.units.length_name);
     }
     void require_in_plane() const {
-        require_small(std::abs(axis(J, 2).dot(I.pose.r - J.pose.r)), c.geometry.size, "I is off the plane of J by",
-                      c.geometry.units.length_name);
+        require_small(std::abs(axis(J, 2).dot(I.pose.r - J.pose.r)), c.geometry.size,
+                      "I is off the plane of J by", c.geometry.units.length_name);
     }
     void require_parallel(int k, bool either_way = true) const {
         const double cosine = axis(I, k).dot(axis(J, k));
-        const double angle = std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
+        const double angle =
+            std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
         require_small(angle, 1, fmt::format("axes {} of I and J are apart by", "xyz"[k]), "rad");
         if (cosine < 0)
-            c.draft.notes.warn(place(), fmt::format("axes {} of I and J point opposite ways; here they are one line", "xyz"[k]));
+            c.draft.notes.warn(
+                place(),
+                fmt::format("axes {} of I and J point opposite ways; here they are one line", "xyz"[k]));
     }
     // Perpendicular to each other, the second made so to the last digit.
     std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
-        require_small(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))), 1, "the axes are off the right angle by", "rad");
+        require_small(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))), 1,
+                      "the axes are off the right angle by", "rad");
         return {u, (v - u.dot(v) * u).normalized()};
     }
 
@@ -91,7 +99,9 @@ struct JointConversion {
     }
     std::size_t cross(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
         const auto [u, v] = perpendicular(on_i, on_j);
-        return put(name, fields("universal").add("at", c.point(I)).add("axis_i", triple(u)).add("axis_j", triple(v)));
+        return put(
+            name,
+            fields("universal").add("at", c.point(I)).add("axis_i", triple(u)).add("axis_j", triple(v)));
     }
     void cross_only(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
         const auto [u, v] = perpendicular(on_i, on_j);
@@ -100,7 +110,8 @@ struct JointConversion {
 };
 
 // Whether it is worth converting: on parts that are there, and on two of them.
-bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Arguments& at) {
+bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
+                    const Arguments& at) {
     for (const Marker* m : {&I, &J})
         if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
     for (const Marker* m : {&I, &J})
@@ -121,29 +132,34 @@ void convert_joint(Conversion& c, const Statement& s) {
     std::string kind;
     for (const auto& argument : at.all())
         if (argument.is_flag) {
-            if (!kind.empty()) at.fail(fmt::format("is {} and {}; one of them is meant", kind, argument.name));
+            if (!kind.empty())
+                at.fail(fmt::format("is {} and {}; one of them is meant", kind, argument.name));
             kind = argument.name;
         }
     if (kind.empty()) at.fail("does not say of what kind it is");
     if (kind == "CONVEL" || kind == "RACKPIN" || kind == "SCREW") {
-        c.draft.notes.miss(s.place(), kind == "CONVEL"
-                                          ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
-                                            "joint transmits another angle)"
-                                          : kind + ": it couples a rotation with a displacement, which no joint of a scene does");
+        c.draft.notes.miss(
+            s.place(),
+            kind == "CONVEL"
+                ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
+                  "joint transmits another angle)"
+                : kind + ": it couples a rotation with a displacement, which no joint of a scene does");
         return;
     }
     const std::string name = c.name(c.joint_names, s);
     c.draft.notes.count("JOINT " + kind);
     for (const char* field : {"IC", "ICTRAN", "ICROT"})
         if (at.has(field)) {
-            c.draft.notes.leave_out("being of motion alone", {s.line, std::string(field) + " of " + s.place().what});
+            c.draft.notes.leave_out("being of motion alone",
+                                    {s.line, std::string(field) + " of " + s.place().what});
             break;
         }
     if (at.has("MAXFRIC") || at.has("MU1")) {
         if (c.options.drop_dynamics)
             c.draft.notes.leave_out("by --drop dynamics", {s.line, "friction of " + s.place().what});
         else
-            c.draft.notes.miss(s.place(), "its friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+            c.draft.notes.miss(
+                s.place(), "its friction holds, too, and a scene has none (--drop dynamics leaves it out)");
     }
     std::size_t entry = 0;
     if (kind == "REVOLUTE") {
@@ -230,18 +246,20 @@ void convert_gcon(Conversion& c, const Statement& s) {
         Fields fields = joint.fields("distance").add("from", c.point(I)).add("to", c.point(J));
         if (std::abs(offset - drawn) > 1e-9 * c.geometry.size) {
             fields.add("length", computed(offset, c.geometry.size));
-            c.draft.notes.warn(s.place(), fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart", drawn,
-                                                      c.geometry.units.length_name, offset));
+            c.draft.notes.warn(
+                s.place(), fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart",
+                                       drawn, c.geometry.units.length_name, offset));
         }
         joint.put(name, fields);
         return;
     }
     const int axis = static_cast<int>(measure.kind) - static_cast<int>(Measure::Kind::DX);
     if (axis > 2 || measure.rm == 0 || c.marker(at, measure.rm).part != J.part)
-        return miss("a constraint other than of a distance, or of a displacement in the axes of its second marker");
+        return miss(
+            "a constraint other than of a distance, or of a displacement in the axes of its second marker");
     const Vector3d normal = c.marker(at, measure.rm).pose.A.col(axis);
-    joint.require_small(std::abs(normal.dot(I.pose.r - J.pose.r) - offset), c.geometry.size, "the constraint is off by",
-                        c.geometry.units.length_name);
+    joint.require_small(std::abs(normal.dot(I.pose.r - J.pose.r) - offset), c.geometry.size,
+                        "the constraint is off by", c.geometry.units.length_name);
     c.draft.notes.count("GCON of a displacement");
     joint.put(name, joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
 }
@@ -260,17 +278,22 @@ std::optional<Programme> programme(Conversion& c, const Statement& s, const Argu
     const Value first = c.function(*text, 0), last = c.function(*text, c.end_time);
     for (const Value* value : {&first, &last})
         if (!value->is_constant()) {
-            c.draft.notes.miss(s.place(), value->is_known() ? "a motion that depends on displacements" : value->unknown);
+            c.draft.notes.miss(s.place(),
+                               value->is_known() ? "a motion that depends on displacements" : value->unknown);
             return std::nullopt;
         }
-    if (!at.has("VELOCITY") && !at.has("ACCELERATION")) return Programme{first.constant, last.constant, false};
+    if (!at.has("VELOCITY") && !at.has("ACCELERATION"))
+        return Programme{first.constant, last.constant, false};
     if (first.constant == 0 && last.constant == 0) return Programme{0, 0, true};
-    if (at.has("VELOCITY") && first.constant == last.constant) return Programme{0, first.constant * c.end_time, true};
+    if (at.has("VELOCITY") && first.constant == last.constant)
+        return Programme{0, first.constant * c.end_time, true};
     if (c.options.drop_dynamics)
         c.draft.notes.leave_out("by --drop dynamics: the coordinate stays free", s.place());
     else
-        c.draft.notes.miss(s.place(), "a motion by a velocity or an acceleration that changes (--drop dynamics leaves the "
-                                      "coordinate free)");
+        c.draft.notes.miss(
+            s.place(),
+            "a motion by a velocity or an acceleration that changes (--drop dynamics leaves the "
+            "coordinate free)");
     return std::nullopt;
 }
 
@@ -280,7 +303,8 @@ double turn_of(const Marker& I, const Marker& J) {  // AZ
 // The angle nearest to zero that is the same.
 double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
-void drive(Conversion& c, const std::string& quantity, const Programme& by, double scale, double drawn, bool is_angle) {
+void drive(Conversion& c, const std::string& quantity, const Programme& by, double scale, double drawn,
+           bool is_angle) {
     Drive drive{quantity, 0, (by.end - by.start) * scale};
     if (!by.from_design) {
         double offset = by.start * scale - drawn;
@@ -307,7 +331,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     if (at.has("JOINT")) {
         const auto found = c.joints.find(at.id("JOINT"));
         if (found == c.joints.end()) {
-            if (!in_the_file.contains(at.id("JOINT"))) at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
+            if (!in_the_file.contains(at.id("JOINT")))
+                at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
             c.draft.notes.miss(s.place(), fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
             return;
         }
@@ -328,8 +353,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
             plane.along(name, "in_plane", "normal");
             drive(c, "joints." + name, *by, length, axis.dot(I.pose.r - J.pose.r), false);
         } else {
-            at.fail(fmt::format("{} of a {} joint, which has no such coordinate", rotates ? "ROTATIONAL" : "TRANSLATIONAL",
-                                joint.kind));
+            at.fail(fmt::format("{} of a {} joint, which has no such coordinate",
+                                rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind));
         }
         c.draft.notes.count("MOTION");
         return;
@@ -339,7 +364,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     for (int k = 0; k < 3; ++k)
         if (at.has(std::string(1, "XYZ"[k]))) axis = k;
     if (axis < 0) {
-        c.draft.notes.miss(s.place(), "a motion of an angle between two markers; of a joint it could be driven");
+        c.draft.notes.miss(s.place(),
+                           "a motion of an angle between two markers; of a joint it could be driven");
         return;
     }
     if (!by || !is_between_two(c, s, I, J, at)) return;
@@ -363,7 +389,8 @@ void convert_coupler(Conversion& c, const Statement& s) {
     // Of two joints one scale may be left out: that of the first is 1.
     std::vector<double> scale = scales;
     if (scale.size() == joints.size() - 1) scale.insert(scale.begin(), 1);
-    if (scale.size() != joints.size()) at.fail(fmt::format("SCALES: {} for {} joints", scales.size(), joints.size()));
+    if (scale.size() != joints.size())
+        at.fail(fmt::format("SCALES: {} for {} joints", scales.size(), joints.size()));
     std::vector<const WrittenJoint*> written;
     for (const int id : joints) {
         const auto found = c.joints.find(id);
@@ -373,7 +400,9 @@ void convert_coupler(Conversion& c, const Statement& s) {
     const auto unit = [&](const WrittenJoint& joint) {  // of the scene, for one of the file's
         return joint.kind == "TRANSLATIONAL" ? c.geometry.units.length : 1;
     };
-    const auto quantity = [&](const WrittenJoint& joint) { return "joints." + c.draft.joints[joint.entry].name; };
+    const auto quantity = [&](const WrittenJoint& joint) {
+        return "joints." + c.draft.joints[joint.entry].name;
+    };
     std::size_t free = joints.size();
     double sum = 0;
     for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -393,9 +422,10 @@ void convert_coupler(Conversion& c, const Statement& s) {
     hold(c, joint.entry);
     c.drives.push_back({quantity(joint), 0, -sum / scale[free] * unit(joint)});
     c.draft.notes.count("COUPLER");
-    c.draft.notes.warn(s.place(), fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
-                                              "drive's of its own",
-                                              quantity(joint)));
+    c.draft.notes.warn(
+        s.place(), fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
+                               "drive's of its own",
+                               quantity(joint)));
 }
 
 }  // namespace

@@ -17,15 +17,17 @@ namespace {
 
 // Every statement that a dataset may have, so that what is cut off is known to be unambiguous.
 constexpr std::string_view keywords[] = {
-    "ACCGRAV",      "ADAMS",    "ARRAY",        "BEAM",     "BUSHING",      "CONTACT",   "CONTROL",  "COSIM",
-    "COUPLER",      "CURVE",    "CVCV",         "DEACTIVATE", "DEBUG",      "DIFF",      "END",      "EQUILIBRIUM",
-    "EXECUTION",    "FE_LOAD",  "FE_NODE",      "FE_PART",  "FIELD",        "FLEX_BODY", "FRICTION", "GCON",
-    "GEAR",         "GFORCE",   "GRAPHICS",     "GSE",      "IC",           "INCLUDE",   "INFO",     "INTEGRATOR",
-    "JOINT",        "JPRIM",    "KINEMATICS",   "LINEAR",   "LIST",         "LSE",       "LSSOLVER", "MARKER",
-    "MATERIAL",     "MATRIX",   "MFORCE",       "MODE",     "MOTION",       "NFORCE",    "OUTPUT",   "PART",
-    "PINPUT",       "POINT_MASS", "POUTPUT",    "PREFERENCES", "PTCV",      "PTSF",      "REQUEST",  "RESULTS",
-    "SECTION",      "SENSOR",   "SFORCE",       "SOLVER",   "SPLINE",       "SPRINGDAMPER", "STRING", "SURFACE",
-    "TFSISO",       "TIRE",     "UCON",         "UNITS",    "VARIABLE",     "VFORCE",    "VTORQUE",  "WHEEL"};
+    "ACCGRAV",    "ADAMS",       "ARRAY",       "BEAM",       "BUSHING",    "CONTACT",      "CONTROL",
+    "COSIM",      "COUPLER",     "CURVE",       "CVCV",       "DEACTIVATE", "DEBUG",        "DIFF",
+    "END",        "EQUILIBRIUM", "EXECUTION",   "FE_LOAD",    "FE_NODE",    "FE_PART",      "FIELD",
+    "FLEX_BODY",  "FRICTION",    "GCON",        "GEAR",       "GFORCE",     "GRAPHICS",     "GSE",
+    "IC",         "INCLUDE",     "INFO",        "INTEGRATOR", "JOINT",      "JPRIM",        "KINEMATICS",
+    "LINEAR",     "LIST",        "LSE",         "LSSOLVER",   "MARKER",     "MATERIAL",     "MATRIX",
+    "MFORCE",     "MODE",        "MOTION",      "NFORCE",     "OUTPUT",     "PART",         "PINPUT",
+    "POINT_MASS", "POUTPUT",     "PREFERENCES", "PTCV",       "PTSF",       "REQUEST",      "RESULTS",
+    "SECTION",    "SENSOR",      "SFORCE",      "SOLVER",     "SPLINE",     "SPRINGDAMPER", "STRING",
+    "SURFACE",    "TFSISO",      "TIRE",        "UCON",       "UNITS",      "VARIABLE",     "VFORCE",
+    "VTORQUE",    "WHEEL"};
 
 // NUL, too: there are writers that pad their text with it.
 bool is_space(char c) { return c == ' ' || c == '\0' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
@@ -49,7 +51,9 @@ std::vector<std::string_view> meant(std::string_view beginning, std::span<const 
     return found;
 }
 
-std::vector<std::string> strings(const std::vector<std::string_view>& words) { return {words.begin(), words.end()}; }
+std::vector<std::string> strings(const std::vector<std::string_view>& words) {
+    return {words.begin(), words.end()};
+}
 
 // What the comment adams_view_name='...' says.
 std::optional<std::string> view_name(std::string_view comment) {
@@ -66,7 +70,9 @@ struct Reading {
     bool goes_on = false;       // the line before ended with "&"
     bool in_statement = false;  // a continuation is allowed
 
-    [[noreturn]] void fail(const std::string& what) const { reader::fail(data.file, data.last_line, "", what); }
+    [[noreturn]] void fail(const std::string& what) const {
+        reader::fail(data.file, data.last_line, "", what);
+    }
 
     void begin(std::string_view line) {
         std::size_t n = 0;
@@ -74,8 +80,9 @@ struct Reading {
         std::size_t slash = n;
         while (slash < line.size() && is_space(line[slash])) ++slash;
         if (n == 0 || slash == line.size() || line[slash] != '/')
-            fail(fmt::format("expected a statement KEYWORD/..., a line that begins with a comma, or a comment, found {}",
-                             reader::quote(line)));
+            fail(fmt::format(
+                "expected a statement KEYWORD/..., a line that begins with a comma, or a comment, found {}",
+                reader::quote(line)));
         const std::string word = capitals(line.substr(0, n));
         const auto found = meant(word, keywords);
         if (found.size() > 1)
@@ -83,7 +90,8 @@ struct Reading {
                              fmt::join(found, " or ")));
         if (found.empty())
             fail(fmt::format("{} is no statement of a dataset{}", reader::quote(word),
-                             reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}), "there are")));
+                             reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}),
+                                                  "there are")));
         if (data.statements.size() == most_statements)
             fail(fmt::format("more than {} statements", most_statements));
         Statement statement;
@@ -103,7 +111,8 @@ struct Reading {
         if (!line.empty() && line.front() == ',')
             line.remove_prefix(1);
         else if (digits > 0 && !line.empty())
-            fail(fmt::format("expected a comma behind the id {}, found {}", statement.id, reader::quote(line)));
+            fail(fmt::format("expected a comma behind the id {}, found {}", statement.id,
+                             reader::quote(line)));
         statement.rest = line;
         data.statements.push_back(std::move(statement));
         in_statement = true;
@@ -148,7 +157,8 @@ Dataset read_statements(std::string_view text, const std::string& file) {
     Dataset data;
     data.file = file;
     if (text.size() > largest_dataset)
-        reader::fail(file, 0, "", fmt::format("larger than {} MiB, which no dataset is", largest_dataset >> 20));
+        reader::fail(file, 0, "",
+                     fmt::format("larger than {} MiB, which no dataset is", largest_dataset >> 20));
     Reading reading{data};
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
@@ -200,7 +210,8 @@ std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees)
     }
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-    if (n < text.size() && (text[n] == 'D' || text[n] == 'd') && (n + 1 == text.size() || !is_name(text[n + 1]))) {
+    if (n < text.size() && (text[n] == 'D' || text[n] == 'd') &&
+        (n + 1 == text.size() || !is_name(text[n + 1]))) {
         is_in_degrees = true;
         ++n;
     }
@@ -222,8 +233,8 @@ struct Scanner {
         while (!text.empty() && (is_space(text.front()) || text.front() == '\n')) text.remove_prefix(1);
     }
     void skip_separators() {
-        while (!text.empty() &&
-               (is_space(text.front()) || text.front() == '\n' || text.front() == ',' || text.front() == '\\'))
+        while (!text.empty() && (is_space(text.front()) || text.front() == '\n' || text.front() == ',' ||
+                                 text.front() == '\\'))
             text.remove_prefix(1);
     }
     // The word at the beginning, and whether "=" is behind it.
@@ -236,7 +247,9 @@ struct Scanner {
         assigns = n > 0 && k < rest.size() && rest[k] == '=';
         return rest.substr(0, n);
     }
-    bool is_flag(std::string_view name) const { return !name.empty() && !meant(capitals(name), shape.flags).empty(); }
+    bool is_flag(std::string_view name) const {
+        return !name.empty() && !meant(capitals(name), shape.flags).empty();
+    }
 
     // Whether another argument begins here, behind a comma or on a new line of an expression that is whole.
     bool is_argument(std::string_view rest) const {
@@ -272,7 +285,8 @@ struct Scanner {
         skip_blanks();
         for (bool more = true; more;) {
             std::size_t n = 0;
-            while (n < text.size() && text[n] != ',' && text[n] != ':' && text[n] != '\n' && text[n] != '\\') ++n;
+            while (n < text.size() && text[n] != ',' && text[n] != ':' && text[n] != '\n' && text[n] != '\\')
+                ++n;
             list.emplace_back(trimmed(text.substr(0, n)));
             text.remove_prefix(n);
             more = false;
@@ -307,14 +321,17 @@ Arguments::Arguments(const std::string& file, const Statement& statement, const 
         bool assigns = false;
         const std::string_view written = Scanner::word(scanner.text, assigns);
         if (written.empty())
-            fail(fmt::format("expected an argument, found {}", reader::quote(trimmed(scanner.text.substr(0, 80)))));
+            fail(fmt::format("expected an argument, found {}",
+                             reader::quote(trimmed(scanner.text.substr(0, 80)))));
         const std::string name = capitals(written);
         const auto& allowed = assigns ? names : shape.flags;
         const auto found = meant(name, allowed);
         if (found.size() > 1)
-            fail(fmt::format("{} may be {}; too short to tell", reader::quote(name), fmt::join(found, " or ")));
+            fail(fmt::format("{} may be {}; too short to tell", reader::quote(name),
+                             fmt::join(found, " or ")));
         if (found.empty())
-            fail(fmt::format("{} is no {} of this statement{}", reader::quote(name), assigns ? "argument" : "flag",
+            fail(fmt::format("{} is no {} of this statement{}", reader::quote(name),
+                             assigns ? "argument" : "flag",
                              reader::did_you_mean(name, strings(allowed), "known")));
         if (has(found[0])) fail(fmt::format("{} is given twice", found[0]));
         Argument argument;
@@ -345,8 +362,10 @@ double Arguments::read(const Argument& argument, const std::string& text, bool i
     if (number_at(text, value, degrees) != text.size() || text.empty())
         fail(fmt::format("{}: {} is no number", argument.name, reader::quote(text)));
     if (!std::isfinite(value) || std::abs(value) > 1e30)
-        fail(fmt::format("{}: {} is out of range; allowed: up to 1e30 in size", argument.name, reader::quote(text)));
-    if (degrees && !is_angle) fail(fmt::format("{}: {} is in degrees, but this is no angle", argument.name, reader::quote(text)));
+        fail(fmt::format("{}: {} is out of range; allowed: up to 1e30 in size", argument.name,
+                         reader::quote(text)));
+    if (degrees && !is_angle)
+        fail(fmt::format("{}: {} is in degrees, but this is no angle", argument.name, reader::quote(text)));
     return degrees ? value * std::numbers::pi / 180 : value;
 }
 
@@ -362,7 +381,8 @@ std::vector<int> Arguments::ids(std::string_view name) const {
             int id = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
             if (error != std::errc{} || end != text.data() + text.size() || id <= 0)
-                fail(fmt::format("{}: {} is no id; allowed: whole numbers above zero", name, reader::quote(text)));
+                fail(fmt::format("{}: {} is no id; allowed: whole numbers above zero", name,
+                                 reader::quote(text)));
             result.push_back(id);
         }
     return result;
@@ -374,7 +394,8 @@ int Arguments::id(std::string_view name) const {
     return all.empty() ? 0 : all[0];
 }
 
-std::vector<double> Arguments::list(std::string_view name, std::size_t least, std::size_t most, bool angles) const {
+std::vector<double> Arguments::list(std::string_view name, std::size_t least, std::size_t most,
+                                    bool angles) const {
     const Argument* argument = find(name);
     std::vector<double> result;
     if (!argument) return result;

@@ -64,8 +64,8 @@ class Arguments {
 
     bool has(std::string_view name) const { return find(name) != nullptr; }
     const std::vector<Argument>& all() const { return arguments_; }
-    std::string word(std::string_view name) const;            // one value, in capitals
-    int id(std::string_view name) const;                      // one value, of another statement; 0 where there is none
+    std::string word(std::string_view name) const;  // one value, in capitals
+    int id(std::string_view name) const;            // one value, of another statement; 0 where there is none
     std::vector<int> ids(std::string_view name) const;
     double number(std::string_view name, double missing) const;
     double angle(std::string_view name, double missing) const;  // [rad]; the suffix D means degrees

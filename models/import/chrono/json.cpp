@@ -26,11 +26,13 @@ class Parser {
     [[noreturn]] void fail(const std::string& what) const { reader::fail(file_, line_, "", what); }
     [[noreturn]] void expected(const char* what) const {
         if (text_.empty()) fail(fmt::format("the file ends where {} is expected", what));
-        fail(fmt::format("expected {}, found {}", what, reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
+        fail(fmt::format("expected {}, found {}", what,
+                         reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
     }
 
     void advance(std::size_t n) {
-        line_ += static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(n), '\n'));
+        line_ +=
+            static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(n), '\n'));
         text_.remove_prefix(n);
     }
 
@@ -73,14 +75,16 @@ class Parser {
             }
             if (text_.empty()) fail("a string is left open");
             const char escaped = text_.front();
-            if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos) fail("an unknown escape in a string");
+            if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos)
+                fail("an unknown escape in a string");
             result += escaped == '"' || escaped == '\\' || escaped == '/' ? escaped : '?';
             text_.remove_prefix(1);
         }
     }
 
     Value value(int depth) {
-        if (depth > deepest_json) fail(fmt::format("nested deeper than {}, which no suspension is", deepest_json));
+        if (depth > deepest_json)
+            fail(fmt::format("nested deeper than {}, which no suspension is", deepest_json));
         skip();
         Value result{.kind = Value::Kind::scalar, .line = line_};
         if (text_.empty()) expected("a value");
@@ -142,7 +146,8 @@ class Parser {
 Value parse_json(std::string_view text, const std::string& file) {
     if (text.size() > largest_json) reader::fail(file, 0, "", "larger than 1 MiB, which no suspension is");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    if (text.find('\0') != text.npos || !reader::is_utf8(text)) reader::fail(file, 0, "", "not plain text (UTF-8): this is no JSON");
+    if (text.find('\0') != text.npos || !reader::is_utf8(text))
+        reader::fail(file, 0, "", "not plain text (UTF-8): this is no JSON");
     return Parser(text, file).whole();
 }
 

@@ -16,8 +16,9 @@ namespace {
 using reader::Cursor;
 
 // The force of a closed stop in Chrono::Vehicle, "from an ADAMS/Car example", over its penetration; constant beyond.
-const Rows stop_table{{0, 0},          {0.002, 200},  {0.004, 400},  {0.006, 600},    {0.008, 800},     {0.01, 1000},
-                      {0.02, 2500},    {0.03, 4500},  {0.04, 7500},  {0.05, 12500},   {0.06, 125000},   {0.07, 125000}};
+const Rows stop_table{{0, 0},       {0.002, 200},  {0.004, 400},   {0.006, 600},
+                      {0.008, 800}, {0.01, 1000},  {0.02, 2500},   {0.03, 4500},
+                      {0.04, 7500}, {0.05, 12500}, {0.06, 125000}, {0.07, 125000}};
 
 Vector3d vector(const Cursor& at) {
     const auto items = at.list(3, "numbers");
@@ -97,8 +98,9 @@ void Suspension::note_unused() {
             notes.leave_out("being of motion alone", {item.line, "Axle (inertia of the drive shaft)"});
             continue;
         }
-        if (part == "Vehicle-Frame Inertia" || part == "Independent" || part == "Steerable" || part == "Antiroll Body" ||
-            part == "Output" || part == "Camber Angle (deg)" || part == "Toe Angle (deg)" || part == "Name" || part == "Type" || part == "Template")
+        if (part == "Vehicle-Frame Inertia" || part == "Independent" || part == "Steerable" ||
+            part == "Antiroll Body" || part == "Output" || part == "Camber Angle (deg)" ||
+            part == "Toe Angle (deg)" || part == "Name" || part == "Type" || part == "Template")
             continue;
         if (!used_.contains(part)) {
             notes.miss({item.line, part}, "not known of this template");
@@ -110,12 +112,15 @@ void Suspension::note_unused() {
             if (used_.contains(part + "/" + key)) continue;
             if (of_motion_or_pictures.contains(key))
                 dynamic[key] += (dynamic[key].empty() ? "of " : ", ") + part;
-            else if (!key.starts_with("Spring") && !key.starts_with("Free") && !key.ends_with("Length") && key != "Preload" &&
-                     key != "Map Data" && key != "Deformation" && !key.ends_with("Bushing Data"))
-                notes.warn({item.items[n].line, part + "/" + key}, "not known of this template, and not used");
+            else if (!key.starts_with("Spring") && !key.starts_with("Free") && !key.ends_with("Length") &&
+                     key != "Preload" && key != "Map Data" && key != "Deformation" &&
+                     !key.ends_with("Bushing Data"))
+                notes.warn({item.items[n].line, part + "/" + key},
+                           "not known of this template, and not used");
         }
     }
-    for (const auto& [key, parts] : dynamic) notes.leave_out("being of motion or of pictures alone", {0, key + " " + parts});
+    for (const auto& [key, parts] : dynamic)
+        notes.leave_out("being of motion or of pictures alone", {0, key + " " + parts});
 }
 
 // ---- Writing
@@ -136,63 +141,76 @@ void Suspension::body(const std::string& name, const Vector3d& com, const char* 
     draft_.notes.count("bodies");
 }
 
-void Suspension::joint(const std::string& name, const char* type, const std::string& i, const std::string& j, Fields fields,
-                       const Place& from) {
+void Suspension::joint(const std::string& name, const char* type, const std::string& i, const std::string& j,
+                       Fields fields, const Place& from) {
     Fields all;
     all.add("type", type).add("bodies", "[" + i + ", " + j + "]");
     draft_.joints.push_back({joint_names_.take(name), "{" + all.text() + ", " + fields.text() + "}", from});
     draft_.notes.count("joints");
 }
 
-void Suspension::spherical(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                           const char* path) {
+void Suspension::spherical(const std::string& name, const std::string& i, const std::string& j,
+                           const Vector3d& p, const char* path) {
     joint(name, "spherical", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
 }
 
-void Suspension::universal(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                           const Vector3d& x, const Vector3d& y, const char* path) {
+void Suspension::universal(const std::string& name, const std::string& i, const std::string& j,
+                           const Vector3d& p, const Vector3d& x, const Vector3d& y, const char* path) {
     const Vector3d u = x.normalized(), v = (y - u.dot(y) * u).normalized();
     if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
-        draft_.notes.warn(place(path), fmt::format("the axes of the universal joint are {:.2g} rad off the right angle; here the "
-                                                   "second is put right",
-                                                   std::asin(std::min(off, 1.0))));
-    joint(name, "universal", i, j,
-          Fields{}.add("at", hardpoint(name, p, path)).add("axis_i", direction(u)).add("axis_j", direction(v)), place(path));
+        draft_.notes.warn(
+            place(path),
+            fmt::format("the axes of the universal joint are {:.2g} rad off the right angle; here the "
+                        "second is put right",
+                        std::asin(std::min(off, 1.0))));
+    joint(
+        name, "universal", i, j,
+        Fields{}.add("at", hardpoint(name, p, path)).add("axis_i", direction(u)).add("axis_j", direction(v)),
+        place(path));
 }
 
-void Suspension::revolute(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                          const Vector3d& axis, const char* path) {
-    joint(name, "revolute", i, j, Fields{}.add("at", hardpoint(name, p, path)).add("axis", direction(axis.normalized())),
+void Suspension::revolute(const std::string& name, const std::string& i, const std::string& j,
+                          const Vector3d& p, const Vector3d& axis, const char* path) {
+    joint(name, "revolute", i, j,
+          Fields{}.add("at", hardpoint(name, p, path)).add("axis", direction(axis.normalized())),
           place(path));
 }
 
-void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p, const char* path) {
+void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
+                       const char* path) {
     joint(name, "fixed", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
 }
 
-void Suspension::distance(const std::string& name, const std::string& i, const Vector3d& from, const std::string& j,
-                          const Vector3d& to, const char* path) {
+void Suspension::distance(const std::string& name, const std::string& i, const Vector3d& from,
+                          const std::string& j, const Vector3d& to, const char* path) {
     joint(name, "distance", i, j,
-          Fields{}.add("from", hardpoint(name + ".inner", from, path)).add("to", hardpoint(name + ".outer", to, path)), place(path));
+          Fields{}
+              .add("from", hardpoint(name + ".inner", from, path))
+              .add("to", hardpoint(name + ".outer", to, path)),
+          place(path));
 }
 
-void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                          const Vector3d& normal, const Place& from) {
-    joint(name, "in_plane", i, j, Fields{}.add("at", hardpoint(name, p, nullptr)).add("normal", direction(normal.normalized())), from);
+void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
+                          const Vector3d& p, const Vector3d& normal, const Place& from) {
+    joint(name, "in_plane", i, j,
+          Fields{}.add("at", hardpoint(name, p, nullptr)).add("normal", direction(normal.normalized())),
+          from);
 }
 
 // One bushing, whose frame rides on body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both straight along its axes.
 // F is the same in all directions, so it goes through both points. T is the gradient of an energy where K_rot is the same
 // about all axes; where it is not, as in place of a revolute, it is what Chrono says: without one.
-void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1, const std::string& body2,
-                                  const Vector3d& p, const Matrix3d& frame, const char* path,
-                                  const std::optional<Cursor>& data) {
+void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
+                                  const std::string& body2, const Vector3d& p, const Matrix3d& frame,
+                                  const char* path, const std::optional<Cursor>& data) {
     if (!data) {
         if (kind == Kind::revolute) return revolute(name, body1, body2, p, frame.col(2), path);
-        if (kind == Kind::universal) return universal(name, body1, body2, p, frame.col(0), frame.col(1), path);
+        if (kind == Kind::universal)
+            return universal(name, body1, body2, p, frame.col(0), frame.col(1), path);
         return spherical(name, body1, body2, p, path);
     }
-    const double linear = data->require("Stiffness Linear").number(), rotational = data->require("Stiffness Rotational").number();
+    const double linear = data->require("Stiffness Linear").number(),
+                 rotational = data->require("Stiffness Rotational").number();
     double free = 0;
     if (const auto dof = data->optional("DOF"))
         if (const auto k = dof->optional("Stiffness Rotational")) free = k->number();
@@ -203,16 +221,19 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
     Fields fields;
     fields.add("bodies", "[" + body2 + ", " + body1 + "]").add("at", hardpoint(name, p, path));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
-    if (!is_round) fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)), direction(frame.col(0))));
+    if (!is_round)
+        fields.add("frame",
+                   fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)), direction(frame.col(0))));
     fields.add("rates", fmt::format("[{0}, {0}, {0}]", number(linear)))
-        .add("rotational_rates", fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
+        .add("rotational_rates",
+             fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
     draft_.bushings.push_back({element_names_.take(name), "{" + fields.text() + "}", place(path)});
     draft_.notes.count("bushings");
 }
 
-void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from, const std::string& j, const Vector3d& to,
-                      const Cursor& data) {
+void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from,
+                      const std::string& j, const Vector3d& to, const Cursor& data) {
     const Place here{data.value->line, data.path};
     const double drawn = (to - from).norm();
     Fields fields;
@@ -222,7 +243,8 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     const auto put = [&](std::vector<Entry>& list) {
         list.push_back({element_names_.take(name), "{" + fields.text() + "}", here});
     };
-    const auto k = data.optional("Spring Coefficient"), curve = data.optional("Spring Curve Data"), map = data.optional("Map Data");
+    const auto k = data.optional("Spring Coefficient"), curve = data.optional("Spring Curve Data"),
+               map = data.optional("Map Data");
     const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
     const bool damps = data.optional("Damping Coefficient") || data.optional("Damping Curve Data");
     if (!map && !curve && (!k || k->number() == 0) && preload == 0) {  // a damper
@@ -232,7 +254,8 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
             put(draft_.dampers);
         return;
     }
-    if (damps && side > 0) draft_.notes.leave_out("being of motion alone", {here.line, "damping of " + here.what});
+    if (damps && side > 0)
+        draft_.notes.leave_out("being of motion alone", {here.line, "damping of " + here.what});
     if (!data.optional("Free Length") && !map) data.require("Free Length");
     const double free = data.optional("Free Length") ? data.require("Free Length").number() : drawn;
     double force = 0;  // at the design position, pushing apart
@@ -260,7 +283,8 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
             const auto lines = map->items();
             std::vector<std::pair<double, std::vector<double>>> by_speed;
             for (const Cursor& line : lines) {
-                const auto cells = line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
+                const auto cells =
+                    line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
                 std::vector<double> forces;
                 for (std::size_t n = 1; n < cells.size(); ++n) forces.push_back(cells[n].number());
                 by_speed.emplace_back(cells[0].number(), forces);
@@ -288,8 +312,10 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
         if (rows.size() < 2) data.fail("a curve needs at least two rows");
         for (std::size_t n = 1; n < rows.size(); ++n)
             if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
-                data.fail(fmt::format("row {}: a deflection that does not rise, or a force that falls, which no spring of a scene has",
-                                      n + 1));
+                data.fail(
+                    fmt::format("row {}: a deflection that does not rise, or a force that falls, which no "
+                                "spring of a scene has",
+                                n + 1));
         const double x = drawn - free;
         const auto above = std::ranges::find_if(rows, [&](const auto& row) { return row.first > x; });
         if (above == rows.begin())
@@ -301,23 +327,31 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
                                                 (above->second - (above - 1)->second));
         if (side > 0)
             if (const double off = off_straight(rows); off > 1e-9)
-                draft_.notes.warn(here, fmt::format("Chrono runs straight between the rows, a scene smoothly: up to {:.2g} of the "
-                                                    "largest force apart",
-                                                    off));
+                draft_.notes.warn(
+                    here, fmt::format(
+                              "Chrono runs straight between the rows, a scene smoothly: up to {:.2g} of the "
+                              "largest force apart",
+                              off));
         fields.add("curve", "{table: " + table(rows) + ", outside: unknown}").add("free_length", free);
     }
     const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
     if (side > 0) {
-        if (force < 0 && free != drawn) draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
+        if (force < 0 && free != drawn)
+            draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
         if (least && most && least->number() > most->number())
-            draft_.notes.warn(here, fmt::format("its minimum length {} is above its maximum length {}: both stops are always closed",
-                                                least->value->text, most->value->text));
+            draft_.notes.warn(
+                here,
+                fmt::format(
+                    "its minimum length {} is above its maximum length {}: both stops are always closed",
+                    least->value->text, most->value->text));
         else if ((least && least->number() > drawn) || (most && most->number() < drawn))
             draft_.notes.warn(here, fmt::format("a stop is closed at the design length {:.4g} m", drawn));
         if (least || most)
-            draft_.notes.warn(here, fmt::format("Chrono's stops run straight between their rows, a scene smoothly: up to {:.2g} of "
-                                                "125 kN apart",
-                                                off_straight(stop_table)));
+            draft_.notes.warn(
+                here, fmt::format(
+                          "Chrono's stops run straight between their rows, a scene smoothly: up to {:.2g} of "
+                          "125 kN apart",
+                          off_straight(stop_table)));
     }
     const auto stop = [&](double clearance) {
         return fmt::format("{{clearance: {}, curve: {{table: {}}}}}", computed(clearance), table(stop_table));
@@ -328,10 +362,13 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     draft_.notes.count("springs");
 }
 
-void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                         const Vector3d& axis, double rate, double moment, const char* path) {
+void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
+                         const Vector3d& p, const Vector3d& axis, double rate, double moment,
+                         const char* path) {
     Fields fields;
-    fields.add("bodies", "[" + i + ", " + j + "]").add("at", hardpoint(name, p, nullptr)).add("axis", direction(axis));
+    fields.add("bodies", "[" + i + ", " + j + "]")
+        .add("at", hardpoint(name, p, nullptr))
+        .add("axis", direction(axis));
     fields.add("rate", rate);
     if (moment != 0) fields.add("preload_moment", computed(moment));
     draft_.torsion_springs.push_back({element_names_.take(name), "{" + fields.text() + "}", place(path)});
@@ -354,18 +391,20 @@ void Suspension::spindle(const std::string& carrier) {
                     (Eigen::AngleAxisd(-side * camber, Vector3d::UnitX()) * Vector3d(Vector3d::UnitY()));
     axis *= side;
     draft_.wheels.push_back({side > 0 ? "left" : "right",
-                             "{" + Fields{}
-                                       .add("body", name)
-                                       .add("centre", hardpoint(name, centre, "Spindle/COM"))
-                                       .add("spin_axis", direction(axis))
-                                       .add("side", side > 0 ? "left" : "right")
-                                       .text() +
+                             "{" +
+                                 Fields{}
+                                     .add("body", name)
+                                     .add("centre", hardpoint(name, centre, "Spindle/COM"))
+                                     .add("spin_axis", direction(axis))
+                                     .add("side", side > 0 ? "left" : "right")
+                                     .text() +
                                  "}",
                              place("Spindle")});
 }
 
-void Suspension::link(const std::string& name, const char* part, const Vector3d& com, const std::string& i, const Vector3d& at_i,
-                      const std::string& j, const Vector3d& at_j, bool universal_at_j, const char* path_i, const char* path_j) {
+void Suspension::link(const std::string& name, const char* part, const Vector3d& com, const std::string& i,
+                      const Vector3d& at_i, const std::string& j, const Vector3d& at_j, bool universal_at_j,
+                      const char* path_i, const char* path_j) {
     body(name, com, part);
     spherical(name + ".inner", i, name, at_i, path_i);
     if (!universal_at_j) return spherical(name + ".outer", name, j, at_j, path_j);
@@ -373,17 +412,21 @@ void Suspension::link(const std::string& name, const char* part, const Vector3d&
     universal(name + ".outer", name, j, at_j, A.col(0), A.col(1), path_j);
 }
 
-void Suspension::tierod(const char* part, const char* chassis_end, const char* outer_end, const std::string& on_outer) {
-    const std::string inner_path = std::string(part) + "/" + chassis_end, outer_path = std::string(part) + "/" + outer_end;
+void Suspension::tierod(const char* part, const char* chassis_end, const char* outer_end,
+                        const std::string& on_outer) {
+    const std::string inner_path = std::string(part) + "/" + chassis_end,
+                      outer_path = std::string(part) + "/" + outer_end;
     const Vector3d inner = point(inner_path.c_str()), outer = point(outer_path.c_str());
     const std::string name = sided("tierod"), path(part);
-    const bool is_body = has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) && has((path + "/Radius").c_str());
+    const bool is_body =
+        has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) && has((path + "/Radius").c_str());
     if (!is_body) return distance(name, "ground", inner, on_outer, outer, outer_path.c_str());
     body(name, 0.5 * (inner + outer), part);
     std::optional<Cursor> data;
     if (has((path + "/Bushing Data").c_str())) data = at((path + "/Bushing Data").c_str());
     Matrix3d A = frame_along(outer - inner, Vector3d::UnitX());
-    joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(), outer_path.c_str(), data);
+    joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(),
+                     outer_path.c_str(), data);
     joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner, A, inner_path.c_str(), data);
 }
 

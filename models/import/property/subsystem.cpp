@@ -18,7 +18,8 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
     double value = 0;
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 1e30)
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
+        std::abs(value) > 1e30)
         reader::fail(file.file, line, "HARDPOINT", fmt::format("{} is no number", reader::quote(text)));
     return value;
 }
@@ -35,7 +36,8 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
     draft.remarks = {"Axes turned from x rearward, y right, z up to x forward, y left, z up.",
-                     "Hardpoints alone: joints and bodies are in the subsystem's template, which is another file. Put yours below."};
+                     "Hardpoints alone: joints and bodies are in the subsystem's template, which is another "
+                     "file. Put yours below."};
     draft.points = Hardpoints(1);
     bool any_pair = false;
     for (const auto& block : file.blocks) {
@@ -44,7 +46,8 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
                 std::string what = block.name;
                 for (const auto& [key, value] : block.values)
                     if (key == "USAGE" || key == "PROPERTY_FILE") what += " " + value;
-                draft.notes.warn({block.line, what}, "not a part of this scene: what it connects is not in this file");
+                draft.notes.warn({block.line, what},
+                                 "not a part of this scene: what it connects is not in this file");
             }
             continue;
         }
@@ -58,12 +61,14 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             reader::fail(file.file, block.line, "HARDPOINT", fmt::format("no column {}", wanted));
         };
         if (block.table.columns.empty()) continue;
-        const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"), x = column("x"), y = column("y"), z = column("z");
+        const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"), x = column("x"),
+                          y = column("y"), z = column("z");
         for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
             const auto& row = block.table.rows[n];
             const int line = block.table.lines[n];
             const double mm = 1000 * file.length;
-            const Eigen::Vector3d p(-mm * real(file, line, row[x]), -mm * real(file, line, row[y]), mm * real(file, line, row[z]));
+            const Eigen::Vector3d p(-mm * real(file, line, row[x]), -mm * real(file, line, row[y]),
+                                    mm * real(file, line, row[z]));
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";

@@ -87,7 +87,8 @@ std::string scene_of(const std::string& text, const Options& options = {}) {
     return importer::import_text(text, "model.adm", options).yaml;
 }
 
-std::string refusal(const std::string& text, const Options& options = {}, const std::string& file = "model.adm") {
+std::string refusal(const std::string& text, const Options& options = {},
+                    const std::string& file = "model.adm") {
     try {
         importer::import_text(text, file, options);
     } catch (const SceneError& error) {
@@ -102,7 +103,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 std::string everywhere(std::string text, const std::string& from, const std::string& to) {
-    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) text.replace(at, from.size(), to);
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+        text.replace(at, from.size(), to);
     return text;
 }
 
@@ -110,20 +112,28 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
     const std::string expected = entries(scene_of(linkage));
     const std::pair<const char*, std::string> others[] = {
         {"lines end in CRLF", everywhere(linkage, "\n", "\r\n")},
-        {"cut off words", everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"), "MARKER/", "mark/")},
+        {"cut off words",
+         everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"), "MARKER/",
+                    "mark/")},
         {"small letters", replaced(replaced(linkage, ", TRANSLATIONAL", ", translation"), "KGRAV", "kgrav")},
         {"commas at the ends of lines", replaced(linkage, ", I = 4\n, J = 5", ", I = 4,\n, J = 5")},
         {"all on one line", replaced(linkage, "\n, I = 3\n, J = 1", ", I=3,J=1")},
         {"a list over lines", replaced(linkage, "QG = 10, 20, 30", "QG = 10,\n, 20\n, 30")},
-        {"a list that begins on its second line", replaced(linkage, "QG = 10, 20, 30", "QG = \n, 10, 20, 30")},
-        {"the sign of continuation at the end", replaced(linkage, "SPRINGDAMPER/1\n, TRANSLATIONAL", "SPRINGDAMPER/1, &\n TRANSLATIONAL")},
+        {"a list that begins on its second line",
+         replaced(linkage, "QG = 10, 20, 30", "QG = \n, 10, 20, 30")},
+        {"the sign of continuation at the end",
+         replaced(linkage, "SPRINGDAMPER/1\n, TRANSLATIONAL", "SPRINGDAMPER/1, &\n TRANSLATIONAL")},
         {"leading zeros", everywhere(everywhere(linkage, "PART = 1", "PART = 001"), "JOINT/1", "JOINT/0001")},
         {"radians", everywhere(linkage, "90D, 90D, 0D", "1.5707963267948966, 1.5707963267948966, 0")},
         {"exponents of old", replaced(linkage, "K = 12.5", "K = 1.25D+01")},
         {"bytes of Latin-1 in comments", replaced(linkage, "ACCGRAV/", "! f\xFCr Gewicht\nACCGRAV/")},
         {"comments within a statement", replaced(linkage, ", J = 5\n", "! between\n, J = 5   ! behind\n")},
-        {"units last", replaced(linkage.substr(0, linkage.find("UNITS")) + linkage.substr(linkage.find("!    adams_view_name='ground'")),
-                                "END\n", linkage.substr(linkage.find("UNITS"), linkage.find("!    adams") - linkage.find("UNITS")) + "END\n")},
+        {"units last",
+         replaced(linkage.substr(0, linkage.find("UNITS")) +
+                      linkage.substr(linkage.find("!    adams_view_name='ground'")),
+                  "END\n",
+                  linkage.substr(linkage.find("UNITS"), linkage.find("!    adams") - linkage.find("UNITS")) +
+                      "END\n")},
         {"more behind the end", linkage + "nonsense\n"},
     };
     for (const auto& [what, text] : others) EXPECT_EQ(entries(scene_of(text)), expected) << what;
@@ -132,8 +142,11 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
 TEST(Adm, KeepsNamesAndSaysWhereEachElementComesFrom) {
     const std::string yaml = scene_of(linkage);
     EXPECT_NE(yaml.find("crank: {origin: crank_cm, mass: 2}  # line 15, PART/2 'crank'"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, free_length: 210}"),
+    EXPECT_NE(yaml.find("joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"),
+              yaml.npos)
+        << yaml;
+    EXPECT_NE(yaml.find("springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, "
+                        "free_length: 210}"),
               yaml.npos)
         << yaml;
     EXPECT_NE(yaml.find("damping of SPRINGDAMPER/1"), yaml.npos) << yaml;
@@ -146,28 +159,37 @@ TEST(Adm, UnitsAreConvertedEachByItsOwn) {
         double newton, kilogram, metre;
     };
     const double pound = 0.45359237, g = 9.80665;
-    const auto spring_of = [](const Scene& scene) { return std::get<AxialSpring>(scene.elastics.at(0).kind); };
-    for (const Units& u : {Units{"NEWTON", "KILOGRAM", "MILLIMETER", 1, 1, 1e-3}, Units{"KNEWTON", "KILOGRAM", "METER", 1e3, 1, 1},
+    const auto spring_of = [](const Scene& scene) {
+        return std::get<AxialSpring>(scene.elastics.at(0).kind);
+    };
+    for (const Units& u : {Units{"NEWTON", "KILOGRAM", "MILLIMETER", 1, 1, 1e-3},
+                           Units{"KNEWTON", "KILOGRAM", "METER", 1e3, 1, 1},
                            Units{"POUND_FORCE", "SLUG", "FOOT", pound * g, pound * g / 0.3048, 0.3048},
                            Units{"POUND_FORCE", "POUND_MASS", "INCH", pound * g, pound, 0.0254},
                            Units{"DYNE", "GRAM", "CENTIMETER", 1e-5, 1e-3, 1e-2}}) {
         std::string text = replaced(linkage, "NEWTON", u.force);
         text = replaced(replaced(text, "KILOGRAM", u.mass), "MILLIMETER", u.length);
         const Scene scene = parse_scene(scene_of(text), "scene");
-        EXPECT_NEAR(std::get<LinearRate>(spring_of(scene).law).k / (12.5 * u.newton / u.metre), 1, 1e-11) << u.force;
+        EXPECT_NEAR(std::get<LinearRate>(spring_of(scene).law).k / (12.5 * u.newton / u.metre), 1, 1e-11)
+            << u.force;
         EXPECT_NEAR(spring_of(scene).free_length / (210 * u.metre), 1, 1e-11) << u.length;
-        EXPECT_NEAR(std::get<DeadForce>(scene.static_loads.at(0).kind).f.z() / (-2 * u.kilogram * 9806.65 * u.metre), 1, 1e-11) << u.mass;
+        EXPECT_NEAR(
+            std::get<DeadForce>(scene.static_loads.at(0).kind).f.z() / (-2 * u.kilogram * 9806.65 * u.metre),
+            1, 1e-11)
+            << u.mass;
     }
-    EXPECT_EQ(entries(scene_of(replaced(linkage, ", FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND",
-                                        ", SYSTEM = MKS"))),
+    EXPECT_EQ(entries(scene_of(replaced(
+                  linkage, ", FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND",
+                  ", SYSTEM = MKS"))),
               entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
 }
 
 // ZP and XP are points: REULER, the points and a marker in a marker are three ways to say one frame.
 TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
-    const std::string bushing = replaced(linkage, "ACCGRAV/", "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
-                                                              "MARKER/7, PART = 1, QP = 11, 22, 33, REULER = 30D, 40D, 50D\n"
-                                                              "BUSHING/9, I = 6, J = 7, K = 1, 2, 3, KT = 4, 5, 6\nACCGRAV/");
+    const std::string bushing = replaced(linkage, "ACCGRAV/",
+                                         "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
+                                         "MARKER/7, PART = 1, QP = 11, 22, 33, REULER = 30D, 40D, 50D\n"
+                                         "BUSHING/9, I = 6, J = 7, K = 1, 2, 3, KT = 4, 5, 6\nACCGRAV/");
     const Matrix3d A = (Eigen::AngleAxisd(std::numbers::pi / 6, Vector3d::UnitZ()) *
                         Eigen::AngleAxisd(std::numbers::pi * 2 / 9, Vector3d::UnitX()) *
                         Eigen::AngleAxisd(std::numbers::pi * 5 / 18, Vector3d::UnitZ()))
@@ -175,11 +197,15 @@ TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
     const Vector3d q(11, 22, 33), z = q + 7 * A.col(2), x = q + 3 * A.col(0) + 2 * A.col(2);
     const auto list = [](const Vector3d& v) { return fmt::format("{}, {}, {}", v.x(), v.y(), v.z()); };
     const std::string at = "QP = 11, 22, 33, REULER = 30D, 40D, 50D";
-    const std::string by_points = replaced(bushing, at, fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}", list(z), list(x)));
-    const std::string use_x = replaced(
-        bushing, at, fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}, USEXP", list(q + 7 * A.col(2) + A.col(0)), list(q + 5 * A.col(0))));
-    const std::string nested =
-        replaced(bushing, at, "QP = 0, 0, 33, REULER = 0, 40D, 50D, RM = 8\nMARKER/8, PART = 1, QP = 11, 22, 0, REULER = 30D, 0, 0");
+    const std::string by_points =
+        replaced(bushing, at, fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}", list(z), list(x)));
+    const std::string use_x =
+        replaced(bushing, at,
+                 fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}, USEXP", list(q + 7 * A.col(2) + A.col(0)),
+                             list(q + 5 * A.col(0))));
+    const std::string nested = replaced(bushing, at,
+                                        "QP = 0, 0, 33, REULER = 0, 40D, 50D, RM = 8\nMARKER/8, PART = 1, QP "
+                                        "= 11, 22, 0, REULER = 30D, 0, 0");
     const auto frame = [](const std::string& text) {
         const Scene scene = parse_scene(scene_of(text), "scene");
         for (const Elastic& elastic : scene.elastics)
@@ -201,7 +227,9 @@ TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
 
 TEST(Adm, SaysWhatIsWrongAndWhere) {
     const std::string more = "ACCGRAV/";
-    const auto with = [&](const std::string& statement) { return replaced(linkage, more, statement + "\n" + more); };
+    const auto with = [&](const std::string& statement) {
+        return replaced(linkage, more, statement + "\n" + more);
+    };
     const std::tuple<const char*, std::string, const char*> cases[] = {
         {"empty", "", "no statement"},
         {"a picture", std::string("\x89PNG\0\r\n", 7) + linkage, "model.adm:1: a NUL byte"},
@@ -211,7 +239,11 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"orphan", "t\n, I = 1\n", "continues a statement, but there is none"},
         {"huge id", "t\nPART/99999999999999\n", "too large for an id"},
         {"no comma", "t\nPART/1 GROUND\n", "expected a comma"},
-        {"no units", replaced(linkage, "UNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n", ""), "UNITS: missing"},
+        {"no units",
+         replaced(linkage,
+                  "UNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n",
+                  ""),
+         "UNITS: missing"},
         {"two units", linkage.substr(0, linkage.find("END")) + "UNITS/, SYSTEM = MKS\n", "a second UNITS"},
         {"a unit", replaced(linkage, "MILLIMETER", "CUBIT"), "'CUBIT' is no unit"},
         {"a system", replaced(linkage, ", FORCE = NEWTON", ", SYSTEM = NONE"), "is no system of units"},
@@ -222,11 +254,14 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"no part", with("MARKER/8, PART = 77"), "there is no PART/77"},
         {"no marker", replaced(linkage, ", I = 3", ", I = 33"), "there is no MARKER/33"},
         {"no I", replaced(linkage, ", I = 3\n", ""), "I is missing"},
-        {"a marker in itself", with("MARKER/8, PART = 1, RM = 9\nMARKER/9, PART = 1, RM = 8"), "stands in itself"},
+        {"a marker in itself", with("MARKER/8, PART = 1, RM = 9\nMARKER/9, PART = 1, RM = 8"),
+         "stands in itself"},
         {"a marker in none", with("MARKER/8, PART = 1, RM = 99"), "RM: there is no MARKER/99"},
         {"a marker elsewhere", with("MARKER/8, PART = 1, RM = 4"), "is on another part"},
-        {"angles and points", with("MARKER/8, PART = 1, REULER = 0, 0, 0, ZP = 0, 0, 1"), "REULER together with"},
-        {"the same point", with("MARKER/8, PART = 1, QP = 1, 1, 1, ZP = 1, 1, 1"), "it must be another point"},
+        {"angles and points", with("MARKER/8, PART = 1, REULER = 0, 0, 0, ZP = 0, 0, 1"),
+         "REULER together with"},
+        {"the same point", with("MARKER/8, PART = 1, QP = 1, 1, 1, ZP = 1, 1, 1"),
+         "it must be another point"},
         {"on a line", with("MARKER/8, PART = 1, ZP = 0, 0, 1, XP = 0, 0, 2"), "on one line"},
         {"only x", with("MARKER/8, PART = 1, XP = 1, 0, 0"), "XP without ZP"},
         {"only z", with("MARKER/8, PART = 1, ZP = 1, 0, 0, USEXP"), "USEXP without XP"},
@@ -236,7 +271,8 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"not a number", replaced(linkage, "K = 12.5", "K = nan"), "K: 'nan' is no number"},
         {"beyond all bounds", replaced(linkage, "K = 12.5", "K = 1e999"), "out of range"},
         {"degrees of stiffness", replaced(linkage, "K = 12.5", "K = 12D"), "this is no angle"},
-        {"two numbers", replaced(linkage, "QG = 10, 20, 30", "QG = 10, 20"), "2 numbers, where 3 are asked for"},
+        {"two numbers", replaced(linkage, "QG = 10, 20, 30", "QG = 10, 20"),
+         "2 numbers, where 3 are asked for"},
         {"an argument", replaced(linkage, "K = 12.5", "STIFFNESS = 12.5"), "'STIFFNESS' is no argument"},
         {"a flag", replaced(linkage, ", REVOLUTE", ", HINGE"), "'HINGE' is no flag"},
         {"twice given", replaced(linkage, ", K = 12.5", ", K = 12.5, K = 1"), "K is given twice"},
@@ -246,8 +282,10 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"no kind", replaced(linkage, ", REVOLUTE\n", ""), "does not say of what kind"},
         {"apart", replaced(linkage, "QP = -10, -20, -30", "QP = -10, -20, 0"), "I and J are apart by 30 mm"},
         {"two gravities", with("ACCGRAV/, KGRAV = 1"), "a second one"},
-        {"floating", with("MARKER/8, PART = 1, FLOATING\nBUSHING/8, I = 4, J = 8"), "floats, and so is nowhere"},
-        {"a bracket open", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -3*(DM(4,5)"), "a bracket is left open"},
+        {"floating", with("MARKER/8, PART = 1, FLOATING\nBUSHING/8, I = 4, J = 8"),
+         "floats, and so is nowhere"},
+        {"a bracket open", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -3*(DM(4,5)"),
+         "a bracket is left open"},
         {"a bracket shut", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3)"), "a bracket closes"},
         {"no function", with("SFORCE/1, TRANS, I = 4, J = 5"), "FUNCTION is missing"},
         {"a field without", with("FIELD/1, I = 4, J = 5"), "KMATRIX is missing"},
@@ -263,13 +301,16 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         EXPECT_NE(said.find(message), said.npos) << what << ": " << said;
     }
     EXPECT_NE(refusal(linkage, {"crnk", false, false}).find("did you mean 'crank'"), std::string::npos);
-    EXPECT_NE(refusal(linkage, {"pivot", false, false}).find("is not on a part that moves"), std::string::npos);
+    EXPECT_NE(refusal(linkage, {"pivot", false, false}).find("is not on a part that moves"),
+              std::string::npos);
     EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is no ending"), std::string::npos);
 }
 
 // Nothing is dropped in silence: an error with its line, or with --allow-missing told in the head.
 TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
-    const auto with = [&](const std::string& statement) { return replaced(linkage, "ACCGRAV/", statement + "\nACCGRAV/"); };
+    const auto with = [&](const std::string& statement) {
+        return replaced(linkage, "ACCGRAV/", statement + "\nACCGRAV/");
+    };
     const std::pair<std::string, const char*> cases[] = {
         {"CONTACT/1, IGEOM = 1", "a contact between parts"},
         {"JOINT/2, CONVEL, I = 4, J = 5", "constant-velocity"},
@@ -279,7 +320,8 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DM(4,5)**2", "a power of a displacement"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3*DM(4,5)", "a negative rate"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DX(4,5,5)", "other than between its own markers"},
-        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = VARVAL(4)\nVARIABLE/4, FUNCTION = VARVAL(3)",
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = VARVAL(4)\nVARIABLE/4, "
+         "FUNCTION = VARVAL(3)",
          "it depends on itself"},
         {"FIELD/1, I = 4, J = 5, FUNCTION = USER(1)", "a function of the user's"},
         {"BEAM/1, STRING, I = 4, J = 5", "another formulation"},
@@ -319,7 +361,8 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
     EXPECT_DOUBLE_EQ(constant("STEP(TIME, 1, 10, 3, 20)"), 15);
     EXPECT_DOUBLE_EQ(constant("IF(TIME-2: 1, 5, 9) + IF(-1: 1, 5, 9) + IF(1: 1, 5, 9)"), 15);
     EXPECT_DOUBLE_EQ(constant("-0*USER(1, 2) - 7*VR(1, 2) + MAX(1, 3) + SIGN(2, -1)"), 1);
-    const Value law = evaluate("-3*(DM(1,2) - 10) + 2*(5 - DM(1,2))/4 - AKISPL(2*DX(1,2,2)-1, 0, 7)", context);
+    const Value law =
+        evaluate("-3*(DM(1,2) - 10) + 2*(5 - DM(1,2))/4 - AKISPL(2*DX(1,2,2)-1, 0, 7)", context);
     ASSERT_TRUE(law.is_known()) << law.unknown;
     EXPECT_DOUBLE_EQ(law.constant, 32.5);
     EXPECT_DOUBLE_EQ(law.linear.at({Measure::Kind::DM, 1, 2, 0}), -3.5);
@@ -327,8 +370,9 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
     EXPECT_DOUBLE_EQ(law.curves[0].factor, -1);
     EXPECT_DOUBLE_EQ(law.curves[0].scale, 2);
     EXPECT_DOUBLE_EQ(law.curves[0].offset, -1);
-    for (const char* text : {"", "1 +", "1 2", "(1", "SIN(DX(1,2))", "1/0", "1/DM(1,2)", "DX(1)*DX(2)", "nothing", "SQRT(-1)", "DX(1.5)",
-                             "IF(DX(1,2): 1, 2, 3)", "IMPACT(1, 2, 3)", "AKISPL(3, 0, 1)", "VARVAL(1)"})
+    for (const char* text :
+         {"", "1 +", "1 2", "(1", "SIN(DX(1,2))", "1/0", "1/DM(1,2)", "DX(1)*DX(2)", "nothing", "SQRT(-1)",
+          "DX(1.5)", "IF(DX(1,2): 1, 2, 3)", "IMPACT(1, 2, 3)", "AKISPL(3, 0, 1)", "VARVAL(1)"})
         EXPECT_FALSE(evaluate(text, context).is_known()) << text;
     EXPECT_FALSE(evaluate(std::string(100'000, '('), context).is_known());
     EXPECT_FALSE(evaluate(std::string(100'000, '-') + "1", context).linear.size());
@@ -371,13 +415,15 @@ TEST(Adm, JointSamplesBearTheWeightAtRest) {
                                         {"Distance_Case01", "JGRAV", Vector3d(0, weight, 0)},
                                         {"Prismatic_Case01", "IGRAV", Vector3d(weight, 0, 0)},
                                         {"Cylindrical_Case01", "IGRAV", Vector3d(weight, 0, 0)}}) {
-        const std::string text = replaced(sample(fmt::format("chrono_{}.adm", file)), "KGRAV = -9.80665", fmt::format("{} = {}", axis, weight));
+        const std::string text = replaced(sample(fmt::format("chrono_{}.adm", file)), "KGRAV = -9.80665",
+                                          fmt::format("{} = {}", axis, weight));
         const Scene scene = parse_scene(scene_of(text), "scene");
         const Model model = compile(scene);
         ASSERT_EQ(model.joints.size(), 1u) << file;
         const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
         const double on_part = model.joints[0].i == ground ? -1 : 1;
-        EXPECT_LE((on_part * rest.reactions.at(0).force + g).norm(), 1e-8) << file << ": " << rest.reactions.at(0).force;
+        EXPECT_LE((on_part * rest.reactions.at(0).force + g).norm(), 1e-8)
+            << file << ": " << rest.reactions.at(0).force;
     }
 }
 
@@ -405,13 +451,17 @@ MARKER/3, PART = 1, FLOATING
     const auto bushing_of = [&](const std::string& statement) {
         return std::get<Bushing>(parse_scene(scene_of(base + statement), "scene").elastics.at(0).kind);
     };
-    const Bushing expected = bushing_of("BUSHING/1, I=1, J=2, K=10,20,30, KT=4,5,6, FORCE=1,2,3, TORQUE=0,0,7\n");
+    const Bushing expected =
+        bushing_of("BUSHING/1, I=1, J=2, K=10,20,30, KT=4,5,6, FORCE=1,2,3, TORQUE=0,0,7\n");
     for (const char* statement :
-         {"GFORCE/1, I=1, JFLOAT=3, RM=2\n, FX = 1-10*DX(1,2,2)\\\n, FY = 2-20*DY(1,2,2) - 3*VY(1,2,2)\\\n, FZ = 3 - 15*DZ(1,2,2)\n, -15*DZ(1,2,2)\\\n"
+         {"GFORCE/1, I=1, JFLOAT=3, RM=2\n, FX = 1-10*DX(1,2,2)\\\n, FY = 2-20*DY(1,2,2) - 3*VY(1,2,2)\\\n, "
+          "FZ = 3 - 15*DZ(1,2,2)\n, -15*DZ(1,2,2)\\\n"
           ", TX = -4*AX(1,2)\\ TY = -5*AY(1,2)\\ TZ = 7-6*AZ(1,2)\n",
-          "FIELD/1, I=1, J=2, FORCE=1,2,3,0,0,7, KMATRIX=10,0,0,0,0,0\n, 0,20,0,0,0,0, 0,0,30,0,0,0, 0,0,0,4,0,0\n, 0,0,0,0,5,0,0,0,0,0,0,6\n"}) {
+          "FIELD/1, I=1, J=2, FORCE=1,2,3,0,0,7, KMATRIX=10,0,0,0,0,0\n, 0,20,0,0,0,0, 0,0,30,0,0,0, "
+          "0,0,0,4,0,0\n, 0,0,0,0,5,0,0,0,0,0,0,6\n"}) {
         const Bushing found = bushing_of(statement);
-        EXPECT_EQ(std::get<LinearStiffness>(found.law).K, std::get<LinearStiffness>(expected.law).K) << statement;
+        EXPECT_EQ(std::get<LinearStiffness>(found.law).K, std::get<LinearStiffness>(expected.law).K)
+            << statement;
         EXPECT_EQ(found.preload, expected.preload) << statement;
         EXPECT_LE((found.undeformed - expected.undeformed).norm(), 1e-15) << statement;
         EXPECT_EQ(found.formulation, expected.formulation);
@@ -435,8 +485,10 @@ ACCGRAV/, KGRAV = -10
 }
 
 TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
-    const std::string text = replaced(linkage, "ACCGRAV/", "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
-                                                           "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
+                 "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
     const std::string yaml = scene_of(text);
     EXPECT_NE(yaml.find("SPLINE/4 the file has Akima's curve"), yaml.npos) << yaml;
     const Scene scene = parse_scene(yaml, "scene");
@@ -449,12 +501,16 @@ TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
 
 // IMPACT with exponent 1 is a bump stop, BISTOP one each way.
 TEST(Adm, AContactAlongALineIsAStop) {
-    const std::string text = replaced(linkage, "ACCGRAV/", "SFORCE/7, TRANS, I = 4, J = 5\n"
-                                                           ", FUNCTION = BISTOP(DM(4,5), VR(4,5), 180, 230, 1000, 1, 5, 0.1)\nACCGRAV/");
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "SFORCE/7, TRANS, I = 4, J = 5\n"
+                 ", FUNCTION = BISTOP(DM(4,5), VR(4,5), 180, 230, 1000, 1, 5, 0.1)\nACCGRAV/");
     const Scene scene = parse_scene(scene_of(text), "scene");
     ASSERT_EQ(scene.elastics.size(), 3u);
     const auto stop = [&](std::size_t k) { return std::get<AxialSpring>(scene.elastics.at(k).kind); };
-    const auto touches = [&](std::size_t k) { return stop(k).free_length + std::get<Curve>(stop(k).law).knots.at(0); };
+    const auto touches = [&](std::size_t k) {
+        return stop(k).free_length + std::get<Curve>(stop(k).law).knots.at(0);
+    };
     EXPECT_NEAR(touches(1), 0.180, 1e-12);
     EXPECT_NEAR(touches(2), 0.230, 1e-12);
     EXPECT_NEAR(std::get<Curve>(stop(1).law).pieces.front()[1], 1e6, 1e-3);
@@ -467,9 +523,11 @@ TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
     ASSERT_EQ(generic.branches.size(), 1u);
     EXPECT_EQ(generic.branches[0].unit, ParameterUnit::radian);
     EXPECT_NEAR(generic.branches[0].to, std::numbers::pi / 6, 1e-12);
-    const std::string text = replaced(linkage, "ACCGRAV/", "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
-                                                           "MOTION/1, ROT, JOINT = 1, FUNCTION = 30D*TIME\n"
-                                                           "COUPLER/1, JOINTS = 1, 2, TYPE = R:R, SCALES = 1, 2\nACCGRAV/");
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
+                 "MOTION/1, ROT, JOINT = 1, FUNCTION = 30D*TIME\n"
+                 "COUPLER/1, JOINTS = 1, 2, TYPE = R:R, SCALES = 1, 2\nACCGRAV/");
     const Scene coupled = parse_scene(scene_of(text), "scene");
     const auto& drivers = coupled.branches.at(0).drivers;
     ASSERT_EQ(drivers.size(), 2u);
@@ -505,12 +563,14 @@ ACCGRAV/, KGRAV = -9806.65
     const Scene first = parse_scene(scene_of(met), "scene");
     const importer::Exported exported = importer::export_adm(first, false);
     const Scene second = parse_scene(scene_of(exported.text), "scene");
-    const Equilibrium a = at_rest(first, compare::Leg::equilibrium), b = at_rest(second, compare::Leg::equilibrium);
+    const Equilibrium a = at_rest(first, compare::Leg::equilibrium),
+                      b = at_rest(second, compare::Leg::equilibrium);
     ASSERT_EQ(a.poses.size(), 2u);
     ASSERT_EQ(b.poses.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_LE((a.poses[k].r - b.poses[k].r).norm(), 1e-9);
-        EXPECT_LE(a.poses[k].p.angularDistance(b.poses[k].p), 1e-7);  // of an arc cosine near 1: half the digits
+        EXPECT_LE(a.poses[k].p.angularDistance(b.poses[k].p),
+                  1e-7);  // of an arc cosine near 1: half the digits
     }
     // It has moved: the agreement is not that of two models that stand still.
     EXPECT_GT((a.poses[0].r - first.bodies[0].design.r).norm(), 1e-4);

@@ -23,7 +23,9 @@ using namespace tests;
 
 const fs::path folder = fs::path(ELASTOCHECK_IMPORT);
 
-std::string chrono_scene(const std::string& text) { return importer::import_text(text, "model.json", {}).yaml; }
+std::string chrono_scene(const std::string& text) {
+    return importer::import_text(text, "model.json", {}).yaml;
+}
 
 std::string refusal(const std::string& text, const std::string& file) {
     try {
@@ -46,7 +48,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
     const Scene scene = parse_scene(chrono_scene(sample("generic__MacPhersonStrut.json")), "scene");
     ASSERT_EQ(scene.wheels.size(), 2u);
-    EXPECT_LE((scene.bodies.at(static_cast<std::size_t>(scene.wheels[0].body)).design.r - Vector3d(-0.04000403, 1.09999965, -0.02602507)).norm(), 1e-12);
+    EXPECT_LE((scene.bodies.at(static_cast<std::size_t>(scene.wheels[0].body)).design.r -
+               Vector3d(-0.04000403, 1.09999965, -0.02602507))
+                  .norm(),
+              1e-12);
     EXPECT_EQ(scene.wheels[0].side, 1);
     EXPECT_EQ(scene.wheels[1].side, -1);
     const auto& spring = std::get<AxialSpring>(scene.elastics.at(0).kind);
@@ -57,8 +62,8 @@ TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
 // Toe and camber turn the spindle, as toe and camber here say: positive toe-in, top out.
 TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     std::string text = sample("generic__DoubleWishbone.json");
-    text = replaced(replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"), "\"Camber Angle (deg)\":               0",
-                    "\"Camber Angle (deg)\": -1");
+    text = replaced(replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"),
+                    "\"Camber Angle (deg)\":               0", "\"Camber Angle (deg)\": -1");
     const Scene scene = parse_scene(chrono_scene(text), "scene");
     const Vector3d e = scene.wheels.at(0).spin_axis_local, f = scene.wheels.at(1).spin_axis_local;
     EXPECT_NEAR(std::atan2(e.x(), e.y()) * 180 / M_PI, 0.5, 1e-9);
@@ -72,7 +77,8 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
         const Scene scene = parse_scene(chrono_scene(sample(file)), "scene");
         const Model model = compile(scene);
         const auto ways = compare::ways_of(model, model.branches.front(), 6);
-        const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}), b = compare::walk(ways, {.leg = compare::Leg::series});
+        const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}),
+                   b = compare::walk(ways, {.leg = compare::Leg::series});
         ASSERT_EQ(a.outcome, Outcome::converged) << file << a.detail;
         ASSERT_EQ(b.outcome, Outcome::converged) << file << b.detail;
         ASSERT_EQ(a.points.size(), b.points.size());
@@ -100,13 +106,15 @@ TEST(Chrono, BushingsStandWhereChronoPutsThem) {
     // The tie rod has mass, and is a body between a ball and a universal joint.
     EXPECT_NE(yaml.find("tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"), yaml.npos);
     const std::string light = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json"));
-    EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"), light.npos) << light;
+    EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"), light.npos)
+        << light;
 }
 
 // The template and the generic suspension of the same numbers are one mechanism.
 TEST(Chrono, TheReplicaMovesAsItsTemplate) {
     const Scene a = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene"),
-                b = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")), "scene");
+                b = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")),
+                                "scene");
     const auto travelled = [](const Scene& scene) {
         const Model model = compile(scene);
         Branch branch = model.branches.front();
@@ -130,8 +138,13 @@ TEST(Chrono, TheReplicaMovesAsItsTemplate) {
 
 TEST(Chrono, FaultsOfTheDataAreKeptAndTold) {
     const std::string yaml = chrono_scene(sample("generic__DeDionAxle.json"));
-    EXPECT_NE(yaml.find("its minimum length 0.28 is above its maximum length 0.12: both stops are always closed"), yaml.npos) << yaml;
-    EXPECT_NE(chrono_scene(sample("generic__MacPhersonStrut.json")).find("in tension at the design position: 1.2"), std::string::npos);
+    EXPECT_NE(
+        yaml.find("its minimum length 0.28 is above its maximum length 0.12: both stops are always closed"),
+        yaml.npos)
+        << yaml;
+    EXPECT_NE(
+        chrono_scene(sample("generic__MacPhersonStrut.json")).find("in tension at the design position: 1.2"),
+        std::string::npos);
 }
 
 TEST(Chrono, SaysWhatIsWrongAndWhere) {
@@ -150,9 +163,11 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
         {"more", sound + "{}", "more behind the end"},
         {"NaN", replaced(sound, "14.705", "NaN"), "expected a value"},
         {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"), "'Vehicle' is no suspension"},
-        {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""), "did you mean 'DoubleWishbone'"},
+        {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""),
+         "did you mean 'DoubleWishbone'"},
         {"no spring", sample("generic__RigidPinnedAxle.json"), "no spring at all"},
-        {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"), "model.json:12: Spindle.COM: expected a list of 3"},
+        {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"),
+         "model.json:12: Spindle.COM: expected a list of 3"},
         {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""), "Spring.Location Arm: missing"},
         {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""), "Wing: not known of this template"},
     };
@@ -177,13 +192,16 @@ bodies: {block: {origin: o}}
 Scene beside_fixtures(const std::string& elements) {
     support::Folder here;
     for (const auto& entry : fs::directory_iterator(folder / "fixtures")) fs::copy(entry.path(), here.path);
-    return read_scene(here.write("scene.yaml", block_on + elements +
-                                                   "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
-                                                   "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
+    return read_scene(
+        here.write("scene.yaml",
+                   block_on + elements +
+                       "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
+                       "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
 }
 
 TEST(PropertyFile, ABushingTakesAllSixCurvesInTheUnitsOfTheFile) {
-    const Scene scene = beside_fixtures("bushings: {mount: {bodies: [ground, block], at: o, rates: mount.bus}}\n");
+    const Scene scene =
+        beside_fixtures("bushings: {mount: {bodies: [ground, block], at: o, rates: mount.bus}}\n");
     const auto& law = std::get<PerAxis>(std::get<Bushing>(scene.elastics.at(0).kind).law);
     const auto& x = std::get<Curve>(law.axis[0]);
     ASSERT_EQ(x.knots.size(), 5u);
@@ -196,7 +214,8 @@ TEST(PropertyFile, ABushingTakesAllSixCurvesInTheUnitsOfTheFile) {
 
 TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     const Scene scene = beside_fixtures(
-        "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, free_length: 0.6,\n"
+        "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, free_length: "
+        "0.6,\n"
         "  bump_stop: {clearance: 0.05, curve: {file: rubber.bum}}}}\n");
     const auto& coil = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
     EXPECT_NEAR(coil.pieces[1][1], 200 * 0.45359237 * 9.80665 / 0.0254, 1e-6);
@@ -207,11 +226,14 @@ TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
 
 TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
     const std::string sound = support::text_of(folder / "fixtures" / "mount.bus");
-    const auto said = [&](const std::string& text, const std::string& element = "rates: mount.bus") -> std::string {
+    const auto said = [&](const std::string& text,
+                          const std::string& element = "rates: mount.bus") -> std::string {
         support::Folder here;
         here.write("mount.bus", text);
         try {
-            read_scene(here.write("scene.yaml", block_on + "bushings: {mount: {bodies: [ground, block], at: o, " + element + "}}\n"));
+            read_scene(here.write(
+                "scene.yaml",
+                block_on + "bushings: {mount: {bodies: [ground, block], at: o, " + element + "}}\n"));
         } catch (const SceneError& error) {
             return error.what();
         }
@@ -224,7 +246,8 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
              {"no length", replaced(sound, "LENGTH", "WIDTH"), "UNITS.LENGTH: missing"},
              {"no curve", replaced(sound, "[TY_CURVE]", "[T_CURVE]"), "TY_CURVE: missing"},
              {"open", replaced(sound, "[TY_CURVE]", "[TY_CURVE"), "is left open"},
-             {"three in a row", replaced(sound, "1   4000\n", "1 4000 3\n"), ":24: 3 values in a table of 2 columns"},
+             {"three in a row", replaced(sound, "1   4000\n", "1 4000 3\n"),
+              ":24: 3 values in a table of 2 columns"},
              {"a word", replaced(sound, "1   4000\n", "1 much\n"), "'much' is no number"},
              {"falling", replaced(sound, "1   4000\n", "1 -5000\n"), "it may stay, but not fall"},
              {"back", replaced(sound, "1   4000\n", "-2 4000\n"), "is not above the one before"},
@@ -236,12 +259,15 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
         EXPECT_NE(error.find(message), error.npos) << what << ": " << error;
     }
     EXPECT_NE(said(sound, "rates: mount.txt").find("nor the name of a property file"), std::string::npos);
-    EXPECT_NE(said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]").find("the file has all six curves"), std::string::npos);
+    EXPECT_NE(
+        said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]").find("the file has all six curves"),
+        std::string::npos);
     EXPECT_NE(said(sound, "rates: ../mount.bus").find("leads out of the scene's folder"), std::string::npos);
 }
 
 TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
-    const std::string yaml = importer::import_text(support::text_of(folder / "fixtures" / "front.sub"), "front.sub", {}).yaml;
+    const std::string yaml =
+        importer::import_text(support::text_of(folder / "fixtures" / "front.sub"), "front.sub", {}).yaml;
     EXPECT_NE(yaml.find("lca_front_left: [200, 400, 150]"), yaml.npos) << yaml;
     EXPECT_NE(yaml.find("rack_mount: [-180, 0, 210]"), yaml.npos);
     EXPECT_NE(yaml.find("mirror: left -> right"), yaml.npos);
@@ -252,10 +278,11 @@ TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
 
 TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
     const auto bushing = [](const std::string& more) {
-        return std::get<Bushing>(beside_fixtures("bushings: {mount: {bodies: [ground, block], at: o, frame: {x: x, y: y}, " + more +
-                                                 "rates: [1, 2, 3], rotational_rates: [4, 5, 6]}}\n")
-                                     .elastics.at(0)
-                                     .kind);
+        return std::get<Bushing>(
+            beside_fixtures("bushings: {mount: {bodies: [ground, block], at: o, frame: {x: x, y: y}, " +
+                            more + "rates: [1, 2, 3], rotational_rates: [4, 5, 6]}}\n")
+                .elastics.at(0)
+                .kind);
     };
     const Bushing plain = bushing(""), turned = bushing("frame_j: {x: y, y: -x}, ");
     EXPECT_LE(plain.j.A_local.angularDistance(plain.i.A_local), 1e-12);
@@ -277,11 +304,14 @@ TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
         try {
             const auto result = importer::import_file(folder / "samples" / name, {});
             std::string outcome = "imported";
-            if (const auto n = result.notes.warnings.size()) outcome += fmt::format(", {} warning{}", n, n == 1 ? "" : "s");
-            row = fmt::format("| {} | {} | {} | {} | {} |", name, result.bodies, result.joints, result.elements, outcome);
+            if (const auto n = result.notes.warnings.size())
+                outcome += fmt::format(", {} warning{}", n, n == 1 ? "" : "s");
+            row = fmt::format("| {} | {} | {} | {} | {} |", name, result.bodies, result.joints,
+                              result.elements, outcome);
         } catch (const SceneError& error) {
             const std::string said = error.what(), file = (folder / "samples" / name).string();
-            row = fmt::format("| {} | - | - | - | refused: {}{} |", name, name, said.substr(file.size(), said.find('\n') - file.size()));
+            row = fmt::format("| {} | - | - | - | refused: {}{} |", name, name,
+                              said.substr(file.size(), said.find('\n') - file.size()));
         }
         EXPECT_EQ(row, line);
         ++rows;
@@ -304,17 +334,22 @@ struct Dice {
 };
 
 std::string damaged(std::string text, Dice& dice) {
-    constexpr const char* words[] = {"nan", "1e999", "-", "(", ")", ",", "\n,", "\\", "=", "1D", "{", "}", "[", "]", "\"", "0", "999999999", "USER(1)", "\n", "&\n"};
+    constexpr const char* words[] = {"nan", "1e999", "-",         "(",       ")",  ",",  "\n,",
+                                     "\\",  "=",     "1D",        "{",       "}",  "[",  "]",
+                                     "\"",  "0",     "999999999", "USER(1)", "\n", "&\n"};
     for (std::size_t n = 1 + dice.below(4); n > 0 && !text.empty(); --n) {
         const std::size_t at = dice.below(text.size());
-        const std::size_t line = text.rfind('\n', at) == text.npos ? 0 : text.rfind('\n', at), end = std::min(text.find('\n', at), text.size());
+        const std::size_t line = text.rfind('\n', at) == text.npos ? 0 : text.rfind('\n', at),
+                          end = std::min(text.find('\n', at), text.size());
         switch (dice.below(6)) {
             case 0: text.erase(line, end > line ? end - line : 1); break;
             case 1: text.insert(at, text.substr(line, end - line)); break;
             case 2: text[at] = static_cast<char>(dice.below(256)); break;
             case 3: text.insert(at, words[dice.below(std::size(words))]); break;
             case 4: text.resize(at); break;
-            default: text.replace(at, std::min<std::size_t>(1 + dice.below(6), text.size() - at), words[dice.below(std::size(words))]);
+            default:
+                text.replace(at, std::min<std::size_t>(1 + dice.below(6), text.size() - at),
+                             words[dice.below(std::size(words))]);
         }
     }
     return text;
@@ -326,14 +361,17 @@ TEST(Import, NoDamageEndsOtherThanInAnAnswer) {
         const std::string text = support::text_of(entry.path());
         for (int n = 0; n < 12; ++n) {
             const std::string input = damaged(text, dice);
-            EXPECT_NO_THROW(entry.path().extension() == ".adm" ? fuzz::adm(input) : fuzz::chrono(input)) << entry.path() << n;
+            EXPECT_NO_THROW(entry.path().extension() == ".adm" ? fuzz::adm(input) : fuzz::chrono(input))
+                << entry.path() << n;
         }
     }
     for (const auto& entry : fs::directory_iterator(folder / "fixtures")) {
         const std::string text = support::text_of(entry.path());
         for (int n = 0; n < 200; ++n) {
             const std::string input = damaged(text, dice);
-            EXPECT_NO_THROW(entry.path().extension() == ".sub" ? fuzz::subsystem(input) : fuzz::property(input)) << entry.path() << n;
+            EXPECT_NO_THROW(entry.path().extension() == ".sub" ? fuzz::subsystem(input)
+                                                               : fuzz::property(input))
+                << entry.path() << n;
         }
     }
 }

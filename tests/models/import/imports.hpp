@@ -21,7 +21,8 @@ inline std::string sample(const std::string& name) {
 inline Eigen::Matrix3d euler(double a, double b, double c) {
     using Eigen::AngleAxisd, Eigen::Vector3d;
     const double deg = std::numbers::pi / 180;
-    return (AngleAxisd(a * deg, Vector3d::UnitZ()) * AngleAxisd(b * deg, Vector3d::UnitX()) * AngleAxisd(c * deg, Vector3d::UnitZ()))
+    return (AngleAxisd(a * deg, Vector3d::UnitZ()) * AngleAxisd(b * deg, Vector3d::UnitX()) *
+            AngleAxisd(c * deg, Vector3d::UnitZ()))
         .toRotationMatrix();
 }
 
