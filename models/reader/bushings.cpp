@@ -62,6 +62,16 @@ FrameField read_frame(const Cursor& at, const Definitions& defs) {
     return {completed(a, e_a, b, across.normalized()), std::nullopt};
 }
 
+// The axes on the second body, where it is turned against the first as drawn.
+Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& defs) {
+    const FrameField other = read_frame(at, defs);
+    if (frame.only_axis || other.only_axis)
+        at.fail(
+            "needs two axes, and so does frame: bodies that are turned against each other have no axis to "
+            "spare");
+    return other.axes;
+}
+
 // ---- The stiffness of a bushing.
 
 // S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do not mix
@@ -153,6 +163,18 @@ SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
     if (full && curves)
         curves->fail("given together with stiffness; allowed: curves, with or without rates, or stiffness");
     if (full) return LinearStiffness{read_stiffness(*full, defs.units)};
+    if (const auto file = bushing.optional("rates"); file && file->value->kind == Value::Kind::scalar) {
+        for (const char* field : {"rotational_rates", "curves"})
+            if (const auto other = bushing.optional(field))
+                other->fail("given together with rates from a file; the file has all six curves");
+        if (!file->value->text.ends_with(".bus"))
+            file->fail(fmt::format("{} is no list of three rates, nor the name of a property file (.bus)",
+                                   file->found()));
+        PerAxis law;
+        const auto tables = read_bushing_file(*file, defs);
+        for (std::size_t k = 0; k < 6; ++k) law.axis[k] = interpolant(tables[k]);
+        return law;
+    }
     if (!has_rates && !curves)
         bushing.fail("no stiffness; allowed: rates, rotational_rates and/or curves, or stiffness");
     const Matrix6 K = read_rates(bushing, defs.units);
@@ -242,16 +264,19 @@ void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) 
 }  // namespace
 
 Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"bodies", "at", "frame", "rates", "rotational_rates", "stiffness", "curves", "preload",
-                  "preload_moment", "undeformed", "undeformed_angles", "formulation"});
+    at.only_keys({"bodies", "at", "frame", "frame_j", "rates", "rotational_rates", "stiffness", "curves",
+                  "preload", "preload_moment", "undeformed", "undeformed_angles", "formulation"});
     const auto [i, j] = body_pair(at.require("bodies"), defs);
     const Vector3d p = hardpoint(at.require("at"), defs);
     const auto frame_field = at.optional("frame");
     const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
-    const Eigen::Quaterniond A = Eigen::Quaterniond(frame.axes).normalized();
-    const auto marker = [&](BodyId body) { return Marker{body, point_of(body, p, defs).s_local, A}; };
+    const auto marker = [&](BodyId body, const Axes& axes) {
+        return Marker{body, point_of(body, p, defs).s_local, Eigen::Quaterniond(axes).normalized()};
+    };
+    const auto frame_j = at.optional("frame_j");
+    const Axes axes_j = frame_j ? read_frame_j(*frame_j, frame, defs) : frame.axes;
     const Units& units = defs.units;
-    Bushing bushing{.i = marker(i), .j = marker(j), .law = read_spatial_law(at, defs)};
+    Bushing bushing{.i = marker(i, frame.axes), .j = marker(j, axes_j), .law = read_spatial_law(at, defs)};
     bushing.preload = read_pair(at, "preload", units.force, "preload_moment", units.moment);
     bushing.undeformed = read_pair(at, "undeformed", units.length, "undeformed_angles", units.angle);
     if (const auto formulation = at.optional("formulation"))

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "models/reader/limits.hpp"
+#include "models/reader/property_file.hpp"
 #include "models/reader/text_file.hpp"
 #include "models/reader/words.hpp"
 
@@ -86,8 +87,13 @@ Value rows_of(std::string_view text) {
     return table;
 }
 
-std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const Definitions& defs) {
-    const fs::path name = at.text("the name of a CSV file");
+struct FileBeside {
+    std::string name, text;
+};
+
+// A file in the scene's folder.
+FileBeside read_beside(const Cursor& at, const Definitions& defs) {
+    const fs::path name = at.text("the name of a file");
     if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
         at.fail(fmt::format("{} leads out of the scene's folder; allowed: a file in it, or in a folder below",
                             at.found()));
@@ -97,9 +103,26 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const
     if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
     if (file.text.size() > largest_text)
         at.fail(fmt::format("{}: larger than 1 MiB, which no table is", at.found()));
-    if (!is_utf8(file.text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
-    const Value table = rows_of(file.text);
-    const std::string file_name = path.string();
+    return {path.string(), file.text};
+}
+
+// What a property file of Adams/Car is, by its name: spring, bump stop, rebound stop.
+bool is_property_file(const std::string& name) {
+    return name.ends_with(".spr") || name.ends_with(".bum") || name.ends_with(".reb");
+}
+
+std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const Definitions& defs) {
+    const auto [file_name, text] = read_beside(at, defs);
+    if (is_property_file(file_name)) {  // in units of its own
+        if (units.deflection.name != defs.units.length.name)
+            at.fail(fmt::format("{} is a curve of lengths, and this is one of angles", at.found()));
+        const PropertyFile file = parse_property_file(text, file_name);
+        const PropertyBlock* curve = file.find("CURVE");
+        if (!curve) fail(file_name, 0, "CURVE", "missing: there is no curve in this file");
+        return curve_rows(file, *curve, file.length, file.force);
+    }
+    if (!is_utf8(text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
+    const Value table = rows_of(text);
     std::vector<Number> not_of_the_scene;
     return read_rows({&table, at.path, &file_name, &not_of_the_scene}, units);
 }
@@ -108,6 +131,20 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const
 
 LawUnits of_lengths(const Units& units) { return {units.length, units.force, units.rate}; }
 LawUnits of_angles(const Units& units) { return {units.angle, units.moment, units.rotational_rate}; }
+
+std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at, const Definitions& defs) {
+    const auto [file_name, text] = read_beside(at, defs);
+    const PropertyFile file = parse_property_file(text, file_name);
+    constexpr const char* blocks[] = {"FX_CURVE", "FY_CURVE", "FZ_CURVE", "TX_CURVE", "TY_CURVE", "TZ_CURVE"};
+    std::array<std::vector<TablePoint>, 6> curves;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const PropertyBlock* block = file.find(blocks[k]);
+        if (!block) fail(file_name, 0, blocks[k], "missing: a bushing has six curves");
+        curves[k] = curve_rows(file, *block, k < 3 ? file.length : file.angle,
+                               k < 3 ? file.force : file.force * file.length);
+    }
+    return curves;
+}
 
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units, const Definitions& defs) {
     const auto table = curve.optional("table"), file = curve.optional("file");

@@ -12,6 +12,6 @@ struct TextFile {
     std::string text;     // one byte more than the largest at most: for the reader to refuse
     std::string trouble;  // why there is none: "no such file"; empty where there is
 };
-TextFile read_text(const std::filesystem::path& file);
+TextFile read_text(const std::filesystem::path& file, std::size_t largest = largest_text);
 
 }  // namespace elastocheck::reader

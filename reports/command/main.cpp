@@ -21,6 +21,7 @@
 #include "reports/command/exit_code.hpp"
 #include "reports/command/gate_command.hpp"
 #include "reports/command/grammar.hpp"
+#include "reports/command/import_command.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
 #include "reports/command/manual.hpp"
@@ -119,6 +120,10 @@ int run(int argc, char** argv) {
         app.add_subcommand("new", "Print a scene to start from; without a name, which there are");
     std::string template_name;
     new_command->add_option("NAME", template_name, "of the scene to print")->check(such_as(templates()));
+    ImportRequest import_request;
+    const auto* import_command = add_import_command(app, import_request);
+    ExportRequest export_request;
+    const auto* export_command = add_export_command(app, export_request);
     const GateCommand gate_command = add_gate(app, progress);
     const CertifyCommand certify_command = add_certify(app);
     auto* completion_command =
@@ -227,6 +232,8 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
         if (*report_command) return report(request, command, progress);
         if (*new_command) return new_scene(template_name, as_json);
+        if (*import_command) return import(import_request);
+        if (*export_command) return export_scene(export_request);
         if (*completion_command) return print_text(completion(grammar(app), shell));
         if (*man_command) {  // it may be read far from where it was made
             app.footer(

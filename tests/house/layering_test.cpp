@@ -22,6 +22,7 @@ struct Room {
 // A folder may include itself and what is listed.
 const std::vector<Room> rooms{
     {"models/reader", {"models"}},  // before the room it stands in
+    {"models/import", {"models/reader", "models"}},
     {"models", {}},
     {"recursive", {"models"}},
     {"reference/equilibrium", {"models"}},
@@ -30,7 +31,7 @@ const std::vector<Room> rooms{
     {"compare",
      {"models", "recursive", "reference/equilibrium", "reference/energy", "reference/certificate"}},
     {"reports",
-     {"models/reader", "models", "recursive", "reference/equilibrium", "reference/energy",
+     {"models/reader", "models/import", "models", "recursive", "reference/equilibrium", "reference/energy",
       "reference/certificate", "compare"}},
 };
 

@@ -1,0 +1,410 @@
+#include "models/import/adm/expression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "models/import/adm/statements.hpp"
+#include "models/reader/words.hpp"
+
+namespace elastocheck::importer::adm {
+namespace {
+
+constexpr int deepest = 100;
+constexpr std::size_t most_terms = 1000;
+constexpr std::size_t longest_function = 1 << 16;  // [bytes]
+
+Value unknown(std::string why) {
+    Value value;
+    value.unknown = std::move(why);
+    return value;
+}
+
+Value constant(double x) {
+    Value value;
+    value.constant = x;
+    return value;
+}
+
+void inherit(Value& to, const Value& from) {
+    to.of_time |= from.of_time;
+    to.of_velocity |= from.of_velocity;
+}
+
+// 0 · x is 0 whatever x is.
+Value scaled(Value a, double factor) {
+    if (factor == 0) {
+        Value zero;
+        inherit(zero, a);
+        return zero;
+    }
+    a.constant *= factor;
+    for (auto& [measure, k] : a.linear) k *= factor;
+    for (CurveTerm& curve : a.curves) curve.factor *= factor;
+    return a;
+}
+
+Value sum(Value a, const Value& b) {
+    if (!a.is_known()) return a;
+    if (!b.is_known()) return b;
+    a.constant += b.constant;
+    for (const auto& [measure, k] : b.linear)
+        if ((a.linear[measure] += k) == 0) a.linear.erase(measure);
+    a.curves.insert(a.curves.end(), b.curves.begin(), b.curves.end());
+    inherit(a, b);
+    if (a.linear.size() + a.curves.size() > most_terms) return unknown("more terms than any force has");
+    return a;
+}
+
+Value product(const Value& a, const Value& b) {
+    if (a.is_constant()) {
+        Value result = scaled(b, a.constant);
+        inherit(result, a);
+        return result;
+    }
+    if (b.is_constant()) {
+        Value result = scaled(a, b.constant);
+        inherit(result, b);
+        return result;
+    }
+    if (!a.is_known()) return a;
+    if (!b.is_known()) return b;
+    return unknown("a product of displacements");
+}
+
+// STEP(x, x0, h0, x1, h1): a cubic from h0 to h1.
+double step(const std::vector<double>& p) {
+    const double x = p[0], x0 = p[1], h0 = p[2], x1 = p[3], h1 = p[4];
+    if (x <= x0) return h0;
+    if (x >= x1) return h1;
+    const double t = (x - x0) / (x1 - x0);
+    return h0 + (h1 - h0) * t * t * (3 - 2 * t);
+}
+
+using Numbers = std::vector<double>;
+struct Function {
+    std::string_view name;
+    std::size_t least, most;
+    double (*f)(const Numbers&);
+};
+const Function functions[] = {
+    {"ABS", 1, 1, [](const Numbers& p) { return std::abs(p[0]); }},
+    {"ACOS", 1, 1, [](const Numbers& p) { return std::acos(p[0]); }},
+    {"AINT", 1, 1, [](const Numbers& p) { return std::trunc(p[0]); }},
+    {"ANINT", 1, 1, [](const Numbers& p) { return std::round(p[0]); }},
+    {"ASIN", 1, 1, [](const Numbers& p) { return std::asin(p[0]); }},
+    {"ATAN", 1, 1, [](const Numbers& p) { return std::atan(p[0]); }},
+    {"ATAN2", 2, 2, [](const Numbers& p) { return std::atan2(p[0], p[1]); }},
+    {"COS", 1, 1, [](const Numbers& p) { return std::cos(p[0]); }},
+    {"COSH", 1, 1, [](const Numbers& p) { return std::cosh(p[0]); }},
+    {"DIM", 2, 2, [](const Numbers& p) { return std::max(p[0] - p[1], 0.0); }},
+    {"EXP", 1, 1, [](const Numbers& p) { return std::exp(p[0]); }},
+    {"LOG", 1, 1, [](const Numbers& p) { return std::log(p[0]); }},
+    {"LOG10", 1, 1, [](const Numbers& p) { return std::log10(p[0]); }},
+    {"MAX", 1, 64, [](const Numbers& p) { return *std::ranges::max_element(p); }},
+    {"MIN", 1, 64, [](const Numbers& p) { return *std::ranges::min_element(p); }},
+    {"MOD", 2, 2, [](const Numbers& p) { return std::fmod(p[0], p[1]); }},
+    {"SIGN", 2, 2, [](const Numbers& p) { return p[1] < 0 ? -std::abs(p[0]) : std::abs(p[0]); }},
+    {"SIN", 1, 1, [](const Numbers& p) { return std::sin(p[0]); }},
+    {"SINH", 1, 1, [](const Numbers& p) { return std::sinh(p[0]); }},
+    {"SQRT", 1, 1, [](const Numbers& p) { return std::sqrt(p[0]); }},
+    {"STEP", 5, 5, step},
+    {"TAN", 1, 1, [](const Numbers& p) { return std::tan(p[0]); }},
+    {"TANH", 1, 1, [](const Numbers& p) { return std::tanh(p[0]); }},
+};
+
+constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
+constexpr std::string_view at_rest[] = {"VR",   "VM",   "VX",   "VY",   "VZ",   "WM",   "WX",   "WY",  "WZ",
+                                        "ACCM", "ACCX", "ACCY", "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
+
+class Parser {
+  public:
+    Parser(std::string_view text, const Context& context) : text_(text), context_(context) {}
+
+    Value whole() {
+        Value value = expression();
+        if (!at_end()) return unknown(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
+        return value;
+    }
+
+  private:
+    void skip() {
+        while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\t')) text_.remove_prefix(1);
+    }
+    bool at_end() {
+        skip();
+        return text_.empty();
+    }
+    bool take(char c) {
+        skip();
+        if (text_.empty() || text_.front() != c) return false;
+        text_.remove_prefix(1);
+        return true;
+    }
+
+    Value give_up(const std::string& why) {
+        text_ = {};
+        return unknown(why);
+    }
+
+    Value expression() {
+        if (++depth_ > deepest) return give_up("brackets nested deeper than any function has them");
+        Value value = term();
+        for (;;) {
+            if (take('+'))
+                value = sum(std::move(value), term());
+            else if (take('-'))
+                value = sum(std::move(value), scaled(term(), -1));
+            else
+                break;
+        }
+        --depth_;
+        return value;
+    }
+
+    Value term() {
+        Value value = power();
+        for (;;) {
+            if (take('*'))
+                value = product(value, power());
+            else if (take('/')) {
+                const Value by = power();
+                if (!by.is_known())
+                    value = by;
+                else if (!by.is_constant())
+                    value = unknown("a division by a displacement");
+                else if (by.constant == 0)
+                    value = unknown("a division by zero");
+                else {
+                    value = scaled(std::move(value), 1 / by.constant);
+                    inherit(value, by);
+                }
+            } else
+                return value;
+        }
+    }
+
+    // -x**2 is -(x**2).
+    Value power() {
+        int sign = 1;
+        for (;;)
+            if (take('-'))
+                sign = -sign;
+            else if (!take('+'))
+                break;
+        Value base = primary();
+        skip();
+        if (text_.starts_with("**")) {
+            text_.remove_prefix(2);
+            if (++depth_ > deepest) return give_up("powers of powers deeper than any function has them");
+            const Value exponent = power();
+            --depth_;
+            if (!base.is_known()) return base;
+            if (!exponent.is_known()) return exponent;
+            if (!exponent.is_constant()) return unknown("a power of a displacement");
+            if (base.is_constant()) {
+                Value result = constant(std::pow(base.constant, exponent.constant));
+                inherit(result, base);
+                inherit(result, exponent);
+                base = result;
+            } else if (exponent.constant != 1)
+                return unknown("a power of a displacement");
+        }
+        return sign < 0 ? scaled(std::move(base), -1) : base;
+    }
+
+    Value primary() {
+        skip();
+        if (take('(')) {
+            Value value = expression();
+            if (!take(')')) return give_up("a bracket is left open");
+            return value;
+        }
+        double x = 0;
+        bool degrees = false;
+        if (const std::size_t n = number_at(text_, x, degrees); n > 0) {
+            text_.remove_prefix(n);
+            return constant(degrees ? x * std::numbers::pi / 180 : x);
+        }
+        std::size_t n = 0;
+        const auto fits = [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        };
+        while (n < text_.size() && fits(text_[n])) ++n;
+        if (n == 0) return give_up(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
+        const std::string name = capitals(text_.substr(0, n));
+        text_.remove_prefix(n);
+        if (take('(')) return call(name);
+        if (name == "PI") return constant(std::numbers::pi);
+        if (name == "RTOD") return constant(180 / std::numbers::pi);
+        if (name == "DTOR") return constant(std::numbers::pi / 180);
+        if (name == "TIME") {
+            Value value = constant(context_.time);
+            value.of_time = true;
+            return value;
+        }
+        return unknown(fmt::format("{} is no constant that is known here", reader::quote(name)));
+    }
+
+    Value call(const std::string& name) {
+        std::vector<Value> arguments;
+        if (!take(')'))
+            for (;;) {
+                arguments.push_back(expression());
+                if (take(')')) break;
+                if (!take(',') && !take(':'))
+                    return give_up(fmt::format("{}(: a bracket is left open", name));
+                if (arguments.size() > 64)
+                    return give_up(fmt::format("{}(: more arguments than it has", name));
+            }
+        return apply(name, arguments);
+    }
+
+    static std::optional<int> id(const Value& value) {
+        if (!value.is_constant() || !(value.constant >= 0) || value.constant > 1e9 ||
+            value.constant != std::floor(value.constant))
+            return std::nullopt;
+        return static_cast<int>(value.constant);
+    }
+
+    Value apply(const std::string& name, std::vector<Value>& p) const {
+        if (std::ranges::find(at_rest, name) != std::end(at_rest)) {
+            Value zero;
+            zero.of_velocity = true;
+            return zero;
+        }
+        if (const auto found = std::ranges::find(measures, name); found != std::end(measures)) {
+            Measure measure{.kind = static_cast<Measure::Kind>(found - std::begin(measures))};
+            int* const to[] = {&measure.i, &measure.j, &measure.rm};
+            if (p.empty() || p.size() > 3) return unknown(name + " of other than one to three markers");
+            for (std::size_t k = 0; k < p.size(); ++k) {
+                const auto marker = id(p[k]);
+                if (!marker) return unknown(name + " of what is no marker");
+                *to[k] = *marker;
+            }
+            Value value;
+            value.linear[measure] = 1;
+            return value;
+        }
+        if (name == "IF") return choose(p);
+        if (name == "AKISPL" || name == "CUBSPL") return spline(name, p);
+        if (name == "IMPACT") return impact(p);
+        if (name == "BISTOP") return bistop(p);
+        if (name == "VARVAL") {
+            const auto variable = p.size() == 1 ? id(p[0]) : std::nullopt;
+            if (!variable || !context_.variable) return unknown("VARVAL of what is no variable");
+            return context_.variable(*variable);
+        }
+        const auto found = std::ranges::find(functions, name, &Function::name);
+        if (found == std::end(functions))
+            return unknown(fmt::format("{}(...), which is not known here", name));
+        Numbers numbers;
+        Value result;
+        for (const Value& value : p) {
+            if (!value.is_known()) return value;
+            if (!value.is_constant()) return unknown(name + " of a displacement");
+            numbers.push_back(value.constant);
+            inherit(result, value);
+        }
+        if (numbers.size() < found->least || numbers.size() > found->most)
+            return unknown(fmt::format("{} of {} arguments", name, numbers.size()));
+        result.constant = found->f(numbers);
+        if (!std::isfinite(result.constant)) return unknown(name + " of numbers that it is not defined for");
+        return result;
+    }
+
+    // IF(e: a, b, c): a where e < 0, b where it is 0, c above.
+    static Value choose(const std::vector<Value>& p) {
+        if (p.size() != 4) return unknown("IF of other than four arguments");
+        if (!p[0].is_known()) return p[0];
+        const auto is_zero = [](const Value& value) { return value.is_constant() && value.constant == 0; };
+        Value result;
+        if (p[0].is_constant())
+            result = p[0].constant < 0 ? p[1] : p[0].constant == 0 ? p[2] : p[3];
+        else if (!is_zero(p[1]) || !is_zero(p[2]) || !is_zero(p[3]))
+            return unknown("IF on a displacement");
+        inherit(result, p[0]);
+        return result;
+    }
+
+    // One measure, scaled and shifted; what else the value is says why it is none.
+    static std::string only_measure(const Value& x, CurveTerm& term) {
+        if (!x.is_known()) return x.unknown;
+        if (!x.curves.empty() || x.linear.size() != 1) return "a curve of other than one displacement";
+        term.of = x.linear.begin()->first;
+        term.scale = x.linear.begin()->second;
+        term.offset = x.constant;
+        return {};
+    }
+
+    Value spline(const std::string& name, const std::vector<Value>& p) const {
+        if (p.size() < 3 || p.size() > 4) return unknown(name + " of other than three or four arguments");
+        if (!p[1].is_constant() || p[1].constant != 0) return unknown(name + " of a second variable");
+        if (p.size() == 4 && !(p[3].is_constant() && p[3].constant == 0))
+            return unknown("a derivative of " + name);
+        const auto number = id(p[2]);
+        if (!number) return unknown(name + " of what is no spline");
+        CurveTerm term;
+        term.kind = name == "AKISPL" ? CurveTerm::Kind::akima : CurveTerm::Kind::cubic;
+        term.spline = *number;
+        if (const std::string why = only_measure(p[0], term); !why.empty())
+            return unknown(p[0].is_constant() ? name + " of no displacement" : why);
+        Value value;
+        inherit(value, p[0]);
+        value.curves.push_back(term);
+        return value;
+    }
+
+    // IMPACT(x, v, x1, k, e, c, d): k (x1 - x)^e below x1, and its damping, which is none at rest.
+    static Value impact(const std::vector<Value>& p) {
+        if (p.size() != 7) return unknown("IMPACT of other than seven arguments");
+        return contact(p[0], p[2], p[3], p[4], 1);
+    }
+    // BISTOP(x, v, lo, hi, k, e, c, d): the same below lo, and its negative above hi.
+    static Value bistop(const std::vector<Value>& p) {
+        if (p.size() != 8) return unknown("BISTOP of other than eight arguments");
+        return sum(contact(p[0], p[2], p[4], p[5], 1),
+                   scaled(contact(scaled(p[0], -1), scaled(p[3], -1), p[4], p[5], 1), -1));
+    }
+    static Value contact(const Value& x, const Value& at, const Value& rate, const Value& exponent,
+                         double factor) {
+        CurveTerm term;
+        term.kind = CurveTerm::Kind::impact;
+        term.factor = factor;
+        for (const Value* value : {&at, &rate, &exponent})
+            if (!value->is_constant())
+                return unknown(value->is_known() ? "IMPACT or BISTOP with parameters that move"
+                                                 : value->unknown);
+        if (const std::string why = only_measure(x, term); !why.empty()) return unknown(why);
+        term.contact = at.constant;
+        term.rate = rate.constant;
+        term.exponent = exponent.constant;
+        if (!(term.rate >= 0) || !(term.exponent > 0)) return unknown("IMPACT or BISTOP that pulls");
+        Value value;
+        inherit(value, x);
+        value.of_velocity = true;
+        value.curves.push_back(term);
+        return value;
+    }
+
+    std::string_view text_;
+    const Context& context_;
+    int depth_ = 0;
+};
+
+}  // namespace
+
+Value evaluate(std::string_view text, const Context& context) {
+    if (text.size() > longest_function) return unknown("longer than any function is");
+    Parser parser(text, context);
+    Value value = parser.whole();
+    if (value.is_known() && !std::isfinite(value.constant)) return unknown("a number beyond all bounds");
+    for (const auto& [measure, k] : value.linear)
+        if (!std::isfinite(k)) return unknown("a number beyond all bounds");
+    return value;
+}
+
+}  // namespace elastocheck::importer::adm

@@ -1,0 +1,746 @@
+// Elastic elements and forces.
+//
+// A BUSHING, FIELD or BEAM exerts on the part of I, at I's origin and in the moving axes of J,
+//
+//   F = FORCE - K (x - x_0),    x = (δ; a, b, c),   δ = A_Jᵀ (p_I - p_J),   a, b, c the projected angles of I in J,
+//
+// and the opposite wrench at the same place on the part of J. In a scene that is a bushing whose first body is J's, whose
+// second is I's, at I's origin, with `angles: projected` and `conjugate: false`: its d is δ - δ_drawn, so that its
+// undeformed position is x_0 - δ_drawn; and where I is turned against J as drawn, its frame on I's body is I's own.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "models/import/adm/conversion.hpp"
+#include "models/import/curves.hpp"
+#include "models/reader/words.hpp"
+
+namespace elastocheck::importer::adm {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr double turned = 1e-9;  // beyond, two frames are not parallel [rad]
+constexpr double far = 0.05;     // of the model's size: markers of a bushing that far apart are worth a word
+
+const char* const formulation = "{angles: projected, conjugate: false}";
+
+const Shape bushing_shape{{}, {"I", "J", "K", "KT", "C", "CT", "FORCE", "TORQUE"}, {}};
+const Shape field_shape{
+    {}, {"I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FORMULATION"}, {"FUNCTION"}};
+const Shape beam_shape{{"LINEAR", "STRING", "NONLINEAR"},
+                       {"I", "J", "LENGTH", "AREA", "IXX", "IYY", "IZZ", "EMODULUS", "GMODULUS", "ASY", "ASZ",
+                        "CRATIO", "CMATRIX", "FORMULATION"},
+                       {}};
+const Shape spring_shape{{"TRANSLATIONAL", "ROTATIONAL"},
+                         {"I", "J", "K", "C", "KT", "CT", "LENGTH", "ANGLE", "FORCE", "TORQUE"},
+                         {}};
+const Shape sforce_shape{{"TRANSLATIONAL", "ROTATIONAL", "ACTIONONLY"}, {"I", "J", "ROUTINE"}, {"FUNCTION"}};
+const Shape vector_shape{
+    {}, {"I", "JFLOAT", "RM", "ROUTINE"}, {"FX", "FY", "FZ", "TX", "TY", "TZ", "FUNCTION"}};
+
+Vector3d vector(const std::vector<double>& v) {
+    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
+}
+
+// What is understood of one element, in the units of the scene.
+struct SixLaws {
+    Matrix6 K = Matrix6::Zero();
+    Vector6 x_0 = Vector6::Zero();                                      // length, angles
+    Vector6 preload = Vector6::Zero();                                  // on I at x_0
+    std::array<std::vector<std::pair<double, double>>, 6> curves = {};  // restoring, over x; empty: by K
+    std::array<bool, 6> goes_on = {true, true, true, true, true, true};
+};
+
+struct Element {
+    Conversion& c;
+    const Statement& s;
+    const Arguments& at;
+    const Marker& I;
+    int part_j;
+    Frame J;  // δ is counted from its origin, in its axes
+
+    Place place() const { return s.place(); }
+
+    void put(const SixLaws& laws) const {
+        const Vector3d drawn = J.A.transpose() * (I.pose.r - J.r);
+        const Matrix3d B = J.A.transpose() * I.pose.A;
+        Fields fields;
+        fields.add("bodies", c.pair(part_j, I.part)).add("at", c.point(I));
+        frame(fields, "frame", J.A);
+        if (Eigen::AngleAxisd(B).angle() > turned) frame(fields, "frame_j", I.pose.A);
+        const Matrix6& K = laws.K;
+        const Matrix6 off = K - Matrix6(K.diagonal().asDiagonal());
+        const auto three = [&](int first) {
+            return fmt::format("[{}, {}, {}]", number(K(first, first)), number(K(first + 1, first + 1)),
+                               number(K(first + 2, first + 2)));
+        };
+        if (off.isZero(0)) {
+            fields.add("rates", three(0)).add("rotational_rates", three(3));
+        } else {
+            std::string rows;
+            for (int i = 0; i < 6; ++i) {
+                std::string row;
+                for (int k = 0; k < 6; ++k) row += (k ? ", " : "") + number(K(i, k));
+                rows += fmt::format("{}[{}]", i ? ", " : "", row);
+            }
+            fields.add("stiffness", "[" + rows + "]");
+        }
+        std::string curves;
+        for (std::size_t k = 0; k < 6; ++k)
+            if (!laws.curves[k].empty())
+                curves += fmt::format("{}{}: {{table: {}{}}}", curves.empty() ? "" : ", ",
+                                      std::array{"x", "y", "z", "rx", "ry", "rz"}[k], table(laws.curves[k]),
+                                      laws.goes_on[k] ? "" : ", outside: unknown");
+        if (!curves.empty()) fields.add("curves", "{" + curves + "}");
+        const double size = c.geometry.size;
+        const Vector3d undeformed = laws.x_0.head<3>() - drawn;
+        if (undeformed.norm() > 1e-12 * size) fields.add("undeformed", triple(undeformed, size));
+        if (!laws.x_0.tail<3>().isZero(0)) fields.add("undeformed_angles", triple(laws.x_0.tail<3>()));
+        if (!laws.preload.head<3>().isZero(0)) fields.add("preload", triple(-laws.preload.head<3>()));
+        if (!laws.preload.tail<3>().isZero(0)) fields.add("preload_moment", triple(-laws.preload.tail<3>()));
+        fields.add("formulation", formulation);
+        c.draft.bushings.push_back({c.name(c.element_names, s), "{" + fields.text() + "}", place()});
+    }
+
+    static void frame(Fields& fields, const char* name, const Matrix3d& A) {
+        if ((A - Matrix3d::Identity()).norm() <= 1e-12 && std::string_view(name) == "frame") return;
+        fields.add(name, fmt::format("{{x: {}, y: {}}}", direction(A.col(0)), direction(A.col(1))));
+    }
+};
+
+bool ends_are_there(Conversion& c, const Statement& s, const Arguments& at, const Marker& I,
+                    const Marker& J) {
+    for (const Marker* m : {&I, &J})
+        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
+    for (const Marker* m : {&I, &J})
+        if (c.is_flexible(*m)) {
+            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
+            return false;
+        }
+    if (I.part != J.part) return true;
+    c.draft.notes.leave_out("as both ends are on one part", s.place());
+    return false;
+}
+
+void no_damping(Conversion& c, const Statement& s, const Arguments& at,
+                std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (at.has(name)) {
+            c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+            return;
+        }
+}
+
+// Both by their unit: force/length, force, force · length.
+Matrix6 in_scene_units(Matrix6 K, const Units& units) {
+    K.topLeftCorner<3, 3>() *= units.force / units.length;
+    K.topRightCorner<3, 3>() *= units.force;
+    K.bottomLeftCorner<3, 3>() *= units.force;
+    K.bottomRightCorner<3, 3>() *= units.force * units.length;
+    return K;
+}
+Vector6 forces(Vector6 F, const Units& units) {
+    F.head<3>() *= units.force;
+    F.tail<3>() *= units.force * units.length;
+    return F;
+}
+
+// A stiffness of which a scene has none: not symmetric, or negative. Says why; empty where it is fine.
+std::string fault(Matrix6& K) {
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < i; ++k) {
+            const double larger = std::max(std::abs(K(i, k)), std::abs(K(k, i)));
+            const double rows = std::sqrt(std::abs(K(i, i) * K(k, k)));
+            if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * rows))
+                return fmt::format(
+                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across", K(i, k),
+                    i + 1, k + 1, K(k, i));
+        }
+    K = (0.5 * (K + K.transpose())).eval();
+    Vector6 d = K.diagonal();
+    for (int i = 0; i < 6; ++i) {
+        if (d[i] < 0) return fmt::format("its stiffness is negative: {:g} in row {}", d[i], i + 1);
+        if (d[i] == 0 && !K.row(i).isZero(0))
+            return fmt::format("its stiffness is indefinite: row {} has no diagonal, and more", i + 1);
+        d[i] = d[i] > 0 ? 1 / std::sqrt(d[i]) : 1;
+    }
+    const Matrix6 S = d.asDiagonal() * K * d.asDiagonal();
+    if (Eigen::LDLT<Matrix6> factors(S + 1e-10 * Matrix6::Identity()); !(factors.vectorD().minCoeff() >= 0))
+        return "its stiffness is indefinite";
+    return {};
+}
+
+void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written, const Matrix6& K) {
+    const double off = (written - K).cwiseAbs().maxCoeff();
+    if (off > 0)
+        c.draft.notes.warn(s.place(),
+                           fmt::format("its stiffness is not quite symmetric; here it is the mean with "
+                                       "its transpose, {:.3g} of its largest entry away",
+                                       off / K.cwiseAbs().maxCoeff()));
+}
+
+void convert_bushing(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, bushing_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    if (!ends_are_there(c, s, at, I, J)) return;
+    const Units& units = c.geometry.units;
+    Matrix6 K = Matrix6::Zero();
+    K.diagonal().head<3>() = vector(at.numbers("K", 3, 3));
+    K.diagonal().tail<3>() = vector(at.numbers("KT", 3, 3));
+    Vector6 F;
+    F << vector(at.numbers("FORCE", 3, 3)), vector(at.numbers("TORQUE", 3, 3));
+    if (K.diagonal().minCoeff() < 0)
+        return c.draft.notes.miss(s.place(), "a negative rate, which no element of a scene has");
+    no_damping(c, s, at, {"C", "CT"});
+    const double apart = (I.pose.r - J.pose.r).norm();
+    if (apart > far * c.geometry.size)
+        c.draft.notes.warn(
+            s.place(), fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
+                                   units.length_name));
+    c.draft.notes.count("BUSHING");
+    Element{c, s, at, I, J.part, J.pose}.put({.K = in_scene_units(K, units), .preload = forces(F, units)});
+}
+
+void convert_field(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, field_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    if (at.has("FUNCTION")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+    const std::string formulated = at.word("FORMULATION");
+    if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
+        return c.draft.notes.miss(s.place(),
+                                  fmt::format("FORMULATION={}, whose law is not known here", formulated));
+    if (!ends_are_there(c, s, at, I, J)) return;
+    const Units& units = c.geometry.units;
+    const auto k = at.numbers("KMATRIX", 36, 36);
+    if (k.empty()) at.fail("KMATRIX is missing");
+    const Matrix6 written = in_scene_units(Eigen::Map<const Matrix6>(k.data()), units);  // by columns
+    Matrix6 K = written;
+    if (const std::string why = fault(K); !why.empty()) return c.draft.notes.miss(s.place(), why);
+    warn_of_asymmetry(c, s, written, K);
+    SixLaws laws{.K = K};
+    // The last three are angles, and may have the suffix of degrees.
+    if (at.has("LENGTH")) {
+        const auto length = at.angles("LENGTH", 6);
+        laws.x_0 = Eigen::Map<const Vector6>(length.data());
+        laws.x_0.head<3>() *= units.length;
+    }
+    if (at.has("FORCE"))
+        laws.preload = forces(Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
+    no_damping(c, s, at, {"CMATRIX", "CRATIO"});
+    c.draft.notes.count("FIELD");
+    Element{c, s, at, I, J.part, J.pose}.put(laws);
+}
+
+// From J along its x axis to I: Timoshenko's beam, with P = 12 E I s / (G A L²) of shear.
+void convert_beam(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, beam_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    const std::string formulated = at.word("FORMULATION");
+    if (at.has("STRING") || at.has("NONLINEAR") ||
+        (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
+        return c.draft.notes.miss(s.place(),
+                                  "a beam with another formulation than LINEAR, whose law is not known here");
+    if (!ends_are_there(c, s, at, I, J)) return;
+    const auto positive = [&](const char* name) {
+        const double x = at.number(name, 0);
+        if (!(x > 0))
+            at.fail(fmt::format("{} is {}; it must be above zero", name, at.has(name) ? "not" : "missing"));
+        return x;
+    };
+    const double L = positive("LENGTH"), A = positive("AREA"), Ix = positive("IXX"), Iy = positive("IYY"),
+                 Iz = positive("IZZ"), E = positive("EMODULUS"), G = positive("GMODULUS");
+    const double Py = 12 * E * Iz * at.number("ASY", 0) / (G * A * L * L),
+                 Pz = 12 * E * Iy * at.number("ASZ", 0) / (G * A * L * L);
+    if (!(Py >= 0) || !(Pz >= 0)) at.fail("ASY or ASZ is negative");
+    Matrix6 K = Matrix6::Zero();
+    K(0, 0) = E * A / L;
+    K(1, 1) = 12 * E * Iz / (L * L * L * (1 + Py));
+    K(2, 2) = 12 * E * Iy / (L * L * L * (1 + Pz));
+    K(3, 3) = G * Ix / L;
+    K(4, 4) = (4 + Pz) * E * Iy / (L * (1 + Pz));
+    K(5, 5) = (4 + Py) * E * Iz / (L * (1 + Py));
+    K(1, 5) = K(5, 1) = -6 * E * Iz / (L * L * (1 + Py));
+    K(2, 4) = K(4, 2) = 6 * E * Iy / (L * L * (1 + Pz));
+    const Units& units = c.geometry.units;
+    SixLaws laws{.K = in_scene_units(K, units)};
+    laws.x_0[0] = L * units.length;
+    const double apart = (J.pose.A.transpose() * (I.pose.r - J.pose.r) - laws.x_0.head<3>()).norm();
+    if (apart > 1e-3 * laws.x_0[0])
+        c.draft.notes.warn(s.place(),
+                           fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded", apart,
+                                       units.length_name));
+    no_damping(c, s, at, {"CMATRIX", "CRATIO"});
+    c.draft.notes.count("BEAM");
+    Element{c, s, at, I, J.part, J.pose}.put(laws);
+}
+
+// ---- Along a line, and about an axis.
+
+// The laws of one deformation u = scale · x + offset that a Value is made of, as the restoring force f(x) = -value.
+struct OneLaw {
+    double rate = 0;                               // of x
+    double at_zero = 0;                            // f(0)
+    std::vector<std::pair<double, double>> curve;  // in place of both
+    bool goes_on = true;
+    struct Stop {
+        bool bump = true;
+        double touches = 0;                            // x
+        std::vector<std::pair<double, double>> curve;  // over the penetration
+        double rate = 0;
+    };
+    std::vector<Stop> stops;
+};
+
+constexpr int rows_of_power = 24;
+
+// All the terms in the one measure; what cannot be is said.
+std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from, double x_to,
+                    double unit, double force, OneLaw& law) {
+    for (const auto& [measure, k] : value.linear) law.rate += -k * force / unit;
+    law.at_zero = -value.constant * force;
+    bool has_table = false;
+    for (const CurveTerm& term : value.curves) {
+        if (term.kind == CurveTerm::Kind::impact) {
+            if (!(term.factor > 0) == (term.scale > 0))
+                return "a contact that pulls, which no stop of a scene does";
+            OneLaw::Stop stop;
+            stop.bump = term.scale > 0;
+            stop.touches = (term.contact - term.offset) / term.scale * unit;
+            // Over the penetration p of x: factor · rate · (|scale| p)^e.
+            const double factor = std::abs(term.factor) * term.rate *
+                                  std::pow(std::abs(term.scale) / unit, term.exponent) * force;
+            if (term.exponent == 1) {
+                stop.rate = factor;
+            } else {
+                const double depth =
+                    std::max(std::abs(stop.bump ? stop.touches - x_from : x_to - stop.touches),
+                             1e-3 * (x_to - x_from));
+                for (int n = 0; n <= rows_of_power; ++n) {
+                    const double p = depth * n * n / (rows_of_power * rows_of_power);
+                    stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
+                }
+                c.draft.notes.warn(
+                    s.place(),
+                    fmt::format(
+                        "a contact with exponent {:g} is a table of {} rows up to {:.4g}; between them off "
+                        "by up to {:.2g} of its largest force",
+                        term.exponent, rows_of_power + 1, depth,
+                        off_power(stop.curve, factor, term.exponent)));
+            }
+            law.stops.push_back(stop);
+            continue;
+        }
+        if (has_table) return "a sum of two splines";
+        has_table = true;
+        const auto found = c.splines.find(term.spline);
+        if (found == c.splines.end())
+            return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
+        const Table& points = found->second;
+        law.goes_on = points.goes_on;
+        for (std::size_t n = 0; n < points.x.size(); ++n)
+            law.curve.emplace_back((points.x[n] - term.offset) / term.scale * unit,
+                                   -term.factor * points.y[n] * force);
+        if (term.scale < 0) std::ranges::reverse(law.curve);
+        const double off =
+            term.kind == CurveTerm::Kind::akima ? off_akima(law.curve) : off_natural(law.curve);
+        if (off > 1e-6)
+            c.draft.notes.warn(
+                s.place(),
+                fmt::format("between the points of SPLINE/{} the file has {}, a scene the monotone "
+                            "interpolant: up to {:.2g} of the largest force apart",
+                            term.spline,
+                            term.kind == CurveTerm::Kind::akima ? "Akima's curve" : "a cubic spline", off));
+    }
+    if (has_table)
+        for (auto& [x, f] : law.curve) f += law.rate * x + law.at_zero;
+    for (std::size_t n = 1; n < law.curve.size(); ++n)
+        if (!(law.curve[n].second >= law.curve[n - 1].second))
+            return fmt::format(
+                "a force that falls as it is deformed (at {:.6g}), which no element of a scene has",
+                law.curve[n].first);
+    if (!has_table && law.rate < 0) return "a negative rate, which no element of a scene has";
+    return {};
+}
+
+Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
+    Fields fields;
+    fields.add("clearance", computed(stop.bump ? drawn - stop.touches : stop.touches - drawn,
+                                     std::max(1.0, std::abs(drawn))));
+    if (stop.curve.empty())
+        fields.add("rate", stop.rate);
+    else
+        fields.add("curve", "{table: " + table(stop.curve) + "}");
+    return fields;
+}
+
+// A force along the line from I to J, positive apart; `value` is of DM(I, J).
+void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Value& value,
+                bool is_damper) {
+    const Units& units = c.geometry.units;
+    const double drawn = (I.pose.r - J.pose.r).norm();
+    const std::string name = c.name(c.element_names, s);
+    const auto ends = [&] {
+        return Fields{}.add("bodies", c.pair(I.part, J.part)).add("from", c.point(I)).add("to", c.point(J));
+    };
+    if (!(drawn > 1e-9 * c.geometry.size))
+        return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
+    OneLaw law;
+    const std::string why = one_law(c, s, value, 0, 2 * drawn, units.length, units.force, law);
+    if (!why.empty()) return c.draft.notes.miss(s.place(), why);
+    if (law.stops.size() > 2 || (law.stops.size() == 2 && law.stops[0].bump == law.stops[1].bump))
+        return c.draft.notes.miss(s.place(), "more than one stop a way");
+    const bool is_nothing = law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
+    if (is_nothing) {
+        if (!is_damper || c.options.drop_dynamics)
+            return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        // A damper holds nothing: it is drawn where both its parts are held by something else.
+        c.draft.dampers.push_back(
+            {name,
+             "{" +
+                 Fields{}
+                     .add("bodies", fmt::format("[{}, {}]", c.body(I.part), c.body(J.part)))
+                     .add("from", c.point(I))
+                     .add("to", c.point(J))
+                     .text() +
+                 "}",
+             s.place()});
+        return;
+    }
+    Fields fields = ends();
+    // ℓ_0, where the law has its zero; of a curve where the file counts from, if that is a length.
+    if (law.curve.empty() && law.rate > 0) {
+        const double free = -law.at_zero / law.rate;
+        if (!(free > 0)) {
+            // No spring has no length: the same straight line as a table over the drawn length.
+            const double h = 0.5 * drawn, f = law.at_zero + law.rate * drawn;
+            fields.add("curve", "{table: " + table({{-h, f - law.rate * h}, {h, f + law.rate * h}}) + "}");
+        } else {
+            fields.add("rate", law.rate).add("free_length", computed(free));
+            if (free < drawn * (1 - 1e-9))
+                c.draft.notes.warn(s.place(), "this spring is in tension as drawn");
+        }
+    } else if (!law.curve.empty()) {
+        for (auto& [x, f] : law.curve) x -= drawn;
+        fields.add("curve",
+                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+    } else if (law.at_zero != 0) {
+        fields.add("curve",
+                   "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
+    } else {
+        for (const auto& stop : law.stops)
+            fields.add(stop.bump ? "bump" : "rebound", "{" + stop_fields(stop, drawn).text() + "}");
+        c.draft.stops.push_back({name, "{" + fields.text() + "}", s.place()});
+        return;
+    }
+    for (const auto& stop : law.stops)
+        fields.add(stop.bump ? "bump_stop" : "rebound_stop", "{" + stop_fields(stop, drawn).text() + "}");
+    c.draft.springs.push_back({name, "{" + fields.text() + "}", s.place()});
+}
+
+// A torque about z, positive on I; `value` is of AZ(I, J).
+void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J,
+                 const Value& value) {
+    const Units& units = c.geometry.units;
+    const Vector3d z = J.pose.A.col(2);
+    if (const double off = z.cross(Vector3d(I.pose.A.col(2))).norm(); off > 1e-2)
+        at.fail(fmt::format("the axes z of I and J are {:.3g} rad apart; a torque needs one axis", off));
+    const double drawn =
+        std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
+    OneLaw law;
+    const std::string why = one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, law);
+    if (!why.empty()) return c.draft.notes.miss(s.place(), why);
+    if (!law.stops.empty())
+        return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
+    if (law.curve.empty() && law.rate == 0 && law.at_zero == 0)
+        return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+    Fields fields;
+    fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
+    if (!law.curve.empty()) {
+        for (auto& [x, f] : law.curve) x -= drawn;
+        fields.add("curve",
+                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+    } else {
+        fields.add("rate", law.rate);
+        const double moment = law.at_zero + law.rate * drawn;
+        if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate)))
+            fields.add("preload_moment", computed(moment));
+    }
+    c.draft.torsion_springs.push_back({c.name(c.element_names, s), "{" + fields.text() + "}", s.place()});
+}
+
+Value linear_in(Measure::Kind kind, double k, double free, double force) {
+    Value value;
+    if (k != 0) value.linear[{.kind = kind}] = -k;
+    value.constant = force + k * free;
+    return value;
+}
+
+void convert_springdamper(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, spring_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    const bool rotates = at.has("ROTATIONAL");
+    if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
+    if (!ends_are_there(c, s, at, I, J)) return;
+    c.draft.notes.count("SPRINGDAMPER");
+    const double k = at.number(rotates ? "KT" : "K", 0);
+    const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
+    if (damps && k != 0) no_damping(c, s, at, {rotates ? "CT" : "C"});
+    if (rotates)
+        put_torsion(c, s, at, I, J,
+                    linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
+    else
+        put_spring(c, s, I, J, linear_in(Measure::Kind::DM, k, at.number("LENGTH", 0), at.number("FORCE", 0)),
+                   damps);
+}
+
+// ---- Forces by expressions.
+
+// A force or a torque that is the same wherever the parts are, in the axes of `axes`, which the part turns with, or stand
+// still: on I alone.
+void put_load(Conversion& c, const Statement& s, const Marker& I, const Vector3d& force,
+              const Vector3d& moment, bool follows, const char* suffix = "") {
+    const std::string name = c.name(c.load_names, s);
+    const std::string ending = follows ? ", follows: true}" : "}";
+    if (!force.isZero(0))
+        c.draft.static_loads.push_back(
+            {name + suffix,
+             fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(force), ending),
+             s.place()});
+    if (!moment.isZero(0))
+        c.draft.static_loads.push_back(
+            {c.load_names.take(name + suffix + ".moment"),
+             fmt::format("{{on: {}, moment: {}{}", c.body(I.part), triple(moment), ending), s.place()});
+}
+
+// The value at the start of the programme; a load that changes is warned of.
+std::string settled(Conversion& c, const Statement& s, const std::string& text, Value& value) {
+    value = c.function(text, 0);
+    if (!value.is_known()) return value.unknown;
+    if (!value.of_time) return {};
+    const Value last = c.function(text, c.end_time);
+    if (last.is_known() && last.constant == value.constant && last.linear == value.linear) return {};
+    if (!last.is_constant() || !value.is_constant()) return "a force of displacements that changes with time";
+    c.draft.notes.warn(
+        s.place(), fmt::format("a load that goes from {:g} to {:g} over {:g} of time; held here at its end",
+                               value.constant, last.constant, c.end_time));
+    value = last;
+    return {};
+}
+
+void convert_sforce(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, sforce_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    const bool rotates = at.has("ROTATIONAL");
+    if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
+    if (at.has("ROUTINE")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+    const std::string* text = at.expression("FUNCTION");
+    if (!text) at.fail("FUNCTION is missing");
+    Value value;
+    if (const std::string why = settled(c, s, *text, value); !why.empty())
+        return c.draft.notes.miss(s.place(), why);
+    if (value.is_constant() && value.constant == 0 && !value.of_velocity) {
+        c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        return;
+    }
+    if (at.has("ACTIONONLY")) {
+        if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
+            return c.draft.notes.leave_out("acting on ground alone", s.place());
+        if (!value.is_constant())
+            return c.draft.notes.miss(s.place(), "a force on one part alone that depends on displacements");
+        if (value.constant == 0) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        const bool follows = J.part == I.part;
+        if (!follows && !c.is_ground(J.part))
+            return c.draft.notes.miss(s.place(),
+                                      "a force on one part alone along an axis of another that moves");
+        const Vector3d z = J.pose.A.col(2) * value.constant * c.geometry.units.force;
+        c.draft.notes.count("SFORCE");
+        if (rotates)
+            put_load(c, s, I, Vector3d::Zero(), z * c.geometry.units.length, follows);
+        else
+            put_load(c, s, I, z, Vector3d::Zero(), follows);
+        return;
+    }
+    if (!ends_are_there(c, s, at, I, J)) return;
+    // Of this pair of markers, whichever is named first: DM is the same both ways, AZ turns its sign.
+    Value own;
+    own.constant = value.constant;
+    const int i = I.statement->id, j = J.statement->id;
+    const auto kind = rotates ? Measure::Kind::AZ : Measure::Kind::DM;
+    const auto sign = [&](const Measure& m) {
+        if (m.kind != kind) return 0;
+        if (m.i == i && m.j == j) return 1;
+        if (m.i == j && m.j == i) return rotates ? -1 : 1;
+        return 0;
+    };
+    const char* const other = "a force by a displacement other than between its own markers";
+    for (const auto& [measure, k] : value.linear) {
+        if (!sign(measure)) return c.draft.notes.miss(s.place(), other);
+        own.linear[{.kind = kind}] += sign(measure) * k;
+    }
+    for (CurveTerm term : value.curves) {
+        if (!sign(term.of)) return c.draft.notes.miss(s.place(), other);
+        term.scale *= sign(term.of);
+        own.curves.push_back(term);
+    }
+    if (value.of_velocity && (!own.linear.empty() || !own.curves.empty()))
+        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+    c.draft.notes.count("SFORCE");
+    if (rotates)
+        put_torsion(c, s, at, I, J, own);
+    else
+        put_spring(c, s, I, J, own, value.of_velocity);
+}
+
+// Three or six components in the axes of RM, at I, and the opposite at the same place on the part of JFLOAT.
+void convert_vector(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, vector_shape);
+    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    if (at.has("FUNCTION") || at.has("ROUTINE")) return miss("its force is a function of the user's");
+    const Marker &I = c.marker(at, "I"), &floating = c.marker(at, "JFLOAT");
+    if (!at.has("RM")) return miss("without RM it is not known in what axes it acts");
+    const Marker& RM = c.marker(at, "RM");
+    if (RM.floats || I.floats) at.fail("I and RM must not float");
+    if (c.is_flexible(I) || c.is_flexible(RM) || c.is_flexible(floating))
+        return miss("it is on a flexible body, which is missing");
+    const Units& units = c.geometry.units;
+    std::array<Value, 6> component;
+    bool is_constant = true, is_zero = true, damps = false;
+    const char* const names[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
+    for (std::size_t k = 0; k < 6; ++k) {
+        const std::string* text = at.expression(names[k]);
+        if (!text) continue;
+        if (const std::string why = settled(c, s, *text, component[k]); !why.empty())
+            return miss(fmt::format("{}: {}", names[k], why));
+        is_constant &= component[k].is_constant();
+        is_zero &= component[k].is_constant() && component[k].constant == 0;
+        damps |= component[k].of_velocity;
+    }
+    if (is_zero) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+    if (I.part == floating.part) return c.draft.notes.leave_out("as both ends are on one part", s.place());
+    SixLaws laws;
+    Vector6 F;
+    for (int k = 0; k < 6; ++k) F[k] = component[static_cast<std::size_t>(k)].constant;
+    F = forces(F, units);
+    const bool on_ground = c.is_ground(floating.part);
+    if (is_constant && (on_ground || c.is_ground(I.part)) &&
+        (c.is_ground(RM.part) || RM.part == I.part || RM.part == floating.part)) {
+        // On one moving part: a load that keeps its direction, or turns with it.
+        const bool turns = !c.is_ground(RM.part);
+        if (!on_ground) return miss("a constant force on a part at a marker of ground's");
+        c.draft.notes.count(s.keyword);
+        return put_load(c, s, I, RM.pose.A * F.head<3>(), RM.pose.A * F.tail<3>(), turns);
+    }
+    if (RM.part != floating.part)
+        return miss("a force between two parts in the axes of neither the one it reacts on");
+    // Displacements of I from one marker on the other part, in RM's axes, and angles against axes that are RM's.
+    const Marker* from = nullptr;
+    const auto axis_of = [&](const Measure& m, double& sign) -> int {
+        const auto at_rm = [&](int id) {
+            const Marker& other = c.marker(at, id);
+            return other.part == RM.part && (other.pose.A - RM.pose.A).norm() <= 1e-9;
+        };
+        const int k = static_cast<int>(m.kind) - static_cast<int>(Measure::Kind::DX);
+        if (k < 0 || m.j == 0) return -1;
+        const bool straight = m.i == I.statement->id, reversed = m.j == I.statement->id;
+        const int other = straight ? m.j : m.i;
+        if (straight == reversed || c.marker(at, other).part != RM.part) return -1;
+        sign = straight ? 1 : -1;
+        if (k >= 3) return straight && at_rm(other) ? k : -1;
+        if (m.rm == 0 || !at_rm(m.rm)) return -1;
+        const Marker& origin = c.marker(at, other);
+        if (from && (from->pose.r - origin.pose.r).norm() > 1e-12 * c.geometry.size) return -1;
+        from = &origin;
+        return k;
+    };
+    const char* const other =
+        "a force by a displacement other than of its own marker, in the axes it acts in";
+    Matrix6 K = Matrix6::Zero();
+    std::array<Value, 6> own;
+    for (std::size_t r = 0; r < 6; ++r) {
+        double sign = 1;
+        for (const auto& [measure, k] : component[r].linear) {
+            const int axis = axis_of(measure, sign);
+            if (axis < 0) return miss(fmt::format("{}: {}", names[r], other));
+            K(static_cast<int>(r), axis) += -sign * k;
+        }
+        for (CurveTerm term : component[r].curves) {
+            if (axis_of(term.of, sign) != static_cast<int>(r))
+                return miss(fmt::format("{}: {}", names[r], other));
+            if (term.kind == CurveTerm::Kind::impact)
+                return miss(fmt::format("{}: a contact in one direction of a vector", names[r]));
+            term.scale *= sign;
+            own[r].curves.push_back(term);
+        }
+    }
+    const Matrix6 written = in_scene_units(K, units);
+    laws.K = written;
+    if (const std::string why = fault(laws.K); !why.empty()) return miss(why);
+    warn_of_asymmetry(c, s, written, laws.K);
+    laws.preload = F;
+    for (std::size_t r = 0; r < 6; ++r) {
+        if (own[r].curves.empty()) continue;
+        const int row = static_cast<int>(r);
+        OneLaw law;
+        Value value = own[r];
+        const double rate = laws.K(row, row);
+        const bool angle = r >= 3;
+        const std::string why = one_law(c, s, value, -1, 1, angle ? 1 : units.length,
+                                        angle ? units.force * units.length : units.force, law);
+        if (!why.empty()) return miss(fmt::format("{}: {}", names[r], why));
+        for (auto& [x, f] : law.curve) f += rate * x;
+        laws.K(row, row) = 0;
+        if (!laws.K.row(row).isZero(0))
+            return miss(fmt::format("{}: a spline beside a coupled stiffness", names[r]));
+        laws.curves[r] = law.curve;
+        laws.goes_on[r] = law.goes_on;
+    }
+    const bool has_curves =
+        std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
+    if (has_curves && !(laws.K - Matrix6(laws.K.diagonal().asDiagonal())).isZero(0))
+        return miss("a spline beside a coupled stiffness");
+    if (damps) c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+    c.draft.notes.count(s.keyword);
+    Element{c, s, at, I, floating.part, {from ? from->pose.r : I.pose.r, RM.pose.A}}.put(laws);
+}
+
+}  // namespace
+
+void read_splines(Conversion& c) {
+    static const Shape shape{{"LINEAR_EXTRAPOLATE"}, {"X", "Y", "Z", "FILE", "BLOCK", "CHANNEL"}, {}};
+    for (const Statement& s : c.data.statements) {
+        if (s.keyword != "SPLINE") continue;
+        const Arguments at(c.data.file, s, shape);
+        if (at.has("FILE") || at.has("Z"))
+            continue;  // of points elsewhere, or of two variables: missing where it is used
+        Table table{.x = at.numbers("X", 2, 10'000),
+                    .y = at.numbers("Y", 2, 10'000),
+                    .goes_on = at.has("LINEAR_EXTRAPOLATE"),
+                    .statement = &s};
+        if (table.x.empty() || table.x.size() != table.y.size())
+            at.fail(fmt::format("{} X and {} Y; as many of both are needed", table.x.size(), table.y.size()));
+        for (std::size_t n = 1; n < table.x.size(); ++n)
+            if (!(table.x[n] > table.x[n - 1]))
+                at.fail(fmt::format("X: {:g} is not above the one before", table.x[n]));
+        if (!c.splines.emplace(s.id, table).second) at.fail("there is one with this id already");
+        c.draft.notes.count("SPLINE");
+    }
+}
+
+void convert_forces(Conversion& c) {
+    for (const Statement& s : c.data.statements) {
+        if (s.keyword == "BUSHING") convert_bushing(c, s);
+        if (s.keyword == "FIELD") convert_field(c, s);
+        if (s.keyword == "BEAM") convert_beam(c, s);
+        if (s.keyword == "SPRINGDAMPER") convert_springdamper(c, s);
+        if (s.keyword == "SFORCE") convert_sforce(c, s);
+        if (s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE") convert_vector(c, s);
+    }
+}
+
+}  // namespace elastocheck::importer::adm

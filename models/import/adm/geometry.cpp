@@ -1,0 +1,294 @@
+#include "models/import/adm/geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "models/reader/words.hpp"
+#include "models/reader/yaml.hpp"
+
+namespace elastocheck::importer::adm {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+struct Named {
+    std::string_view name;
+    double si;
+};
+constexpr std::size_t longest_chain = 100;                          // of markers in markers
+constexpr double pound = 0.45359237, g_n = 9.80665, inch = 0.0254;  // [kg], [m/s²], [m]
+
+constexpr Named lengths[] = {{"MILLIMETER", 1e-3},  {"METER", 1},           {"CENTIMETER", 1e-2},
+                             {"KILOMETER", 1e3},    {"INCH", inch},         {"FOOT", 12 * inch},
+                             {"YARD", 36 * inch},   {"MILE", 63360 * inch}, {"MICROINCH", 1e-6 * inch},
+                             {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6},   {"NANOMETER", 1e-9},
+                             {"ANGSTROM", 1e-10}};
+constexpr Named forces[] = {{"NEWTON", 1},
+                            {"KNEWTON", 1e3},
+                            {"MEGANEWTON", 1e6},
+                            {"CENTINEWTON", 1e-2},
+                            {"MILLINEWTON", 1e-3},
+                            {"MICRONEWTON", 1e-6},
+                            {"NANONEWTON", 1e-9},
+                            {"DYNE", 1e-5},
+                            {"POUND_FORCE", pound* g_n},
+                            {"KPOUND_FORCE", 1e3 * pound* g_n},
+                            {"OUNCE_FORCE", pound / 16 * g_n},
+                            {"KILOGRAM_FORCE", g_n},
+                            {"POUNDAL", pound * 12 * inch}};
+constexpr Named masses[] = {{"KILOGRAM", 1},
+                            {"GRAM", 1e-3},
+                            {"MILLIGRAM", 1e-6},
+                            {"MICROGRAM", 1e-9},
+                            {"NANOGRAM", 1e-12},
+                            {"POUND_MASS", pound},
+                            {"KPOUND_MASS", 1e3 * pound},
+                            {"OUNCE_MASS", pound / 16},
+                            {"SLUG", pound* g_n / (12 * inch)},
+                            {"SLINCH", pound* g_n / inch},
+                            {"TONNE", 1e3},
+                            {"US_TON", 2000 * pound}};
+constexpr Named times[] = {{"SECOND", 1},         {"MILLISECOND", 1e-3}, {"MILLISECONDS", 1e-3},
+                           {"MICROSECOND", 1e-6}, {"NANOSECOND", 1e-9},  {"MINUTE", 60},
+                           {"HOUR", 3600},        {"DAY", 86400}};
+
+template <std::size_t n>
+double unit(const Arguments& at, std::string_view argument, const Named (&table)[n]) {
+    const std::string word = at.word(argument);
+    std::vector<std::string> names, found;
+    double si = 0;
+    for (const Named& entry : table) {
+        names.emplace_back(entry.name);
+        if (entry.name == word) return entry.si;
+        if (entry.name.starts_with(word) && !word.empty()) {
+            found.emplace_back(entry.name);
+            si = entry.si;
+        }
+    }
+    if (found.size() == 1) return si;
+    at.fail(fmt::format("{}: {} is no unit that is known here{}", argument, reader::quote(word),
+                        reader::did_you_mean(word, names, "known")));
+}
+
+Units read_units(const Dataset& data) {
+    const Statement* found = nullptr;
+    for (const Statement& statement : data.statements)
+        if (statement.keyword == "UNITS") {
+            if (found) fail(data.file, statement, "a second UNITS statement; allowed: one");
+            found = &statement;
+        }
+    if (!found) reader::fail(data.file, data.last_line, "UNITS", "missing: without it no number has a unit");
+    const Arguments at(data.file, *found, {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
+    double force = 1, mass = 1, length = 1, time = 1;
+    if (at.has("SYSTEM")) {
+        const std::string system = at.word("SYSTEM");
+        if (system == "MKS") {
+        } else if (system == "CGS") {
+            force = 1e-5, mass = 1e-3, length = 1e-2;
+        } else if (system == "FPS") {
+            force = pound * g_n, mass = pound, length = 12 * inch;
+        } else if (system == "IPS") {
+            force = pound * g_n, mass = pound, length = inch;
+        } else
+            at.fail(
+                fmt::format("SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
+                            reader::quote(system)));
+    }
+    if (at.has("FORCE")) force = unit(at, "FORCE", forces);
+    if (at.has("MASS")) mass = unit(at, "MASS", masses);
+    if (at.has("LENGTH")) length = unit(at, "LENGTH", lengths);
+    if (at.has("TIME")) time = unit(at, "TIME", times);
+    if (!at.has("SYSTEM"))
+        for (const std::string_view name : {"FORCE", "LENGTH"})
+            if (!at.has(name)) at.fail(fmt::format("{} is missing", name));
+    Units units;
+    units.metre = length;
+    units.second = time;
+    units.mass = mass;
+    units.length_name = length == 1 ? "m" : "mm";
+    units.force_name = force == 1e3 ? "kN" : "N";
+    units.length = length == 1 ? 1 : length == 1e-3 ? 1 : length * 1000;
+    units.force = force == 1e3 ? 1 : force;
+    const auto as_written = [&](std::string_view name) {
+        return at.has(name) ? at.word(name) : std::string("(default)");
+    };
+    units.remark = at.has("SYSTEM")
+                       ? fmt::format("Units of the file: SYSTEM={}", at.word("SYSTEM"))
+                       : fmt::format("Units of the file: {}, {}, {}, {}", as_written("FORCE"),
+                                     as_written("MASS"), as_written("LENGTH"), as_written("TIME"));
+    units.remark += fmt::format("; here {}, {}, kg, rad{}.", units.length_name, units.force_name,
+                                units.length != 1 || units.force != 1
+                                    ? ", as a scene does not have the file's: numbers are converted"
+                                    : "");
+    return units;
+}
+
+Matrix3d about(int axis, double angle) {
+    return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
+}
+// Body-fixed about z, the new x, the new z.
+Matrix3d euler_313(const std::vector<double>& a) { return about(2, a[0]) * about(0, a[1]) * about(2, a[2]); }
+
+Vector3d vector(const std::vector<double>& v) {
+    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
+}
+
+// Origin and axes from `origin` (QP, QG), REULER, or two points z and x: z is along the first, x in the half plane of the
+// second; with USEXP the other way round.
+Frame read_frame(const Arguments& at, const char* origin, const char* z_name, const char* x_name,
+                 double length) {
+    Frame frame;
+    const Vector3d q = vector(at.numbers(origin, 3, 3));
+    frame.r = length * q;
+    if (at.has("REULER")) {
+        if (at.has(z_name) || at.has(x_name))
+            at.fail(fmt::format("REULER together with {} or {}", z_name, x_name));
+        frame.A = euler_313(at.angles("REULER", 3));
+        return frame;
+    }
+    if (!at.has(z_name) && !at.has(x_name)) return frame;
+    const bool use_x = at.has("USEXP");
+    const auto towards = [&](const char* name, Vector3d& u) {
+        if (!at.has(name)) return false;
+        u = vector(at.numbers(name, 3, 3)) - q;
+        if (!(u.norm() > 0))
+            at.fail(fmt::format("{} is where {} is; it must be another point", name, origin));
+        u.normalize();
+        return true;
+    };
+    Vector3d z = Vector3d::UnitZ(), x = Vector3d::UnitX();
+    const bool has_z = towards(z_name, z), has_x = towards(x_name, x);
+    const Vector3d& first = use_x ? x : z;
+    if (use_x && !has_x) at.fail(fmt::format("USEXP without {}", x_name));
+    if (!use_x && !has_z) at.fail(fmt::format("{} without {}", x_name, z_name));
+    Vector3d second = use_x ? z : x;
+    if (!(use_x ? has_z : has_x))
+        second = std::abs(first.dot(second)) < 0.9 ? second : Vector3d(Vector3d::UnitY());
+    if (!(first.cross(second).norm() > 1e-9))
+        at.fail(fmt::format("{} and {} are on one line with {}", z_name, x_name, origin));
+    if (use_x) {
+        frame.A.col(0) = x;
+        frame.A.col(1) = second.cross(x).normalized();
+        frame.A.col(2) = x.cross(frame.A.col(1));
+    } else {
+        frame.A.col(2) = z;
+        frame.A.col(1) = z.cross(second).normalized();
+        frame.A.col(0) = Vector3d(frame.A.col(1)).cross(z);
+    }
+    return frame;
+}
+
+const Shape part_shape{{"GROUND"},
+                       {"MASS", "CM", "IM", "IP", "QG", "REULER", "ZG", "XG", "VX", "VY", "VZ", "WX", "WY",
+                        "WZ", "VM", "WM", "EXACT", "MATERIAL", "VELOCITY"},
+                       {}};
+const Shape marker_shape{
+    {"USEXP", "FLOATING"},
+    {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID", "NODE_LABEL"},
+    {}};
+
+Part read_part(const Dataset& data, const Statement& statement, const Units& units) {
+    const Arguments at(data.file, statement, part_shape);
+    Part part;
+    part.statement = &statement;
+    part.is_ground = at.has("GROUND");
+    if (part.is_ground) return part;
+    part.pose = read_frame(at, "QG", "ZG", "XG", units.length);
+    part.mass = at.number("MASS", 0) * units.mass;
+    if (part.mass < 0) at.fail("MASS is negative");
+    part.cm = at.id("CM");
+    return part;
+}
+
+}  // namespace
+
+Frame placed(const Frame& a, const Frame& b) { return {a.r + a.A * b.r, a.A * b.A}; }
+
+Geometry read_geometry(const Dataset& data) {
+    Geometry geometry;
+    geometry.units = read_units(data);
+    const auto add = [&](auto& map, const Statement& statement, auto entry) {
+        if (statement.id == 0) fail(data.file, statement, "has no id");
+        if (!map.emplace(statement.id, std::move(entry)).second)
+            fail(data.file, statement,
+                 fmt::format("there is one with this id already, in line {}",
+                             map.at(statement.id).statement->line));
+    };
+    int ground = 0;
+    for (const Statement& statement : data.statements) {
+        if (statement.keyword != "PART" && statement.keyword != "POINT_MASS") continue;
+        Part part = read_part(data, statement, geometry.units);
+        if (part.is_ground && ground)
+            fail(data.file, statement, fmt::format("a second ground; the first is PART/{}", ground));
+        if (part.is_ground) ground = statement.id;
+        add(geometry.parts, statement, part);
+    }
+    if (!ground) reader::fail(data.file, data.last_line, "PART", "none of them is GROUND; one must be");
+
+    // Poses in the part, or in another marker of it.
+    std::map<int, std::pair<Frame, int>> local;
+    int last_body = 0;
+    std::set<int> flexible;
+    for (const Statement& statement : data.statements) {
+        if (statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART") flexible.insert(statement.id);
+        if (statement.keyword == "PART" || statement.keyword == "POINT_MASS" ||
+            statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
+            last_body = statement.id;
+        if (statement.keyword != "MARKER") continue;
+        const Arguments at(data.file, statement, marker_shape);
+        Marker marker;
+        marker.statement = &statement;
+        marker.part = last_body;
+        marker.floats = at.has("FLOATING");
+        if (at.has("PART")) marker.part = at.id("PART");
+        if (at.has("POINT_MASS")) marker.part = at.id("POINT_MASS");
+        for (const char* flexible_part : {"FLEX_BODY", "FE_PART"})
+            if (at.has(flexible_part)) marker.part = at.id(flexible_part);
+        if (!geometry.parts.contains(marker.part) && !flexible.contains(marker.part))
+            at.fail(marker.part ? fmt::format("there is no PART/{}", marker.part) : "belongs to no part");
+        add(geometry.markers, statement, marker);
+        local[statement.id] = {read_frame(at, "QP", "ZP", "XP", geometry.units.length), at.id("RM")};
+    }
+
+    // Chains of RM, each link once.
+    for (auto& [id, marker] : geometry.markers) {
+        std::vector<int> chain;
+        for (int at = id; at;) {
+            chain.push_back(at);
+            const int next = local.at(at).second;
+            if (!next) break;
+            const auto& from = *geometry.markers.at(at).statement;
+            if (!geometry.markers.contains(next))
+                fail(data.file, from, fmt::format("RM: there is no MARKER/{}", next));
+            if (chain.size() == longest_chain || std::ranges::find(chain, next) != chain.end())
+                fail(data.file, from,
+                     fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}", next,
+                                 longest_chain));
+            if (geometry.markers.at(next).part != geometry.markers.at(at).part)
+                fail(data.file, from, fmt::format("RM: MARKER/{} is on another part", next));
+            at = next;
+        }
+        for (std::size_t k = chain.size() - 1; k-- > 0;)
+            local.at(chain[k]) = {placed(local.at(chain[k + 1]).first, local.at(chain[k]).first), 0};
+        const auto part = geometry.parts.find(marker.part);
+        marker.pose =
+            part == geometry.parts.end() ? local.at(id).first : placed(part->second.pose, local.at(id).first);
+    }
+
+    Eigen::AlignedBox3d box;
+    for (const auto& [id, marker] : geometry.markers)
+        if (!marker.floats) box.extend(marker.pose.r);
+    for (const auto& [id, part] : geometry.parts)
+        if (part.cm && !geometry.markers.contains(part.cm))
+            fail(data.file, *part.statement, fmt::format("CM: there is no MARKER/{}", part.cm));
+    geometry.size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
+    return geometry;
+}
+
+}  // namespace elastocheck::importer::adm

@@ -1,0 +1,448 @@
+// Joints, and what drives them.
+//
+// I and J of a joint coincide, or stand in line, when the model is assembled. A dataset has its parts as they were drawn, to
+// the digits that were printed: what is off by round-off is drawn where I is, what is off by more is told, and a model that
+// is not assembled is refused.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "models/import/adm/conversion.hpp"
+#include "models/reader/words.hpp"
+
+namespace elastocheck::importer::adm {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double round_off = 1e-6;  // of the model's size, of a radian: not worth a word
+constexpr std::size_t most_motions = 10'000;
+constexpr double assembled = 1e-2;  // beyond, the parts do not meet
+
+const Shape joint_shape{
+    {"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE", "UNIVERSAL",
+     "CONVEL", "RACKPIN", "SCREW"},
+    {"I", "J", "IC", "ICTRAN", "ICROT", "PD", "PITCH", "FRICTION", "DELTA_V", "INNER_RADIUS", "OUTER_RADIUS",
+     "MAXFRIC", "MU1", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "IMPLICIT"},
+    {}};
+const Shape jprim_shape{
+    {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"}, {"I", "J"}, {}};
+const Shape gcon_shape{{}, {"I"}, {"FUNCTION"}};
+const Shape coupler_shape{{}, {"JOINTS", "TYPE", "SCALES"}, {"FUNCTION"}};
+const Shape motion_shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT",
+                          "VELOCITY", "ACCELERATION"},
+                         {"JOINT", "I", "J", "ICDISP", "ICVEL"},
+                         {"FUNCTION"}};
+
+struct JointConversion {
+    Conversion& c;
+    const Statement& s;
+    const Arguments& at;
+    const Marker& I;
+    const Marker& J;
+
+    Place place() const { return s.place(); }
+    Vector3d axis(const Marker& m, int k) const { return m.pose.A.col(k); }
+
+    void require_small(double off, double scale, const std::string& what, const std::string& unit) const {
+        if (off <= round_off * scale) return;
+        const std::string told = fmt::format("{} {:.3g} {}", what, off, unit);
+        if (!(off <= assembled * scale))
+            at.fail(
+                told +
+                ": the parts do not meet as they stand in the file; assemble the model before it is written");
+        c.draft.notes.warn(place(), told + " in the file; here they meet");
+    }
+    void require_meeting() const {
+        require_small((I.pose.r - J.pose.r).norm(), c.geometry.size, "I and J are apart by",
+                      c.geometry.units.length_name);
+    }
+    void require_on_line() const {
+        const Vector3d d = I.pose.r - J.pose.r, z = axis(J, 2);
+        require_small((d - z * z.dot(d)).norm(), c.geometry.size, "I is off the axis of J by",
+                      c.geometry.units.length_name);
+    }
+    void require_in_plane() const {
+        require_small(std::abs(axis(J, 2).dot(I.pose.r - J.pose.r)), c.geometry.size,
+                      "I is off the plane of J by", c.geometry.units.length_name);
+    }
+    void require_parallel(int k, bool either_way = true) const {
+        const double cosine = axis(I, k).dot(axis(J, k));
+        const double angle =
+            std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
+        require_small(angle, 1, fmt::format("axes {} of I and J are apart by", "xyz"[k]), "rad");
+        if (cosine < 0)
+            c.draft.notes.warn(
+                place(),
+                fmt::format("axes {} of I and J point opposite ways; here they are one line", "xyz"[k]));
+    }
+    // Perpendicular to each other, the second made so to the last digit.
+    std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
+        require_small(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))), 1,
+                      "the axes are off the right angle by", "rad");
+        return {u, (v - u.dot(v) * u).normalized()};
+    }
+
+    std::size_t put(const std::string& name, Fields fields) const {
+        c.draft.joints.push_back({name, "{" + fields.text() + "}", place()});
+        return c.draft.joints.size() - 1;
+    }
+    Fields fields(const char* type) const {
+        return Fields{}.add("type", type).add("bodies", c.pair(I.part, J.part));
+    }
+    std::size_t along(const std::string& name, const char* type, const char* key) const {
+        return put(name, fields(type).add("at", c.point(I)).add(key, direction(axis(J, 2))));
+    }
+    std::size_t cross(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
+        const auto [u, v] = perpendicular(on_i, on_j);
+        return put(
+            name,
+            fields("universal").add("at", c.point(I)).add("axis_i", triple(u)).add("axis_j", triple(v)));
+    }
+    void cross_only(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
+        const auto [u, v] = perpendicular(on_i, on_j);
+        put(name, fields("perpendicular").add("axis_i", triple(u)).add("axis_j", triple(v)));
+    }
+};
+
+// Whether it is worth converting: on parts that are there, and on two of them.
+bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
+                    const Arguments& at) {
+    for (const Marker* m : {&I, &J})
+        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
+    for (const Marker* m : {&I, &J})
+        if (c.is_flexible(*m)) {
+            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
+            return false;
+        }
+    if (I.part != J.part) return true;
+    c.draft.notes.leave_out("as both ends are on one part", s.place());
+    return false;
+}
+
+void convert_joint(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, joint_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    if (!is_between_two(c, s, I, J, at)) return;
+    const JointConversion joint{c, s, at, I, J};
+    std::string kind;
+    for (const auto& argument : at.all())
+        if (argument.is_flag) {
+            if (!kind.empty())
+                at.fail(fmt::format("is {} and {}; one of them is meant", kind, argument.name));
+            kind = argument.name;
+        }
+    if (kind.empty()) at.fail("does not say of what kind it is");
+    if (kind == "CONVEL" || kind == "RACKPIN" || kind == "SCREW") {
+        c.draft.notes.miss(
+            s.place(),
+            kind == "CONVEL"
+                ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
+                  "joint transmits another angle)"
+                : kind + ": it couples a rotation with a displacement, which no joint of a scene does");
+        return;
+    }
+    const std::string name = c.name(c.joint_names, s);
+    c.draft.notes.count("JOINT " + kind);
+    for (const char* field : {"IC", "ICTRAN", "ICROT"})
+        if (at.has(field)) {
+            c.draft.notes.leave_out("being of motion alone",
+                                    {s.line, std::string(field) + " of " + s.place().what});
+            break;
+        }
+    if (at.has("MAXFRIC") || at.has("MU1")) {
+        if (c.options.drop_dynamics)
+            c.draft.notes.leave_out("by --drop dynamics", {s.line, "friction of " + s.place().what});
+        else
+            c.draft.notes.miss(
+                s.place(), "its friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+    }
+    std::size_t entry = 0;
+    if (kind == "REVOLUTE") {
+        joint.require_meeting(), joint.require_parallel(2);
+        entry = joint.along(name, "revolute", "axis");
+    } else if (kind == "CYLINDRICAL") {
+        joint.require_on_line(), joint.require_parallel(2);
+        entry = joint.along(name, "cylindrical", "axis");
+    } else if (kind == "TRANSLATIONAL") {
+        joint.require_on_line(), joint.require_parallel(2), joint.require_parallel(0);
+        entry = joint.along(name, "translational", "axis");
+    } else if (kind == "SPHERICAL") {
+        joint.require_meeting();
+        entry = joint.put(name, joint.fields("spherical").add("at", c.point(I)));
+    } else if (kind == "FIXED") {
+        joint.require_meeting(), joint.require_parallel(2, false), joint.require_parallel(0, false);
+        entry = joint.put(name, joint.fields("fixed").add("at", c.point(I)));
+    } else if (kind == "PLANAR") {
+        joint.require_in_plane(), joint.require_parallel(2);
+        entry = joint.along(name, "planar", "normal");
+    } else if (kind == "HOOKE") {
+        joint.require_meeting();
+        entry = joint.cross(name, joint.axis(I, 0), joint.axis(J, 1));
+    } else {
+        joint.require_meeting();
+        entry = joint.cross(name, joint.axis(I, 2), joint.axis(J, 2));
+    }
+    c.joints[s.id] = {kind, entry, I.statement->id, J.statement->id};
+}
+
+void convert_jprim(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, jprim_shape);
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    if (!is_between_two(c, s, I, J, at)) return;
+    const JointConversion joint{c, s, at, I, J};
+    std::string kind;
+    for (const auto& argument : at.all())
+        if (argument.is_flag) kind = argument.name;
+    if (kind.empty()) at.fail("does not say of what kind it is");
+    c.draft.notes.count("JPRIM " + kind);
+    const std::string name = c.name(c.joint_names, s);
+    if (kind == "ATPOINT") {
+        joint.require_meeting();
+        joint.put(name, joint.fields("spherical").add("at", c.point(I)));
+    } else if (kind == "INLINE") {
+        joint.require_on_line();
+        joint.along(name, "in_line", "axis");
+    } else if (kind == "INPLANE") {
+        joint.require_in_plane();
+        joint.along(name, "in_plane", "normal");
+    } else if (kind == "PARALLEL_AXES") {
+        joint.require_parallel(2);
+        joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
+    } else if (kind == "PERPENDICULAR") {
+        joint.cross_only(name, joint.axis(I, 2), joint.axis(J, 2));
+    } else {  // ORIENTATION: z parallel, and no turn about it
+        joint.require_parallel(2, false), joint.require_parallel(0, false);
+        joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
+        joint.cross_only(c.joint_names.take(name + ".about"), joint.axis(I, 0), joint.axis(J, 1));
+    }
+}
+
+// k DM(i, j) + c = 0 is a rigid link of length -c/k; k D*(i, j, rm) + c = 0 a plane that i stays in.
+void convert_gcon(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, gcon_shape);
+    const std::string* text = at.expression("FUNCTION");
+    if (!text) at.fail("FUNCTION is missing");
+    const Value value = c.function(*text);
+    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    if (!value.is_known()) return miss(value.unknown);
+    if (value.of_time || value.curves.size() || value.linear.size() != 1)
+        return miss("a constraint other than of one distance or one displacement");
+    const auto& [measure, k] = *value.linear.begin();
+    const double offset = -value.constant / k * c.geometry.units.length;
+    if (measure.j == 0) return miss("measured in the global frame without a marker there");
+    const Marker &I = c.marker(at, measure.i), &J = c.marker(at, measure.j);
+    if (!is_between_two(c, s, I, J, at)) return;
+    const JointConversion joint{c, s, at, I, J};
+    const std::string name = c.name(c.joint_names, s);
+    if (measure.kind == Measure::Kind::DM) {
+        const double drawn = (I.pose.r - J.pose.r).norm();
+        if (!(offset > 0) || !(drawn > 0)) return miss("a distance that is not above zero");
+        c.draft.notes.count("GCON of a distance");
+        Fields fields = joint.fields("distance").add("from", c.point(I)).add("to", c.point(J));
+        if (std::abs(offset - drawn) > 1e-9 * c.geometry.size) {
+            fields.add("length", computed(offset, c.geometry.size));
+            c.draft.notes.warn(
+                s.place(), fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart",
+                                       drawn, c.geometry.units.length_name, offset));
+        }
+        joint.put(name, fields);
+        return;
+    }
+    const int axis = static_cast<int>(measure.kind) - static_cast<int>(Measure::Kind::DX);
+    if (axis > 2 || measure.rm == 0 || c.marker(at, measure.rm).part != J.part)
+        return miss(
+            "a constraint other than of a distance, or of a displacement in the axes of its second marker");
+    const Vector3d normal = c.marker(at, measure.rm).pose.A.col(axis);
+    joint.require_small(std::abs(normal.dot(I.pose.r - J.pose.r) - offset), c.geometry.size,
+                        "the constraint is off by", c.geometry.units.length_name);
+    c.draft.notes.count("GCON of a displacement");
+    joint.put(name, joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
+}
+
+// ---- Motions. What is prescribed counts from where I and J coincide; a scene counts from the design position.
+
+// At rest, or at a constant velocity, from 0 to the end of the programme; none where it is neither.
+struct Programme {
+    double start = 0, end = 0;
+    bool from_design = false;  // it is a velocity: it starts where the parts stand
+};
+
+std::optional<Programme> programme(Conversion& c, const Statement& s, const Arguments& at) {
+    const std::string* text = at.expression("FUNCTION");
+    if (!text) at.fail("FUNCTION is missing");
+    const Value first = c.function(*text, 0), last = c.function(*text, c.end_time);
+    for (const Value* value : {&first, &last})
+        if (!value->is_constant()) {
+            c.draft.notes.miss(s.place(),
+                               value->is_known() ? "a motion that depends on displacements" : value->unknown);
+            return std::nullopt;
+        }
+    if (!at.has("VELOCITY") && !at.has("ACCELERATION"))
+        return Programme{first.constant, last.constant, false};
+    if (first.constant == 0 && last.constant == 0) return Programme{0, 0, true};
+    if (at.has("VELOCITY") && first.constant == last.constant)
+        return Programme{0, first.constant * c.end_time, true};
+    if (c.options.drop_dynamics)
+        c.draft.notes.leave_out("by --drop dynamics: the coordinate stays free", s.place());
+    else
+        c.draft.notes.miss(
+            s.place(),
+            "a motion by a velocity or an acceleration that changes (--drop dynamics leaves the "
+            "coordinate free)");
+    return std::nullopt;
+}
+
+double turn_of(const Marker& I, const Marker& J) {  // AZ
+    return std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
+}
+// The angle nearest to zero that is the same.
+double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+
+void drive(Conversion& c, const std::string& quantity, const Programme& by, double scale, double drawn,
+           bool is_angle) {
+    Drive drive{quantity, 0, (by.end - by.start) * scale};
+    if (!by.from_design) {
+        double offset = by.start * scale - drawn;
+        if (is_angle) offset = wrapped(offset);
+        if (std::abs(offset) > 1e-9 * (is_angle ? 1 : c.geometry.size)) {
+            drive.start += offset;
+            drive.end += offset;
+        }
+    }
+    c.drives.push_back(drive);
+}
+
+void hold(Conversion& c, std::size_t entry) {
+    std::string& fields = c.draft.joints[entry].fields;
+    if (!fields.ends_with(", held: true}")) fields.replace(fields.size() - 1, 1, ", held: true}");
+}
+
+void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_the_file) {
+    const Arguments at(c.data.file, s, motion_shape);
+    if (c.drives.size() >= most_motions) at.fail(fmt::format("more than {} motions", most_motions));
+    const auto by = programme(c, s, at);
+    const bool rotates = at.has("ROTATIONAL");
+    const double length = c.geometry.units.length;
+    if (at.has("JOINT")) {
+        const auto found = c.joints.find(at.id("JOINT"));
+        if (found == c.joints.end()) {
+            if (!in_the_file.contains(at.id("JOINT")))
+                at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
+            c.draft.notes.miss(s.place(), fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
+            return;
+        }
+        if (!by) return;
+        const WrittenJoint& joint = found->second;
+        const Marker &I = c.marker(at, joint.i), &J = c.marker(at, joint.j);
+        const Vector3d axis = J.pose.A.col(2);
+        const std::string quantity = "joints." + c.draft.joints[joint.entry].name;
+        if (rotates && (joint.kind == "REVOLUTE" || joint.kind == "CYLINDRICAL")) {
+            hold(c, joint.entry);
+            drive(c, quantity, *by, 1, turn_of(I, J), true);
+        } else if (!rotates && joint.kind == "TRANSLATIONAL") {
+            hold(c, joint.entry);
+            drive(c, quantity, *by, length, axis.dot(I.pose.r - J.pose.r), false);
+        } else if (!rotates && joint.kind == "CYLINDRICAL") {
+            const JointConversion plane{c, s, at, I, J};
+            const std::string name = c.name(c.joint_names, s);
+            plane.along(name, "in_plane", "normal");
+            drive(c, "joints." + name, *by, length, axis.dot(I.pose.r - J.pose.r), false);
+        } else {
+            at.fail(fmt::format("{} of a {} joint, which has no such coordinate",
+                                rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind));
+        }
+        c.draft.notes.count("MOTION");
+        return;
+    }
+    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
+    int axis = -1;
+    for (int k = 0; k < 3; ++k)
+        if (at.has(std::string(1, "XYZ"[k]))) axis = k;
+    if (axis < 0) {
+        c.draft.notes.miss(s.place(),
+                           "a motion of an angle between two markers; of a joint it could be driven");
+        return;
+    }
+    if (!by || !is_between_two(c, s, I, J, at)) return;
+    const JointConversion plane{c, s, at, I, J};
+    const std::string name = c.name(c.joint_names, s);
+    const Vector3d normal = J.pose.A.col(axis);
+    plane.put(name, plane.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
+    drive(c, "joints." + name, *by, length, normal.dot(I.pose.r - J.pose.r), false);
+    c.draft.notes.count("MOTION");
+}
+
+// Σ scale · displacement = 0 of two or three joints. No joint of a scene says that; but where a MOTION prescribes all of
+// them but one, that one is driven in proportion, which is the same motion. Only the share of the effort is not.
+void convert_coupler(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, coupler_shape);
+    const auto joints = at.ids("JOINTS");
+    const auto scales = at.numbers("SCALES", 1, 3);
+    if (joints.size() < 2 || joints.size() > 3) at.fail("JOINTS: two or three are needed");
+    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    if (at.has("FUNCTION")) return miss("it couples by a function of the user's");
+    // Of two joints one scale may be left out: that of the first is 1.
+    std::vector<double> scale = scales;
+    if (scale.size() == joints.size() - 1) scale.insert(scale.begin(), 1);
+    if (scale.size() != joints.size())
+        at.fail(fmt::format("SCALES: {} for {} joints", scales.size(), joints.size()));
+    std::vector<const WrittenJoint*> written;
+    for (const int id : joints) {
+        const auto found = c.joints.find(id);
+        if (found == c.joints.end()) return miss(fmt::format("JOINT/{} is not in the scene", id));
+        written.push_back(&found->second);
+    }
+    const auto unit = [&](const WrittenJoint& joint) {  // of the scene, for one of the file's
+        return joint.kind == "TRANSLATIONAL" ? c.geometry.units.length : 1;
+    };
+    const auto quantity = [&](const WrittenJoint& joint) {
+        return "joints." + c.draft.joints[joint.entry].name;
+    };
+    std::size_t free = joints.size();
+    double sum = 0;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+        const auto found = std::ranges::find(c.drives, quantity(*written[k]), &Drive::quantity);
+        if (found != c.drives.end())
+            sum += scale[k] * found->end / unit(*written[k]);
+        else if (free == joints.size())
+            free = k;
+        else
+            return miss("it couples joints that no MOTION prescribes; a scene has no joint that does");
+    }
+    if (free == joints.size()) return miss("it couples joints that MOTIONs prescribe already");
+    const WrittenJoint& joint = *written[free];
+    if (joint.kind != "REVOLUTE" && joint.kind != "TRANSLATIONAL")
+        return miss(fmt::format("it couples a {} joint, which has no coordinate or two", joint.kind));
+    if (scale[free] == 0) at.fail("SCALES: zero for a joint that nothing else moves");
+    hold(c, joint.entry);
+    c.drives.push_back({quantity(joint), 0, -sum / scale[free] * unit(joint)});
+    c.draft.notes.count("COUPLER");
+    c.draft.notes.warn(
+        s.place(), fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
+                               "drive's of its own",
+                               quantity(joint)));
+}
+
+}  // namespace
+
+void convert_joints(Conversion& c) {
+    for (const Statement& s : c.data.statements) {
+        if (s.keyword == "JOINT") convert_joint(c, s);
+        if (s.keyword == "JPRIM") convert_jprim(c, s);
+        if (s.keyword == "GCON") convert_gcon(c, s);
+    }
+    std::set<int> in_the_file;
+    for (const Statement& s : c.data.statements)
+        if (s.keyword == "JOINT") in_the_file.insert(s.id);
+    for (const Statement& s : c.data.statements)
+        if (s.keyword == "MOTION") convert_motion(c, s, in_the_file);
+    for (const Statement& s : c.data.statements)
+        if (s.keyword == "COUPLER") convert_coupler(c, s);
+}
+
+}  // namespace elastocheck::importer::adm

@@ -1,0 +1,215 @@
+#include "models/import/draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace elastocheck::importer {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t widest = 118;
+constexpr std::size_t longest_name = 64;
+constexpr double same_place = 1e-9;  // of the model's size
+const Vector3d askew =
+    Vector3d(0.6299, 0.5774, 0.5195).normalized();  // x, tilted out of all planes that models have points in
+constexpr std::size_t most_told = 40;               // of one kind in the head of a scene
+
+bool is_letter_or_digit(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+std::string printable(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c < 0x20 || c > 0x7E) c = '?';
+    return result;
+}
+
+std::string told(const Place& place) {
+    return place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
+                          : printable(place.what);
+}
+
+// An entry of a section, broken at commas where it is long; the place it comes from at its end, or above it.
+void write_entry(const Entry& entry, Text& text) {
+    const auto put = [&](const std::string& line) {
+        text.yaml += line + "\n";
+        text.line_of.push_back(entry.from);
+    };
+    const std::string comment = entry.from.what.empty() ? "" : "# " + told(entry.from);
+    std::string line = fmt::format("  {}: {}", entry.name, entry.fields);
+    if (!comment.empty() && line.size() + 2 + comment.size() <= widest) {
+        put(line + "  " + comment);
+        return;
+    }
+    if (!comment.empty()) put("  " + comment);
+    while (line.size() > widest) {
+        std::size_t cut = line.rfind(", ", widest - 1);
+        if (cut == std::string::npos || cut < 12) cut = line.find(", ", widest);
+        if (cut == std::string::npos) break;
+        put(line.substr(0, cut + 1));
+        line = "      " + line.substr(cut + 2);
+    }
+    put(line);
+}
+
+void write_section(const char* name, const std::vector<Entry>& entries, Text& text) {
+    if (entries.empty()) return;
+    text.yaml += fmt::format("\n{}:\n", name);
+    text.line_of.insert(text.line_of.end(), 2, Place{});
+    for (const Entry& entry : entries) write_entry(entry, text);
+}
+
+// YAML takes a title in quotes whatever it says.
+std::string in_quotes(std::string_view title) {
+    std::string result = "\"";
+    for (const char c : printable(title)) {
+        if (c == '"' || c == '\\') result += '\\';
+        result += c;
+    }
+    return result + "\"";
+}
+
+// Text of any length in lines that begin with a mark.
+void comment(std::string_view what, Text& text, std::string_view indent = "") {
+    std::string line = "# ", words(what);
+    while (!words.empty()) {
+        const std::size_t end = std::min(words.find(' '), words.size());
+        if (line.size() + end > widest && line.size() > 2 + indent.size()) {
+            line.pop_back();
+            text.yaml += line + "\n";
+            text.line_of.emplace_back();
+            line = fmt::format("# {}  ", indent);
+        }
+        line += words.substr(0, end) + " ";
+        words.erase(0, std::min(end + 1, words.size()));
+    }
+    line.pop_back();
+    text.yaml += line + "\n";
+    text.line_of.emplace_back();
+}
+
+}  // namespace
+
+std::string number(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
+
+std::string computed(double x, double scale) {
+    if (std::abs(x) <= 1e-12 * scale) return "0";
+    return fmt::format("{}", std::strtod(fmt::format("{:.12g}", x).c_str(), nullptr));
+}
+
+std::string triple(const Vector3d& v, double scale) {
+    return fmt::format("[{}, {}, {}]", computed(v.x(), scale), computed(v.y(), scale),
+                       computed(v.z(), scale));
+}
+
+std::string direction(const Vector3d& u) {
+    for (int k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0})
+            if ((u - sign * Vector3d::Unit(k)).norm() <= 1e-12)
+                return fmt::format("{}{}", sign < 0 ? "-" : "", "xyz"[k]);
+    return triple(u);
+}
+
+std::string table(const std::vector<std::pair<double, double>>& rows) {
+    std::string text;
+    for (const auto& [x, f] : rows)
+        text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number(x), number(f));
+    return "[" + text + "]";
+}
+
+Fields& Fields::add(std::string_view key, std::string_view value) {
+    text_ += fmt::format("{}{}: {}", text_.empty() ? "" : ", ", key, value);
+    return *this;
+}
+
+std::string Names::take(std::string_view wanted) {
+    std::string name;
+    for (const char c : wanted.substr(0, longest_name - 8)) {
+        const bool fits = is_letter_or_digit(c) || (!name.empty() && (c == '-' || c == '+' || c == '.'));
+        name += fits ? c : '_';
+    }
+    if (name.empty()) name = "unnamed";
+    if (taken_.insert(name).second) return name;
+    for (int& k = last_.try_emplace(name, 1).first->second;;) {
+        const std::string other = fmt::format("{}_{}", name, ++k);
+        if (taken_.insert(other).second) return other;
+    }
+}
+
+std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
+    const double near = same_place * size_, key = position.dot(askew);
+    for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near;
+         ++found)
+        if ((positions_[found->second] - position).norm() <= near) return entries_[found->second].name;
+    by_x_.emplace(key, positions_.size());
+    positions_.push_back(position);
+    entries_.push_back({names_.take(wanted), triple(position, size_), from});
+    return entries_.back().name;
+}
+
+std::vector<std::string> told(const Notes& notes) {
+    std::vector<std::string> lines;
+    std::string understood;
+    for (const auto& [kind, n] : notes.understood)
+        understood += fmt::format("{}{} {}", understood.empty() ? "" : ", ", n, kind);
+    lines.push_back("Understood: " + (understood.empty() ? "nothing" : understood) + ".");
+    for (const auto& [why, what] : notes.left_out) {
+        std::string list;
+        for (std::size_t k = 0; k < std::min(what.size(), most_told); ++k)
+            list += (list.empty() ? "" : "; ") + told(what[k]);
+        if (what.size() > most_told) list += fmt::format("; and {} more", what.size() - most_told);
+        lines.push_back(fmt::format("Left out, {}: {}.", why, list));
+    }
+    for (const auto& [place, what] : notes.warnings)
+        lines.push_back(fmt::format("Warning: {}: {}.", told(place), what));
+    for (const auto& [place, what] : notes.missing)
+        lines.push_back(fmt::format("MISSING: {}: {}.", told(place), printable(what)));
+    if (!notes.missing.empty())
+        lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
+    return lines;
+}
+
+Text write(const Draft& draft) {
+    Text text;
+    comment(fmt::format("Imported from {} ({}).", printable(draft.source), draft.format), text);
+    for (const std::string& remark : draft.remarks) comment(remark, text);
+    for (const std::string& line : told(draft.notes)) comment(line, text);
+    const auto put = [&](const std::string& line) {
+        text.yaml += line + "\n";
+        text.line_of.emplace_back();
+    };
+    put("");
+    put("elastocheck: 1");
+    put("name: " + in_quotes(draft.title));
+    put("units: " + draft.units);
+    if (draft.mirror) put("mirror: " + *draft.mirror);
+    if (draft.gravity) put("gravity: " + triple(*draft.gravity));
+    write_section("points", draft.points.entries(), text);
+    write_section("bodies", draft.bodies, text);
+    write_section("joints", draft.joints, text);
+    write_section("bushings", draft.bushings, text);
+    write_section("springs", draft.springs, text);
+    write_section("stops", draft.stops, text);
+    write_section("torsion_springs", draft.torsion_springs, text);
+    write_section("static_loads", draft.static_loads, text);
+    write_section("loads", draft.loads, text);
+    write_section("branches", draft.branches, text);
+    if (draft.wheels.size() == 1 && draft.wheels[0].name == "wheel") {  // the short form for one
+        const Entry& wheel = draft.wheels[0];
+        put("");
+        put(fmt::format("wheel: {}{}", wheel.fields,
+                        wheel.from.what.empty() ? "" : "  # " + told(wheel.from)));
+    } else {
+        write_section("wheels", draft.wheels, text);
+    }
+    write_section("probes", draft.probes, text);
+    write_section("dampers", draft.dampers, text);
+    return text;
+}
+
+}  // namespace elastocheck::importer

@@ -1,0 +1,384 @@
+// The statements of a scene, one by one, the other way round than adm/joints.cpp and adm/forces.cpp read them.
+#include "models/import/export_adm.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "models/overloaded.hpp"
+#include "models/reader/scene_file.hpp"
+
+namespace elastocheck::importer {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+std::string real(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
+std::string list(const Vector3d& v) {
+    return fmt::format("{}, {}, {}", real(v.x()), real(v.y()), real(v.z()));
+}
+
+// Body-fixed about z, the new x, the new z [rad].
+Vector3d euler_313(const Matrix3d& A) {
+    const double b = std::atan2(std::hypot(A(0, 2), A(1, 2)), A(2, 2));
+    if (std::hypot(A(0, 2), A(1, 2)) < 1e-14)  // a and c turn about the same axis
+        return {std::atan2(A(1, 0), A(0, 0)), A(2, 2) > 0 ? 0 : std::acos(-1.0), 0};
+    return {std::atan2(A(0, 2), -A(1, 2)), b, std::atan2(A(2, 0), A(2, 1))};
+}
+
+// Axes with z along u.
+Matrix3d along(const Vector3d& u) {
+    Matrix3d A;
+    A.col(2) = u.normalized();
+    A.col(0) = A.col(2).unitOrthogonal();
+    A.col(1) = Vector3d(A.col(2)).cross(Vector3d(A.col(0)));
+    return A;
+}
+// With x along u and z across u and v.
+Matrix3d with_x(const Vector3d& u, const Vector3d& v) {
+    Matrix3d A;
+    A.col(0) = u.normalized();
+    A.col(1) = (v - v.dot(A.col(0)) * A.col(0)).normalized();
+    A.col(2) = Vector3d(A.col(0)).cross(Vector3d(A.col(1)));
+    return A;
+}
+
+class Writer {
+  public:
+    Writer(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
+
+    void whole() {
+        std::string& t = result_.text;
+        // A title of its own, whatever the name says.
+        std::string title = scene_.name;
+        for (char& c : title)
+            if (c < 0x20 || c > 0x7E) c = '?';
+        t = fmt::format(
+            "Exported model name: {}\n!\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = METER\n, "
+            "TIME = SECOND\n!\n",
+            title);
+        called("ground");
+        t += "PART/1\n, GROUND\n!\n";
+        for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+            called(scene_.bodies[b].name);
+            const int cm = next_marker_++;
+            t += fmt::format("PART/{}\n, CM = {}\n, QG = {}\n", b + 2, cm, list(scene_.bodies[b].design.r));
+            called(scene_.bodies[b].name + ".origin");
+            t += fmt::format("MARKER/{}\n, PART = {}\n!\n", cm, b + 2);
+        }
+        for (const Joint& joint : scene_.joints) write(joint);
+        for (const Elastic& elastic : scene_.elastics) write(elastic);
+        for (const Load& load : scene_.static_loads) write(load);
+        for (const Wheel& wheel : scene_.wheels) {
+            called(wheel.name.empty() ? "wheel_centre" : "wheel_centre_" + wheel.name);
+            marker(wheel.body, wheel.centre_local, along(wheel.spin_axis_local));
+            result_.notes.leave_out("having no statement",
+                                    {0, "wheel " + wheel.name + " (its centre is a marker: import --wheel)"});
+        }
+        for (const Branch& branch : scene_.branches)
+            result_.notes.leave_out("having no statement", {0, "branch '" + branch.name + "'"});
+        for (const Damper& damper : scene_.dampers)
+            result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
+        for (const auto& line : told(result_.notes)) t += fmt::format("! {}\n", line);
+        t += "END\n";
+    }
+
+  private:
+    void called(const std::string& name) { result_.text += fmt::format("! adams_view_name='{}'\n", name); }
+    static int part(BodyId body) { return body + 2; }  // ground is 1
+    void miss(const std::string& what, const std::string& why) { result_.notes.miss({0, what}, why); }
+
+    int marker(BodyId body, const Vector3d& s, const Matrix3d& A = Matrix3d::Identity()) {
+        const int id = next_marker_++;
+        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, QP = {}\n", id, part(body), list(s));
+        if (!A.isIdentity(0)) result_.text += fmt::format(", REULER = {}\n", list(euler_313(A)));
+        return id;
+    }
+    int floating(BodyId body) {
+        const int id = next_marker_++;
+        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, FLOATING\n", id, part(body));
+        return id;
+    }
+
+    void statement(const char* keyword, int id, const std::string& name, const std::string& kind, int i,
+                   int j) {
+        called(name);
+        result_.text += fmt::format("{}/{}\n", keyword, id);
+        if (!kind.empty()) result_.text += fmt::format(", {}\n", kind);
+        result_.text += fmt::format(", I = {}\n, J = {}\n", i, j);
+    }
+
+    // ---- Joints. Bodies begin parallel to ground: a direction has the same components on both.
+
+    void on_axis(const Joint& joint, const char* kind, const Point& i, const Point& j,
+                 const Direction& axis_i, const Direction& axis_j) {
+        const int I = marker(i.body, i.s_local, along(axis_i.u_local)),
+                  J = marker(j.body, j.s_local, along(axis_j.u_local));
+        joints_[joint.name] = next_joint_;
+        statement("JOINT", next_joint_++, joint.name, kind, I, J);
+    }
+    void primitive(const Joint& joint, const char* kind, int I, int J) {
+        statement("JPRIM", next_primitive_++, joint.name, kind, I, J);
+    }
+
+    // How much of the first branch's way a drive of this joint makes in one second; 0 where it is held.
+    double rate_of(const Joint& joint) const {
+        for (const Branch& branch : scene_.branches)
+            for (const Driver& driver : branch.drivers)
+                if (const auto* motion = std::get_if<Motion>(&driver.what))
+                    if (&scene_.joints[static_cast<std::size_t>(motion->joint)] == &joint)
+                        return driver.rate * branch.to;
+        return 0;
+    }
+
+    // The drive of a joint that is written already: "crank.drive". A jack, and what stands on some branches alone, is not there.
+    void drive(const Joint& joint, const char* kind, double offset) {
+        if (joint.only_where_driven)
+            return result_.notes.leave_out("standing only where a branch drives it",
+                                           {0, "drive '" + joint.name + "'"});
+        const auto found = joints_.find(joint.name.substr(0, joint.name.rfind('.')));
+        if (found == joints_.end())
+            return miss("drive '" + joint.name + "'", "the joint that it drives has no statement");
+        called(joint.name);
+        const double rate = rate_of(joint);
+        result_.text += fmt::format("MOTION/{}\n, {}\n, JOINT = {}\n, FUNCTION = {}{}\n", next_motion_++,
+                                    kind, found->second, real(offset),
+                                    rate == 0 ? "" : fmt::format(" + {} * TIME", real(rate)));
+    }
+
+    void write(const Joint& joint) {
+        const auto z = [](const Direction& d) { return along(d.u_local); };
+        std::visit(
+            overloaded{
+                [&](const Spherical& j) {
+                    const int I = marker(j.i.body, j.i.s_local), J = marker(j.j.body, j.j.s_local);
+                    statement("JOINT", next_joint_++, joint.name, "SPHERICAL", I, J);
+                },
+                [&](const Revolute& j) { on_axis(joint, "REVOLUTE", j.i, j.j, j.axis_i, j.axis_j); },
+                [&](const Universal& j) {
+                    const int I = marker(j.i.body, j.i.s_local, z(j.axis_i)),
+                              J = marker(j.j.body, j.j.s_local, z(j.axis_j));
+                    statement("JOINT", next_joint_++, joint.name, "UNIVERSAL", I, J);
+                },
+                [&](const Cylindrical& j) { on_axis(joint, "CYLINDRICAL", j.i, j.j, j.axis_i, j.axis_j); },
+                [&](const Translational& j) {
+                    on_axis(joint, "TRANSLATIONAL", j.i, j.j, j.axis_i, j.axis_j);
+                },
+                [&](const Planar& j) { on_axis(joint, "PLANAR", j.i, j.j, j.normal_i, j.normal_j); },
+                [&](const Fixed& j) {
+                    const int I = marker(j.i.body, j.i.s_local, with_x(j.x_i.u_local, j.y_i.u_local)),
+                              J = marker(j.j.body, j.j.s_local, with_x(j.x_j.u_local, j.y_j.u_local));
+                    statement("JOINT", next_joint_++, joint.name, "FIXED", I, J);
+                },
+                [&](const Distance& j) {
+                    if (joint.only_where_driven) return drive(joint, "", 0);
+                    const int I = marker(j.i.body, j.i.s_local), J = marker(j.j.body, j.j.s_local);
+                    called(joint.name);
+                    result_.text += fmt::format("GCON/{}\n, FUNCTION = DM({}, {}) - {}\n", next_gcon_++, I, J,
+                                                real(j.length));
+                },
+                [&](const InPlane& j) {
+                    const bool is_drive = joint.name.ends_with(".drive") &&
+                                          joints_.contains(joint.name.substr(0, joint.name.rfind('.')));
+                    if (joint.only_where_driven || is_drive) return drive(joint, "TRANSLATIONAL", j.offset);
+                    const Matrix3d A = z(j.normal_j);
+                    const int I = marker(j.i.body, j.i.s_local, A),
+                              J = marker(j.j.body, j.j.s_local + j.offset * j.normal_j.u_local, A);
+                    primitive(joint, "INPLANE", I, J);
+                },
+                [&](const InLine& j) {
+                    const Matrix3d A = z(j.axis_j);
+                    const int I = marker(j.i.body, j.i.s_local, A), J = marker(j.j.body, j.j.s_local, A);
+                    primitive(joint, "INLINE", I, J);
+                },
+                [&](const Perpendicular& j) {
+                    const int I = marker(j.i.body, Vector3d::Zero(), z(j.i)),
+                              J = marker(j.j.body, Vector3d::Zero(), z(j.j));
+                    primitive(joint, "PERPENDICULAR", I, J);
+                },
+                [&](const Parallel& j) {
+                    const int I = marker(j.i.body, Vector3d::Zero(), z(j.i)),
+                              J = marker(j.j.body, Vector3d::Zero(), z(j.j));
+                    primitive(joint, "PARALLEL_AXES", I, J);
+                },
+                [&](const Angle& j) { drive(joint, "ROTATIONAL", j.angle); }},
+            joint.kind);
+    }
+
+    // ---- Elements
+
+    // The points of a curve that an interpolant was made of; empty where it is another one.
+    static std::vector<std::pair<double, double>> points(const Curve& curve) {
+        std::vector<std::pair<double, double>> rows;
+        for (std::size_t k = 0; k < curve.knots.size(); ++k)
+            rows.emplace_back(curve.knots[k], curve.pieces[k + 1][0]);
+        return rows;
+    }
+    int spline(const Curve& curve, const std::string& name) {
+        std::string x, y;
+        for (const auto& [a, b] : points(curve)) {
+            x += (x.empty() ? "" : "\n, ") + real(a);
+            y += (y.empty() ? "" : "\n, ") + real(b);
+        }
+        called(name + ".spline");
+        result_.text += fmt::format("SPLINE/{}\n{}, X = {}\n, Y = {}\n", next_spline_,
+                                    curve.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
+        return next_spline_++;
+    }
+
+    void write(const Elastic& elastic) {
+        if (elastic.only_where_driven)
+            return result_.notes.leave_out("standing only where a branch drives it",
+                                           {0, "tyre '" + elastic.name + "'"});
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) return write(elastic, *spring);
+        write(elastic, std::get<Bushing>(elastic.kind));
+    }
+
+    void write(const Elastic& elastic, const AxialSpring& spring) {
+        const auto* curve = std::get_if<Curve>(&spring.law);
+        const bool is_stop = elastic.written_as == WrittenAs::stop;
+        if (curve && (is_stop ? curve->knots.size() != 1 : curve->knots.size() < 2))
+            return miss("element '" + elastic.name + "'",
+                        "a stop with a curve has no function of ADAMS'; give it a rate");
+        const int I = marker(spring.i.body, spring.i.s_local), J = marker(spring.j.body, spring.j.s_local);
+        if (!curve) {
+            statement("SPRINGDAMPER", next_force_++, elastic.name, "TRANSLATIONAL", I, J);
+            result_.text += fmt::format(", K = {}\n, LENGTH = {}\n", real(std::get<LinearRate>(spring.law).k),
+                                        real(spring.free_length));
+            return;
+        }
+        if (is_stop) {  // one knot: a rate on one side of it, nothing on the other
+            const double touches = spring.free_length + curve->knots[0];
+            const double below = curve->pieces[0][1], above = curve->pieces[1][1];
+            statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
+            if (above == 0)
+                result_.text += fmt::format(", FUNCTION = IMPACT(DM({}, {}), VR({}, {}), {}, {}, 1, 0, 1)\n",
+                                            I, J, I, J, real(touches), real(below));
+            else
+                result_.text +=
+                    fmt::format(", FUNCTION = -IMPACT(-DM({}, {}), -VR({}, {}), {}, {}, 1, 0, 1)\n", I, J, I,
+                                J, real(-touches), real(above));
+            return;
+        }
+        const int points_of = spline(*curve, elastic.name);
+        statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
+        result_.text += fmt::format(", FUNCTION = -AKISPL(DM({}, {}) - {}, 0, {})\n", I, J,
+                                    real(spring.free_length), points_of);
+        result_.notes.warn({0, "element '" + elastic.name + "'"},
+                           "ADAMS runs Akima's curve through its points, a scene the monotone interpolant");
+    }
+
+    void write(const Elastic& elastic, const Bushing& b) {
+        const Matrix3d A_i = b.i.A_local.toRotationMatrix(), A_j = b.j.A_local.toRotationMatrix();
+        // About one axis through one point, whatever the formulation: the same angle.
+        const auto* linear = std::get_if<LinearStiffness>(&b.law);
+        if (elastic.written_as == WrittenAs::torsion_spring && linear) {
+            const int J = marker(b.i.body, b.i.s_local, A_i), I = marker(b.j.body, b.j.s_local, A_j);
+            statement("SPRINGDAMPER", next_force_++, elastic.name, "ROTATIONAL", I, J);
+            result_.text +=
+                fmt::format(", KT = {}\n, TORQUE = {}\n", real(linear->K(5, 5)), real(-b.preload[5]));
+            return;
+        }
+        const Formulation adams{
+            .frame = Formulation::Frame::on_i, .angles = Formulation::Angles::projected, .conjugate = false};
+        if (!(b.formulation == adams))
+            miss("element '" + elastic.name + "'",
+                 "its formulation is not ADAMS' ({angles: projected, conjugate: false}), so the same rates "
+                 "are another law there");
+        if (elastic.written_as == WrittenAs::torsion_spring || !b.formulation.offset_moment) return;
+        // δ counts from J's origin: there the undeformed position is put. Angles have theirs in LENGTH.
+        const int J = marker(b.i.body, b.i.s_local + A_i * b.undeformed.head<3>(), A_i),
+                  I = marker(b.j.body, b.j.s_local, A_j);
+        const Vector6 force = -b.preload;
+        if (const auto* axes = std::get_if<PerAxis>(&b.law)) {
+            if (!b.undeformed.tail<3>().isZero(0))
+                return miss("element '" + elastic.name + "'",
+                            "curves of angles that are undeformed elsewhere");
+            const int float_j = floating(b.i.body);
+            constexpr const char* components[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
+            constexpr const char* measures[] = {"DX", "DY", "DZ", "AX", "AY", "AZ"};
+            std::string functions;
+            for (std::size_t k = 0; k < 6; ++k) {
+                const std::string x = k < 3 ? fmt::format("{}({}, {}, {})", measures[k], I, J, J)
+                                            : fmt::format("{}({}, {})", measures[k], I, J);
+                const auto at_zero = force[static_cast<Eigen::Index>(k)];
+                if (const auto* rate = std::get_if<LinearRate>(&axes->axis[k]))
+                    functions += fmt::format(", {} = {} - {} * {}\\\n", components[k], real(at_zero),
+                                             real(rate->k), x);
+                else
+                    functions += fmt::format(
+                        ", {} = {} - AKISPL({}, 0, {})\\\n", components[k], real(at_zero), x,
+                        spline(std::get<Curve>(axes->axis[k]), elastic.name + "." + components[k]));
+            }
+            called(elastic.name);
+            result_.text += fmt::format("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n{}", next_gforce_++,
+                                        I, float_j, J, functions);
+            return;
+        }
+        const Matrix6& K = linear->K;
+        if (K.isDiagonal(0) && b.undeformed.tail<3>().isZero(0)) {
+            statement("BUSHING", next_force_++, elastic.name, "", I, J);
+            result_.text += fmt::format(", K = {}\n, KT = {}\n, FORCE = {}\n, TORQUE = {}\n",
+                                        list(K.diagonal().head<3>()), list(K.diagonal().tail<3>()),
+                                        list(force.head<3>()), list(force.tail<3>()));
+            return;
+        }
+        statement("FIELD", next_force_++, elastic.name, "", I, J);
+        result_.text += ", KMATRIX =\n";
+        for (int column = 0; column < 6; ++column)
+            result_.text +=
+                fmt::format(", {}, {}\n", list(K.col(column).head<3>()), list(K.col(column).tail<3>()));
+        result_.text +=
+            fmt::format(", LENGTH = 0, 0, 0, {}\n, FORCE = {}, {}\n", list(b.undeformed.tail<3>()),
+                        list(force.head<3>()), list(force.tail<3>()));
+    }
+
+    // ---- Loads: on ground react what nobody asks for.
+
+    void load(const std::string& name, BodyId body, const Vector3d& s, const Vector3d& force,
+              const Vector3d& moment, bool follows) {
+        const int I = marker(body, s), J = floating(ground),
+                  RM = follows ? I : marker(ground, Vector3d::Zero());
+        called(name);
+        result_.text += fmt::format(
+            "GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n, FX = {}\\\n, FY = {}\\\n, FZ = {}\\\n, TX = "
+            "{}\\\n, TY = {}\\\n, TZ = {}\n",
+            next_gforce_++, I, J, RM, real(force.x()), real(force.y()), real(force.z()), real(moment.x()),
+            real(moment.y()), real(moment.z()));
+    }
+    void write(const Load& l) {
+        const Vector3d none = Vector3d::Zero();
+        std::visit(
+            overloaded{
+                [&](const DeadForce& f) { load(l.name, f.at.body, f.at.s_local, f.f, none, false); },
+                [&](const DeadMoment& m) { load(l.name, m.body, none, none, m.m, false); },
+                [&](const FollowerForce& f) { load(l.name, f.at.body, f.at.s_local, f.f_local, none, true); },
+                [&](const FollowerMoment& m) { load(l.name, m.body, none, none, m.m_local, true); }},
+            l.kind);
+    }
+
+    const Scene& scene_;
+    Exported& result_;
+    std::map<std::string, int> joints_;
+    int next_marker_ = 1, next_joint_ = 1, next_primitive_ = 1, next_gcon_ = 1, next_motion_ = 1,
+        next_force_ = 1, next_sforce_ = 1, next_gforce_ = 1, next_spline_ = 1;
+};
+
+}  // namespace
+
+Exported export_adm(const Scene& scene, bool allow_missing) {
+    Exported result;
+    Writer(scene, result).whole();
+    if (!result.notes.missing.empty() && !allow_missing) {
+        std::string message;
+        for (const auto& [place, what] : result.notes.missing)
+            message += fmt::format("{}: {}: {}\n", scene.source, place.what, what);
+        throw SceneError(message + "--allow-missing exports the rest, and says so in it");
+    }
+    return result;
+}
+
+}  // namespace elastocheck::importer

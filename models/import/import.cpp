@@ -1,0 +1,107 @@
+#include "models/import/import.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "models/reader/scene_file.hpp"
+#include "models/reader/text_file.hpp"
+#include "models/reader/words.hpp"
+#include "models/reader/yaml.hpp"
+
+namespace elastocheck::importer {
+namespace {
+
+constexpr std::size_t largest_file = 16 << 20;  // [bytes]
+constexpr std::size_t most_errors = 20;
+constexpr std::string_view name_of_text = "scene";
+
+std::string where(const Place& place) {
+    return place.line > 0 ? fmt::format(":{}", place.line) : std::string();
+}
+
+// All that is missing, a line each, as one error.
+[[noreturn]] void refuse(const std::string& file, const Notes& notes) {
+    std::string message;
+    for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
+        const auto& [place, what] = notes.missing[k];
+        message +=
+            fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place), reader::shown(place.what), what);
+    }
+    if (notes.missing.size() > most_errors)
+        message += fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
+    message += fmt::format(
+        "\n{} a scene cannot represent; --allow-missing imports the rest, and says so in its head",
+        notes.missing.size() == 1 ? "This" : fmt::format("These {}", notes.missing.size()));
+    throw SceneError(message);
+}
+
+// What the reader says of the scene, with the place in the file that the line of the scene came from.
+[[noreturn]] void explain(const std::string& file, const Text& text, std::string_view message) {
+    int line = 0;
+    if (message.starts_with(name_of_text)) {
+        message.remove_prefix(name_of_text.size() + 1);
+        const auto [end, error] = std::from_chars(message.data(), message.data() + message.size(), line);
+        if (error == std::errc{})
+            message.remove_prefix(std::min<std::size_t>(end - message.data() + 2, message.size()));
+    }
+    const Place from =
+        line > 0 && line <= static_cast<int>(text.line_of.size()) ? text.line_of[line - 1] : Place{};
+    throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
+                                 from.what.empty() ? "" : reader::shown(from.what) + ": ",
+                                 fmt::format("the scene made of it is refused: {}", message)));
+}
+
+std::string extension(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
+}  // namespace
+
+Imported import_text(std::string_view text, const std::string& file, const Options& options) {
+    const std::string ending = extension(file);
+    if (ending != ".adm" && ending != ".json" && ending != ".sub")
+        reader::fail(
+            file, 0, "",
+            fmt::format(
+                "{} is no ending that is known here; allowed: .adm (ADAMS datasets), .json (Chrono::Vehicle "
+                "suspensions), .sub (hardpoints of Adams/Car)",
+                reader::quote(ending)));
+    const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
+                        : ending == ".json" ? import_chrono(text, file, options)
+                                            : import_subsystem(text, file, options);
+    if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
+    if (draft.bodies.empty() && ending != ".sub")
+        reader::fail(file, 0, "", "nothing of it moves: no part is held by anything that a scene has");
+    const Text written = write(draft);
+    Imported result{.yaml = written.yaml, .notes = draft.notes};
+    result.bodies = static_cast<int>(draft.bodies.size());
+    result.joints = static_cast<int>(draft.joints.size());
+    result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() + draft.stops.size() +
+                                       draft.torsion_springs.size());
+    if (ending != ".sub") {  // hardpoints alone are no scene yet
+        try {
+            const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
+            result.bodies = static_cast<int>(scene.bodies.size());
+            result.joints = static_cast<int>(scene.joints.size());
+            result.elements = static_cast<int>(scene.elastics.size());
+        } catch (const SceneError& error) {
+            explain(file, written, error.what());
+        }
+    }
+    return result;
+}
+
+Imported import_file(const std::filesystem::path& file, const Options& options) {
+    const std::string name = file.string();
+    const reader::TextFile read = reader::read_text(file, largest_file);
+    if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
+    if (read.text.size() > largest_file)
+        reader::fail(name, 0, "", "larger than 16 MiB, which no model of a suspension is");
+    return import_text(read.text, name, options);
+}
+
+}  // namespace elastocheck::importer

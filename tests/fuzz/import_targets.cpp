@@ -1,0 +1,55 @@
+#include "tests/fuzz/import_targets.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "models/import/import.hpp"
+#include "models/reader/property_file.hpp"
+#include "models/reader/scene_file.hpp"
+
+namespace elastocheck::fuzz {
+namespace {
+
+// With what a scene cannot represent, and without; with a wheel that is hardly ever there.
+void import(std::string_view input, const std::string& file) {
+    for (const auto& options :
+         {importer::Options{}, importer::Options{"", true, true}, importer::Options{"wheel", false, true}}) {
+        try {
+            const importer::Imported result = importer::import_text(input, file, options);
+            if (result.yaml.empty()) throw std::logic_error("nothing was written");
+        } catch (const SceneError& error) {
+            if (!std::string_view(error.what()).starts_with(file + ":"))
+                throw std::logic_error("a refusal without a place: " + std::string(error.what()));
+        }
+    }
+}
+
+std::string_view text(const std::uint8_t* data, std::size_t size) {
+    return {reinterpret_cast<const char*>(data), size};
+}
+
+}  // namespace
+
+void adm(std::string_view input) { import(input, "model.adm"); }
+void chrono(std::string_view input) { import(input, "model.json"); }
+void subsystem(std::string_view input) { import(input, "model.sub"); }
+
+void property(std::string_view input) {
+    try {
+        const reader::PropertyFile file = reader::parse_property_file(input, "model.bus");
+        for (const auto& block : file.blocks) try {
+                reader::curve_rows(file, block, file.length, file.force);
+            } catch (const SceneError&) {
+            }
+    } catch (const SceneError& error) {
+        if (!std::string_view(error.what()).starts_with("model.bus:"))
+            throw std::logic_error("a refusal without a place: " + std::string(error.what()));
+    }
+}
+
+int fuzz_adm(const std::uint8_t* data, std::size_t size) { return adm(text(data, size)), 0; }
+int fuzz_chrono(const std::uint8_t* data, std::size_t size) { return chrono(text(data, size)), 0; }
+int fuzz_property(const std::uint8_t* data, std::size_t size) { return property(text(data, size)), 0; }
+int fuzz_subsystem(const std::uint8_t* data, std::size_t size) { return subsystem(text(data, size)), 0; }
+
+}  // namespace elastocheck::fuzz

@@ -1,0 +1,587 @@
+// ADAMS datasets: the lexical rules, what statements come to, and what statics by hand says of it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "compare/legs.hpp"
+#include "models/compile.hpp"
+#include "models/import/adm/expression.hpp"
+#include "models/import/export_adm.hpp"
+#include "models/import/import.hpp"
+#include "models/reader/scene_file.hpp"
+#include "tests/models/import/imports.hpp"
+
+namespace elastocheck {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using importer::Options;
+using namespace tests;
+
+// Two parts: a crank on ground, a bushing, a spring and a coupler bar.
+const std::string linkage = R"(title, whatever it says
+UNITS/
+, FORCE = NEWTON
+, MASS = KILOGRAM
+, LENGTH = MILLIMETER
+, TIME = SECOND
+!    adams_view_name='ground'
+PART/1
+, GROUND
+!    adams_view_name='pivot'
+MARKER/1
+, PART = 1
+, REULER = 90D, 90D, 0D
+!    adams_view_name='crank'
+PART/2
+, MASS = 2
+, CM = 4
+, QG = 10, 20, 30
+MARKER/3
+, PART = 2
+, QP = -10, -20, -30
+, REULER = 90D, 90D, 0D
+!    adams_view_name='crank_cm'
+MARKER/4
+, PART = 2
+, QP = 90, -20, -30
+MARKER/5
+, PART = 1
+, QP = 100, 0, 200
+JOINT/1
+, REVOLUTE
+, I = 3
+, J = 1
+SPRINGDAMPER/1
+, TRANSLATIONAL
+, I = 4
+, J = 5
+, K = 12.5
+, C = 3
+, LENGTH = 210
+ACCGRAV/
+, KGRAV = -9806.65
+END
+)";
+
+// The entries of the scene alone: no comments.
+std::string entries(const std::string& yaml) {
+    std::string result;
+    for (std::size_t at = 0; at < yaml.size();) {
+        const std::size_t end = yaml.find('\n', at);
+        std::string line = yaml.substr(at, end - at);
+        at = end + 1;
+        line = line.substr(0, line.find('#'));
+        while (line.ends_with(' ')) line.pop_back();
+        if (!line.empty()) result += line + "\n";
+    }
+    return result;
+}
+
+std::string scene_of(const std::string& text, const Options& options = {}) {
+    return importer::import_text(text, "model.adm", options).yaml;
+}
+
+std::string refusal(const std::string& text, const Options& options = {},
+                    const std::string& file = "model.adm") {
+    try {
+        importer::import_text(text, file, options);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, text.npos) << from;
+    return text.replace(at, from.size(), to);
+}
+std::string everywhere(std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+TEST(Adm, IsTheSameModelHoweverItIsWritten) {
+    const std::string expected = entries(scene_of(linkage));
+    const std::pair<const char*, std::string> others[] = {
+        {"lines end in CRLF", everywhere(linkage, "\n", "\r\n")},
+        {"cut off words",
+         everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"), "MARKER/",
+                    "mark/")},
+        {"small letters", replaced(replaced(linkage, ", TRANSLATIONAL", ", translation"), "KGRAV", "kgrav")},
+        {"commas at the ends of lines", replaced(linkage, ", I = 4\n, J = 5", ", I = 4,\n, J = 5")},
+        {"all on one line", replaced(linkage, "\n, I = 3\n, J = 1", ", I=3,J=1")},
+        {"a list over lines", replaced(linkage, "QG = 10, 20, 30", "QG = 10,\n, 20\n, 30")},
+        {"a list that begins on its second line",
+         replaced(linkage, "QG = 10, 20, 30", "QG = \n, 10, 20, 30")},
+        {"the sign of continuation at the end",
+         replaced(linkage, "SPRINGDAMPER/1\n, TRANSLATIONAL", "SPRINGDAMPER/1, &\n TRANSLATIONAL")},
+        {"leading zeros", everywhere(everywhere(linkage, "PART = 1", "PART = 001"), "JOINT/1", "JOINT/0001")},
+        {"radians", everywhere(linkage, "90D, 90D, 0D", "1.5707963267948966, 1.5707963267948966, 0")},
+        {"exponents of old", replaced(linkage, "K = 12.5", "K = 1.25D+01")},
+        {"bytes of Latin-1 in comments", replaced(linkage, "ACCGRAV/", "! f\xFCr Gewicht\nACCGRAV/")},
+        {"comments within a statement", replaced(linkage, ", J = 5\n", "! between\n, J = 5   ! behind\n")},
+        {"units last",
+         replaced(linkage.substr(0, linkage.find("UNITS")) +
+                      linkage.substr(linkage.find("!    adams_view_name='ground'")),
+                  "END\n",
+                  linkage.substr(linkage.find("UNITS"), linkage.find("!    adams") - linkage.find("UNITS")) +
+                      "END\n")},
+        {"more behind the end", linkage + "nonsense\n"},
+    };
+    for (const auto& [what, text] : others) EXPECT_EQ(entries(scene_of(text)), expected) << what;
+}
+
+TEST(Adm, KeepsNamesAndSaysWhereEachElementComesFrom) {
+    const std::string yaml = scene_of(linkage);
+    EXPECT_NE(yaml.find("crank: {origin: crank_cm, mass: 2}  # line 15, PART/2 'crank'"), yaml.npos) << yaml;
+    EXPECT_NE(yaml.find("joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"),
+              yaml.npos)
+        << yaml;
+    EXPECT_NE(yaml.find("springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, "
+                        "free_length: 210}"),
+              yaml.npos)
+        << yaml;
+    EXPECT_NE(yaml.find("damping of SPRINGDAMPER/1"), yaml.npos) << yaml;
+}
+
+// A point of view that no unit of the file can change: each quantity is converted by its own unit.
+TEST(Adm, UnitsAreConvertedEachByItsOwn) {
+    struct Units {
+        const char *force, *mass, *length;
+        double newton, kilogram, metre;
+    };
+    const double pound = 0.45359237, g = 9.80665;
+    const auto spring_of = [](const Scene& scene) {
+        return std::get<AxialSpring>(scene.elastics.at(0).kind);
+    };
+    for (const Units& u : {Units{"NEWTON", "KILOGRAM", "MILLIMETER", 1, 1, 1e-3},
+                           Units{"KNEWTON", "KILOGRAM", "METER", 1e3, 1, 1},
+                           Units{"POUND_FORCE", "SLUG", "FOOT", pound * g, pound * g / 0.3048, 0.3048},
+                           Units{"POUND_FORCE", "POUND_MASS", "INCH", pound * g, pound, 0.0254},
+                           Units{"DYNE", "GRAM", "CENTIMETER", 1e-5, 1e-3, 1e-2}}) {
+        std::string text = replaced(linkage, "NEWTON", u.force);
+        text = replaced(replaced(text, "KILOGRAM", u.mass), "MILLIMETER", u.length);
+        const Scene scene = parse_scene(scene_of(text), "scene");
+        EXPECT_NEAR(std::get<LinearRate>(spring_of(scene).law).k / (12.5 * u.newton / u.metre), 1, 1e-11)
+            << u.force;
+        EXPECT_NEAR(spring_of(scene).free_length / (210 * u.metre), 1, 1e-11) << u.length;
+        EXPECT_NEAR(
+            std::get<DeadForce>(scene.static_loads.at(0).kind).f.z() / (-2 * u.kilogram * 9806.65 * u.metre),
+            1, 1e-11)
+            << u.mass;
+    }
+    EXPECT_EQ(entries(scene_of(replaced(
+                  linkage, ", FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND",
+                  ", SYSTEM = MKS"))),
+              entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
+}
+
+// ZP and XP are points: REULER, the points and a marker in a marker are three ways to say one frame.
+TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
+    const std::string bushing = replaced(linkage, "ACCGRAV/",
+                                         "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
+                                         "MARKER/7, PART = 1, QP = 11, 22, 33, REULER = 30D, 40D, 50D\n"
+                                         "BUSHING/9, I = 6, J = 7, K = 1, 2, 3, KT = 4, 5, 6\nACCGRAV/");
+    const Matrix3d A = (Eigen::AngleAxisd(std::numbers::pi / 6, Vector3d::UnitZ()) *
+                        Eigen::AngleAxisd(std::numbers::pi * 2 / 9, Vector3d::UnitX()) *
+                        Eigen::AngleAxisd(std::numbers::pi * 5 / 18, Vector3d::UnitZ()))
+                           .toRotationMatrix();
+    const Vector3d q(11, 22, 33), z = q + 7 * A.col(2), x = q + 3 * A.col(0) + 2 * A.col(2);
+    const auto list = [](const Vector3d& v) { return fmt::format("{}, {}, {}", v.x(), v.y(), v.z()); };
+    const std::string at = "QP = 11, 22, 33, REULER = 30D, 40D, 50D";
+    const std::string by_points =
+        replaced(bushing, at, fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}", list(z), list(x)));
+    const std::string use_x =
+        replaced(bushing, at,
+                 fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}, USEXP", list(q + 7 * A.col(2) + A.col(0)),
+                             list(q + 5 * A.col(0))));
+    const std::string nested = replaced(bushing, at,
+                                        "QP = 0, 0, 33, REULER = 0, 40D, 50D, RM = 8\nMARKER/8, PART = 1, QP "
+                                        "= 11, 22, 0, REULER = 30D, 0, 0");
+    const auto frame = [](const std::string& text) {
+        const Scene scene = parse_scene(scene_of(text), "scene");
+        for (const Elastic& elastic : scene.elastics)
+            if (const auto* found = std::get_if<Bushing>(&elastic.kind)) return *found;
+        throw std::runtime_error("no bushing");
+    };
+    const Bushing expected = frame(bushing);
+    EXPECT_LE((expected.i.A_local.toRotationMatrix() - A).norm(), 1e-11);
+    for (const std::string& text : {by_points, use_x}) {
+        EXPECT_LE(expected.i.A_local.angularDistance(frame(text).i.A_local), 1e-7);
+        EXPECT_LE((expected.undeformed - frame(text).undeformed).norm(), 1e-12);
+    }
+    // In marker 8, turned by 30° about z, the offset turns with it; z does not.
+    EXPECT_LE(expected.i.A_local.angularDistance(frame(nested).i.A_local), 1e-7);
+    EXPECT_LE((expected.undeformed - frame(nested).undeformed).norm(), 1e-12);
+}
+
+// ---- Every message.
+
+TEST(Adm, SaysWhatIsWrongAndWhere) {
+    const std::string more = "ACCGRAV/";
+    const auto with = [&](const std::string& statement) {
+        return replaced(linkage, more, statement + "\n" + more);
+    };
+    const std::tuple<const char*, std::string, const char*> cases[] = {
+        {"empty", "", "no statement"},
+        {"a picture", std::string("\x89PNG\0\r\n", 7) + linkage, "model.adm:1: a NUL byte"},
+        {"a word", "t\nHello world\n", "model.adm:2: expected a statement"},
+        {"unknown", "t\nTHING/1\n", "model.adm:2: 'THING' is no statement"},
+        {"short", "t\nMA/1\n", "too short to tell"},
+        {"orphan", "t\n, I = 1\n", "continues a statement, but there is none"},
+        {"huge id", "t\nPART/99999999999999\n", "too large for an id"},
+        {"no comma", "t\nPART/1 GROUND\n", "expected a comma"},
+        {"no units",
+         replaced(linkage,
+                  "UNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n",
+                  ""),
+         "UNITS: missing"},
+        {"two units", linkage.substr(0, linkage.find("END")) + "UNITS/, SYSTEM = MKS\n", "a second UNITS"},
+        {"a unit", replaced(linkage, "MILLIMETER", "CUBIT"), "'CUBIT' is no unit"},
+        {"a system", replaced(linkage, ", FORCE = NEWTON", ", SYSTEM = NONE"), "is no system of units"},
+        {"half the units", replaced(linkage, ", FORCE = NEWTON\n", ""), "FORCE is missing"},
+        {"no ground", replaced(linkage, "PART/1\n, GROUND", "PART/1, MASS = 1"), "none of them is GROUND"},
+        {"two grounds", with("PART/7, GROUND"), "a second ground"},
+        {"twice", with("MARKER/1, PART = 1"), "there is one with this id already"},
+        {"no part", with("MARKER/8, PART = 77"), "there is no PART/77"},
+        {"no marker", replaced(linkage, ", I = 3", ", I = 33"), "there is no MARKER/33"},
+        {"no I", replaced(linkage, ", I = 3\n", ""), "I is missing"},
+        {"a marker in itself", with("MARKER/8, PART = 1, RM = 9\nMARKER/9, PART = 1, RM = 8"),
+         "stands in itself"},
+        {"a marker in none", with("MARKER/8, PART = 1, RM = 99"), "RM: there is no MARKER/99"},
+        {"a marker elsewhere", with("MARKER/8, PART = 1, RM = 4"), "is on another part"},
+        {"angles and points", with("MARKER/8, PART = 1, REULER = 0, 0, 0, ZP = 0, 0, 1"),
+         "REULER together with"},
+        {"the same point", with("MARKER/8, PART = 1, QP = 1, 1, 1, ZP = 1, 1, 1"),
+         "it must be another point"},
+        {"on a line", with("MARKER/8, PART = 1, ZP = 0, 0, 1, XP = 0, 0, 2"), "on one line"},
+        {"only x", with("MARKER/8, PART = 1, XP = 1, 0, 0"), "XP without ZP"},
+        {"only z", with("MARKER/8, PART = 1, ZP = 1, 0, 0, USEXP"), "USEXP without XP"},
+        {"negative mass", replaced(linkage, "MASS = 2", "MASS = -2"), "MASS is negative"},
+        {"no centre", replaced(linkage, "CM = 4", "CM = 44"), "CM: there is no MARKER/44"},
+        {"no number", replaced(linkage, "K = 12.5", "K = stiff"), "K: 'stiff' is no number"},
+        {"not a number", replaced(linkage, "K = 12.5", "K = nan"), "K: 'nan' is no number"},
+        {"beyond all bounds", replaced(linkage, "K = 12.5", "K = 1e999"), "out of range"},
+        {"degrees of stiffness", replaced(linkage, "K = 12.5", "K = 12D"), "this is no angle"},
+        {"two numbers", replaced(linkage, "QG = 10, 20, 30", "QG = 10, 20"),
+         "2 numbers, where 3 are asked for"},
+        {"an argument", replaced(linkage, "K = 12.5", "STIFFNESS = 12.5"), "'STIFFNESS' is no argument"},
+        {"a flag", replaced(linkage, ", REVOLUTE", ", HINGE"), "'HINGE' is no flag"},
+        {"twice given", replaced(linkage, ", K = 12.5", ", K = 12.5, K = 1"), "K is given twice"},
+        {"two ids", replaced(linkage, ", I = 3", ", I = 3, 4"), "2 ids, where one"},
+        {"no id", replaced(linkage, ", I = 3", ", I = 3.5"), "is no id"},
+        {"two kinds", replaced(linkage, ", REVOLUTE", ", REVOLUTE, SPHERICAL"), "is REVOLUTE and SPHERICAL"},
+        {"no kind", replaced(linkage, ", REVOLUTE\n", ""), "does not say of what kind"},
+        {"apart", replaced(linkage, "QP = -10, -20, -30", "QP = -10, -20, 0"), "I and J are apart by 30 mm"},
+        {"two gravities", with("ACCGRAV/, KGRAV = 1"), "a second one"},
+        {"floating", with("MARKER/8, PART = 1, FLOATING\nBUSHING/8, I = 4, J = 8"),
+         "floats, and so is nowhere"},
+        {"a bracket open", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -3*(DM(4,5)"),
+         "a bracket is left open"},
+        {"a bracket shut", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3)"), "a bracket closes"},
+        {"no function", with("SFORCE/1, TRANS, I = 4, J = 5"), "FUNCTION is missing"},
+        {"a field without", with("FIELD/1, I = 4, J = 5"), "KMATRIX is missing"},
+        {"a beam without", with("BEAM/1, I = 4, J = 5, LENGTH = 1"), "AREA is missing"},
+        {"a motion of", with("MOTION/1, ROTATIONAL, JOINT = 5, FUNCTION = 0"), "there is no JOINT/5"},
+        {"a motion along", with("MOTION/1, TRANS, JOINT = 1, FUNCTION = 0"), "has no such coordinate"},
+        {"a table", with("SPLINE/1, X = 1, 2, 2, Y = 1, 2, 3"), "is not above the one before"},
+        {"half a table", with("SPLINE/1, X = 1, 2, Y = 1, 2, 3"), "2 X and 3 Y"},
+    };
+    for (const auto& [what, text, message] : cases) {
+        const std::string said = refusal(text);
+        EXPECT_TRUE(said.starts_with("model.adm:")) << what << ": " << said;
+        EXPECT_NE(said.find(message), said.npos) << what << ": " << said;
+    }
+    EXPECT_NE(refusal(linkage, {"crnk", false, false}).find("did you mean 'crank'"), std::string::npos);
+    EXPECT_NE(refusal(linkage, {"pivot", false, false}).find("is not on a part that moves"),
+              std::string::npos);
+    EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is no ending"), std::string::npos);
+}
+
+// Nothing is dropped in silence: an error with its line, or with --allow-missing told in the head.
+TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
+    const auto with = [&](const std::string& statement) {
+        return replaced(linkage, "ACCGRAV/", statement + "\nACCGRAV/");
+    };
+    const std::pair<std::string, const char*> cases[] = {
+        {"CONTACT/1, IGEOM = 1", "a contact between parts"},
+        {"JOINT/2, CONVEL, I = 4, J = 5", "constant-velocity"},
+        {"JOINT/2, RACKPIN, I = 4, J = 5, PD = 1", "couples a rotation with a displacement"},
+        {"FRICTION/1, JOINT = 1", "--drop dynamics"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = USER(1)", "USER(...)"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DM(4,5)**2", "a power of a displacement"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3*DM(4,5)", "a negative rate"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DX(4,5,5)", "other than between its own markers"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = VARVAL(4)\nVARIABLE/4, "
+         "FUNCTION = VARVAL(3)",
+         "it depends on itself"},
+        {"FIELD/1, I = 4, J = 5, FUNCTION = USER(1)", "a function of the user's"},
+        {"BEAM/1, STRING, I = 4, J = 5", "another formulation"},
+        {"BUSHING/1, I = 4, J = 5, K = -1, 0, 0", "a negative rate"},
+        {"GCON/1, FUNCTION = DM(4,5)*DM(4,5)-1", "a product of displacements"},
+        {"COUPLER/1, JOINTS = 1, 1, SCALES = 1, -1", "no MOTION prescribes"},
+        {"FLEX_BODY/9", "a flexible body"},
+        {"UCON/9", "a constraint of the user's"},
+    };
+    for (const auto& [statement, message] : cases) {
+        const std::string said = refusal(with(statement));
+        EXPECT_NE(said.find("model.adm:41: "), said.npos) << statement << ": " << said;
+        EXPECT_NE(said.find(message), said.npos) << statement << ": " << said;
+        EXPECT_NE(said.find("--allow-missing"), said.npos) << statement;
+        const std::string yaml = scene_of(with(statement), {"", false, true});
+        EXPECT_NE(yaml.find("# MISSING: line 41"), yaml.npos) << statement << yaml;
+        EXPECT_NE(yaml.find("NOT the model of the file"), yaml.npos) << statement;
+        EXPECT_EQ(entries(yaml).substr(0, 100), entries(scene_of(linkage)).substr(0, 100)) << statement;
+    }
+    EXPECT_EQ(refusal(with("FRICTION/1, JOINT = 1"), {"", true, false}), "");
+}
+
+// ---- Expressions.
+
+TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
+    using namespace importer::adm;
+    Context context;
+    context.time = 2;
+    const auto constant = [&](const char* text) {
+        const Value value = evaluate(text, context);
+        EXPECT_TRUE(value.is_constant()) << text << ": " << value.unknown;
+        return value.constant;
+    };
+    EXPECT_DOUBLE_EQ(constant("-2**2 + 3*(4-1)/2"), 0.5);
+    EXPECT_DOUBLE_EQ(constant("90d * RTOD"), 90);
+    EXPECT_DOUBLE_EQ(constant("30.0d * time"), std::numbers::pi / 3);
+    EXPECT_DOUBLE_EQ(constant("STEP(TIME, 1, 10, 3, 20)"), 15);
+    EXPECT_DOUBLE_EQ(constant("IF(TIME-2: 1, 5, 9) + IF(-1: 1, 5, 9) + IF(1: 1, 5, 9)"), 15);
+    EXPECT_DOUBLE_EQ(constant("-0*USER(1, 2) - 7*VR(1, 2) + MAX(1, 3) + SIGN(2, -1)"), 1);
+    const Value law =
+        evaluate("-3*(DM(1,2) - 10) + 2*(5 - DM(1,2))/4 - AKISPL(2*DX(1,2,2)-1, 0, 7)", context);
+    ASSERT_TRUE(law.is_known()) << law.unknown;
+    EXPECT_DOUBLE_EQ(law.constant, 32.5);
+    EXPECT_DOUBLE_EQ(law.linear.at({Measure::Kind::DM, 1, 2, 0}), -3.5);
+    ASSERT_EQ(law.curves.size(), 1u);
+    EXPECT_DOUBLE_EQ(law.curves[0].factor, -1);
+    EXPECT_DOUBLE_EQ(law.curves[0].scale, 2);
+    EXPECT_DOUBLE_EQ(law.curves[0].offset, -1);
+    for (const char* text :
+         {"", "1 +", "1 2", "(1", "SIN(DX(1,2))", "1/0", "1/DM(1,2)", "DX(1)*DX(2)", "nothing", "SQRT(-1)",
+          "DX(1.5)", "IF(DX(1,2): 1, 2, 3)", "IMPACT(1, 2, 3)", "AKISPL(3, 0, 1)", "VARVAL(1)"})
+        EXPECT_FALSE(evaluate(text, context).is_known()) << text;
+    EXPECT_FALSE(evaluate(std::string(100'000, '('), context).is_known());
+    EXPECT_FALSE(evaluate(std::string(100'000, '-') + "1", context).linear.size());
+}
+
+// ---- Rest.
+
+// A block on a bushing whose markers are a centimetre and 13° apart, loaded by itself: it comes to rest where K δ = FORCE and
+// KT θ = TORQUE, δ and θ of I in the axes of J, wherever it was drawn.
+TEST(Adm, ABushingComesToRestWhereItsLawSaysWhateverItsMarkersAre) {
+    const std::string text = R"(t
+UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = MILLIMETER, TIME = SECOND
+PART/1, GROUND
+PART/2, MASS = 1, QG = 5, 6, 7, REULER = 10D, 20D, 30D
+MARKER/1, PART = 2, QP = 20, 10, 0, REULER = 24D, 5D, 0
+MARKER/2, PART = 1, QP = 30, 20, 15, REULER = 10D, 20D, 66D
+BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -200, 100, TORQUE = 6000, 4000, -2000
+)";
+    const Scene scene = parse_scene(scene_of(text), "scene");
+    const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+    // The markers as they were drawn, moved with the part.
+    const Matrix3d A_part = euler(10, 20, 30), A_I = A_part * euler(24, 5, 0), A_J = euler(10, 20, 66);
+    const Vector3d I = Vector3d(5, 6, 7) + A_part * Vector3d(20, 10, 0), J(30, 20, 15);
+    const Matrix3d turn = rest.poses.at(0).p.toRotationMatrix();
+    const Vector3d now = 1000 * rest.poses.at(0).r + turn * (I - 1000 * scene.bodies.at(0).design.r);
+    const Vector3d delta = A_J.transpose() * (now - J);
+    EXPECT_LE((delta - Vector3d(0.3, -0.1, 0.2)).norm(), 1e-6) << delta;
+    const Matrix3d B = A_J.transpose() * turn * A_I;
+    EXPECT_NEAR(std::atan2(-B(1, 2), B(2, 2)), 0.02, 1e-9);
+    EXPECT_NEAR(std::atan2(B(0, 2), B(2, 2)), 0.02, 1e-9);
+    EXPECT_NEAR(std::atan2(B(1, 0), B(0, 0)), -0.02, 1e-9);
+}
+
+// Samples of joints, with gravity turned to where the part as drawn hangs straight: the reaction carries its weight.
+TEST(Adm, JointSamplesBearTheWeightAtRest) {
+    const double weight = 9.80665;  // of 1 kg
+    for (const auto& [file, axis, g] : {std::tuple{"Revolute_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+                                        {"Spherical_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+                                        {"Universal_Case01", "JGRAV", Vector3d(0, weight, 0)},
+                                        {"Distance_Case01", "JGRAV", Vector3d(0, weight, 0)},
+                                        {"Prismatic_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+                                        {"Cylindrical_Case01", "IGRAV", Vector3d(weight, 0, 0)}}) {
+        const std::string text = replaced(sample(fmt::format("chrono_{}.adm", file)), "KGRAV = -9.80665",
+                                          fmt::format("{} = {}", axis, weight));
+        const Scene scene = parse_scene(scene_of(text), "scene");
+        const Model model = compile(scene);
+        ASSERT_EQ(model.joints.size(), 1u) << file;
+        const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+        const double on_part = model.joints[0].i == ground ? -1 : 1;
+        EXPECT_LE((on_part * rest.reactions.at(0).force + g).norm(), 1e-8)
+            << file << ": " << rest.reactions.at(0).force;
+    }
+}
+
+// The pendulum on its torsion spring: 2 m g cos φ = k φ.
+TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
+    const Scene scene = parse_scene(scene_of(sample("chrono_RotSpring_Case01.adm")), "scene");
+    const double k = 180 / std::numbers::pi, m_g = 9.80665;
+    double phi = 0.3;
+    for (int n = 0; n < 50; ++n) phi -= (2 * m_g * std::cos(phi) - k * phi) / (-2 * m_g * std::sin(phi) - k);
+    const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+    EXPECT_NEAR(rest.poses.at(0).r.x(), 2 * std::cos(phi), 1e-9);
+    EXPECT_NEAR(rest.poses.at(0).r.z(), -2 * std::sin(phi), 1e-9);
+}
+
+// A vector force of displacements is the bushing of the same numbers, and a FIELD with a diagonal as well.
+TEST(Adm, AVectorForceOfDisplacementsIsABushing) {
+    const std::string base = R"(t
+UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
+PART/1, GROUND
+PART/2, MASS = 1
+MARKER/1, PART = 2, QP = 0.1, 0.2, 0.3
+MARKER/2, PART = 1, QP = 0.1, 0.2, 0.25
+MARKER/3, PART = 1, FLOATING
+)";
+    const auto bushing_of = [&](const std::string& statement) {
+        return std::get<Bushing>(parse_scene(scene_of(base + statement), "scene").elastics.at(0).kind);
+    };
+    const Bushing expected =
+        bushing_of("BUSHING/1, I=1, J=2, K=10,20,30, KT=4,5,6, FORCE=1,2,3, TORQUE=0,0,7\n");
+    for (const char* statement :
+         {"GFORCE/1, I=1, JFLOAT=3, RM=2\n, FX = 1-10*DX(1,2,2)\\\n, FY = 2-20*DY(1,2,2) - 3*VY(1,2,2)\\\n, "
+          "FZ = 3 - 15*DZ(1,2,2)\n, -15*DZ(1,2,2)\\\n"
+          ", TX = -4*AX(1,2)\\ TY = -5*AY(1,2)\\ TZ = 7-6*AZ(1,2)\n",
+          "FIELD/1, I=1, J=2, FORCE=1,2,3,0,0,7, KMATRIX=10,0,0,0,0,0\n, 0,20,0,0,0,0, 0,0,30,0,0,0, "
+          "0,0,0,4,0,0\n, 0,0,0,0,5,0,0,0,0,0,0,6\n"}) {
+        const Bushing found = bushing_of(statement);
+        EXPECT_EQ(std::get<LinearStiffness>(found.law).K, std::get<LinearStiffness>(expected.law).K)
+            << statement;
+        EXPECT_EQ(found.preload, expected.preload) << statement;
+        EXPECT_LE((found.undeformed - expected.undeformed).norm(), 1e-15) << statement;
+        EXPECT_EQ(found.formulation, expected.formulation);
+    }
+}
+
+// A BEAM that stands straight bends by F L³/3EI + F L/(G A/s).
+TEST(Adm, ABeamBendsAsTimoshenkoSays) {
+    const std::string text = R"(t
+UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
+PART/1, GROUND
+PART/2, MASS = 0.01, CM = 1
+MARKER/1, PART = 2, QP = 2, 0, 0
+MARKER/2, PART = 1
+BEAM/1, I=1, J=2, LENGTH=2, AREA=1E-3, IXX=3E-8, IYY=4E-7, IZZ=5E-7, EMODULUS=2E11, GMODULUS=8E10, ASY=1.2, ASZ=1.5
+ACCGRAV/, KGRAV = -10
+)";
+    const Scene scene = parse_scene(scene_of(text), "scene");
+    const double expected = -0.1 * (8 / (3 * 2e11 * 4e-7) + 2 * 1.5 / (8e10 * 1e-3));
+    EXPECT_NEAR(at_rest(scene, compare::Leg::equilibrium).poses.at(0).r.z() / expected, 1, 1e-6);
+}
+
+TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
+                 "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
+    const std::string yaml = scene_of(text);
+    EXPECT_NE(yaml.find("SPLINE/4 the file has Akima's curve"), yaml.npos) << yaml;
+    const Scene scene = parse_scene(yaml, "scene");
+    const auto& spring = std::get<AxialSpring>(scene.elastics.at(1).kind);
+    const auto& curve = std::get<Curve>(spring.law);
+    EXPECT_FALSE(curve.known_outside);
+    EXPECT_NEAR(spring.free_length + curve.knots.at(3), 0.205, 1e-12);  // 10 mm longer than 195 mm
+    EXPECT_NEAR(curve.pieces.at(4)[0], 100, 1e-9);
+}
+
+// IMPACT with exponent 1 is a bump stop, BISTOP one each way.
+TEST(Adm, AContactAlongALineIsAStop) {
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "SFORCE/7, TRANS, I = 4, J = 5\n"
+                 ", FUNCTION = BISTOP(DM(4,5), VR(4,5), 180, 230, 1000, 1, 5, 0.1)\nACCGRAV/");
+    const Scene scene = parse_scene(scene_of(text), "scene");
+    ASSERT_EQ(scene.elastics.size(), 3u);
+    const auto stop = [&](std::size_t k) { return std::get<AxialSpring>(scene.elastics.at(k).kind); };
+    const auto touches = [&](std::size_t k) {
+        return stop(k).free_length + std::get<Curve>(stop(k).law).knots.at(0);
+    };
+    EXPECT_NEAR(touches(1), 0.180, 1e-12);
+    EXPECT_NEAR(touches(2), 0.230, 1e-12);
+    EXPECT_NEAR(std::get<Curve>(stop(1).law).pieces.front()[1], 1e6, 1e-3);
+    EXPECT_NEAR(std::get<Curve>(stop(2).law).pieces.back()[1], 1e6, 1e-3);
+}
+
+// A crank that a MOTION turns by 30° in a second, and a coupler that turns another by half as much the other way.
+TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
+    const Scene generic = parse_scene(scene_of(sample("adamspy_generic_model.adm")), "scene");
+    ASSERT_EQ(generic.branches.size(), 1u);
+    EXPECT_EQ(generic.branches[0].unit, ParameterUnit::radian);
+    EXPECT_NEAR(generic.branches[0].to, std::numbers::pi / 6, 1e-12);
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
+                 "MOTION/1, ROT, JOINT = 1, FUNCTION = 30D*TIME\n"
+                 "COUPLER/1, JOINTS = 1, 2, TYPE = R:R, SCALES = 1, 2\nACCGRAV/");
+    const Scene coupled = parse_scene(scene_of(text), "scene");
+    const auto& drivers = coupled.branches.at(0).drivers;
+    ASSERT_EQ(drivers.size(), 2u);
+    EXPECT_NEAR(drivers[1].rate / drivers[0].rate, -0.5, 1e-12);
+}
+
+// ---- There and back.
+
+TEST(Adm, ExportedAndImportedAgainRestsWhereItDid) {
+    const std::string with_all = R"(t
+UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = MILLIMETER, TIME = SECOND
+PART/1, GROUND
+PART/2, MASS = 3, CM = 1, QG = 100, 200, 300, REULER = 10D, 20D, 30D
+MARKER/1, PART = 2, QP = 1, 2, 3
+MARKER/2, PART = 2, QP = 50, 0, 0, REULER = 5D, 6D, 7D
+MARKER/3, PART = 1, QP = 150, 205, 300, REULER = 15D, 16D, 17D
+BUSHING/1, I=2, J=3, K=100,200,300, KT=1E5,2E5,3E5, FORCE=5,6,7, TORQUE=800,900,1000
+PART/3, MASS = 2, CM = 4
+MARKER/4, PART = 3, QP = 200, 250, 300
+MARKER/5, PART = 2, QP = 90, 10, 0
+JOINT/1, SPHERICAL, I = 6, J = 7
+MARKER/6, PART = 3, QP = 160, 210, 310
+MARKER/7, PART = 2, QP = @
+FIELD/1, I=4, J=8, KMATRIX = 300,20,0,0,0,0, 20,400,0,0,0,0, 0,0,500,0,0,0, 0,0,0,1E6,0,1E5, 0,0,0,0,2E6,0, 0,0,0,1E5,0,3E6
+, LENGTH = 1, 2, 3, 0.05, 0, 0.02, FORCE = 10, 0, 0, 0, 0, 500
+MARKER/8, PART = 1, QP = 201, 251, 301
+SPRINGDAMPER/1, TRANS, I = 4, J = 3, K = 4, LENGTH = 90
+ACCGRAV/, KGRAV = -9806.65
+)";
+    // Where the ball is on the turned part.
+    const Vector3d ball = euler(10, 20, 30).transpose() * (Vector3d(160, 210, 310) - Vector3d(100, 200, 300));
+    const std::string met = replaced(with_all, "@", fmt::format("{}, {}, {}", ball.x(), ball.y(), ball.z()));
+    const Scene first = parse_scene(scene_of(met), "scene");
+    const importer::Exported exported = importer::export_adm(first, false);
+    const Scene second = parse_scene(scene_of(exported.text), "scene");
+    const Equilibrium a = at_rest(first, compare::Leg::equilibrium),
+                      b = at_rest(second, compare::Leg::equilibrium);
+    ASSERT_EQ(a.poses.size(), 2u);
+    ASSERT_EQ(b.poses.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_LE((a.poses[k].r - b.poses[k].r).norm(), 1e-9);
+        EXPECT_LE(a.poses[k].p.angularDistance(b.poses[k].p),
+                  1e-7);  // of an arc cosine near 1: half the digits
+    }
+    // It has moved: the agreement is not that of two models that stand still.
+    EXPECT_GT((a.poses[0].r - first.bodies[0].design.r).norm(), 1e-4);
+}
+
+TEST(Adm, WhatADatasetCannotSayIsRefusedOnExport) {
+    const Scene scene = read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "mcpherson.yaml");
+    EXPECT_THROW(importer::export_adm(scene, false), SceneError);
+    const importer::Exported exported = importer::export_adm(scene, true);
+    EXPECT_NE(exported.text.find("MISSING: element"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace elastocheck

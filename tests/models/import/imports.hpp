@@ -1,0 +1,37 @@
+// What tests of the importers share.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "compare/legs.hpp"
+#include "models/compile.hpp"
+#include "tests/support/folder.hpp"
+
+namespace elastocheck::tests {
+
+inline std::string sample(const std::string& name) {
+    return support::text_of(std::filesystem::path(ELASTOCHECK_IMPORT) / "samples" / name);
+}
+
+// Body-fixed 3-1-3 [deg].
+inline Eigen::Matrix3d euler(double a, double b, double c) {
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    const double deg = std::numbers::pi / 180;
+    return (AngleAxisd(a * deg, Vector3d::UnitZ()) * AngleAxisd(b * deg, Vector3d::UnitX()) *
+            AngleAxisd(c * deg, Vector3d::UnitZ()))
+        .toRotationMatrix();
+}
+
+// The start of the first branch: settled under what is held.
+inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
+    const Model model = compile(scene);
+    const auto path = compare::walk(compare::ways_of(model, model.branches.front(), 1), {.leg = leg});
+    if (path.points.empty()) throw std::runtime_error(std::string(name(path.outcome)) + ": " + path.detail);
+    return path.points.front();
+}
+
+}  // namespace elastocheck::tests
