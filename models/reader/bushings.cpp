@@ -164,12 +164,12 @@ SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
         curves->fail("given together with stiffness; allowed: curves, with or without rates, or stiffness");
     if (full) return LinearStiffness{read_stiffness(*full, defs.units)};
     if (const auto file = bushing.optional("rates"); file && file->value->kind == Value::Kind::scalar) {
+        if (!file->value->text.ends_with(".bus"))
+            file->fail(fmt::format("expected a list of 3 rates, or the name of a property file (.bus), found {}",
+                                   file->found()));
         for (const char* field : {"rotational_rates", "curves"})
             if (const auto other = bushing.optional(field))
                 other->fail("given together with rates from a file; the file has all six curves");
-        if (!file->value->text.ends_with(".bus"))
-            file->fail(fmt::format("{} is no list of three rates, nor the name of a property file (.bus)",
-                                   file->found()));
         PerAxis law;
         const auto tables = read_bushing_file(*file, defs);
         for (std::size_t k = 0; k < 6; ++k) law.axis[k] = interpolant(tables[k]);

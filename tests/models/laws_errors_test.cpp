@@ -52,7 +52,7 @@ const std::vector<Mistake> mistakes{
      "11: springs.coil.curve.file: read from beside the scene's file, which there is none of here; give a "
      "table"},
     {"FileIsAList", curve("file: [coil.csv]"),
-     "11: springs.coil.curve.file: expected the name of a CSV file, found a list of 1"},
+     "11: springs.coil.curve.file: expected the name of a file, found a list of 1"},
     {"TableIsANumber", curve("table: 5"),
      "11: springs.coil.curve.table: expected at least two rows [deflection, force], found '5'"},
     {"TableOfOneRow", curve("table: [[0, 0]]"),
