@@ -165,8 +165,9 @@ SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
     if (full) return LinearStiffness{read_stiffness(*full, defs.units)};
     if (const auto file = bushing.optional("rates"); file && file->value->kind == Value::Kind::scalar) {
         if (!file->value->text.ends_with(".bus"))
-            file->fail(fmt::format("expected a list of 3 rates, or the name of a property file (.bus), found {}",
-                                   file->found()));
+            file->fail(
+                fmt::format("expected a list of 3 rates, or the name of a property file (.bus), found {}",
+                            file->found()));
         for (const char* field : {"rotational_rates", "curves"})
             if (const auto other = bushing.optional(field))
                 other->fail("given together with rates from a file; the file has all six curves");

@@ -2,6 +2,7 @@
 // every one that once had another answer, under the name of what it did; a search for more is ./dev fuzz.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -18,8 +19,16 @@ namespace fs = std::filesystem;
 
 std::map<std::string, std::string> corpus(const Target& target) {
     std::map<std::string, std::string> inputs;
-    for (const auto& entry : fs::directory_iterator(fs::path(ELASTOCHECK_CORPUS) / target.name))
+    const auto take = [&](const fs::directory_entry& entry) {
         inputs[entry.path().filename().string()] = support::text_of(entry.path());
+    };
+    const fs::path own = fs::path(ELASTOCHECK_CORPUS) / target.name;
+    if (fs::exists(own)) std::ranges::for_each(fs::directory_iterator(own), take);
+    if (!target.samples.empty())
+        for (const auto& entry : fs::recursive_directory_iterator(ELASTOCHECK_IMPORT))
+            if (entry.path().has_extension() &&
+                target.samples.find(entry.path().extension().string()) != target.samples.npos)
+                take(entry);
     return inputs;
 }
 
@@ -49,7 +58,7 @@ TEST_P(Fuzz, NoneOfSomeThousandMutationsHasAnother) {
     Dice dice{20'130};
     std::set<std::string> different;
     const auto inputs = corpus(GetParam());
-    const int each = 300 + 3000 / static_cast<int>(inputs.size());
+    const int each = 60 + 3000 / static_cast<int>(inputs.size());
     for (const auto& [name, input] : inputs)
         for (int k = 0; k < each && !HasFailure(); ++k) {
             std::string one = mutated(GetParam(), input, dice);

@@ -60,7 +60,13 @@ constexpr std::string_view words[] = {"nan",
                                       "- - - -",
                                       "? ",
                                       "%TAG",
-                                      "---"};
+                                      "---",
+                                      "USER(1)",
+                                      "(",
+                                      ")",
+                                      ",\n,",
+                                      "&\n",
+                                      "1D"};
 
 std::string_view word(Dice& dice) { return words[dice.below(std::size(words))]; }
 

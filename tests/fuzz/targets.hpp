@@ -15,9 +15,10 @@ struct Fault : std::logic_error {
 };
 
 struct Target {
-    const char* name;               // of its corpus, too
-    void (*run)(std::string_view);  //
+    const char* name;  // of its corpus, too
+    void (*run)(std::string_view);
     bool is_json = false;           // mutated as a tree, not as lines
+    std::string_view samples = {};  // extensions of those among tests/models/import that belong to its corpus
 };
 
 // A scene as text, up to the model that the solvers take. A line `# --set PATH=VALUE` is a setting as well.
@@ -30,10 +31,21 @@ void baseline(std::string_view input);
 void measurement(std::string_view input);
 // A table beside a scene.
 void table(std::string_view input);
+// Models of other programs.
+void adm(std::string_view input);
+void chrono(std::string_view input);
+void subsystem(std::string_view input);  // .sub
+void property(std::string_view input);   // .bus, .spr, .bum, .reb
 
-inline constexpr std::array targets{Target{"scene", scene}, Target{"result", result, true},
-                                    Target{"baseline", baseline, true}, Target{"measurement", measurement},
-                                    Target{"table", table}};
+inline constexpr std::array targets{Target{"scene", scene},
+                                    Target{"result", result, true},
+                                    Target{"baseline", baseline, true},
+                                    Target{"measurement", measurement},
+                                    Target{"table", table},
+                                    Target{"adm", adm, false, ".adm"},
+                                    Target{"chrono", chrono, true, ".json"},
+                                    Target{"subsystem", subsystem, false, ".sub"},
+                                    Target{"property", property, false, ".bus .spr .bum .reb"}};
 
 // Throws Fault where the text, but for its ends of lines, holds what no name may hold.
 void expect_plain(std::string_view what, std::string_view text);

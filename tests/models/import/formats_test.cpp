@@ -10,7 +10,6 @@
 #include "models/compile.hpp"
 #include "models/import/import.hpp"
 #include "models/reader/scene_file.hpp"
-#include "tests/fuzz/import_targets.hpp"
 #include "tests/models/import/imports.hpp"
 
 namespace elastocheck {
@@ -258,7 +257,7 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
         EXPECT_NE(error.find("mount.bus"), error.npos) << what << ": " << error;
         EXPECT_NE(error.find(message), error.npos) << what << ": " << error;
     }
-    EXPECT_NE(said(sound, "rates: mount.txt").find("nor the name of a property file"), std::string::npos);
+    EXPECT_NE(said(sound, "rates: mount.txt").find("or the name of a property file"), std::string::npos);
     EXPECT_NE(
         said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]").find("the file has all six curves"),
         std::string::npos);
@@ -319,61 +318,6 @@ TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
     int files = 0;
     for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder / "samples")) ++files;
     EXPECT_EQ(rows, files);
-}
-
-// ---- Damage: lines and bytes left out, doubled, swapped, changed. The same every time (SplitMix64).
-
-struct Dice {
-    std::uint64_t state;
-    std::size_t below(std::size_t n) {
-        std::uint64_t z = (state += 0x9E3779B97F4A7C15ULL);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-        return static_cast<std::size_t>((z ^ (z >> 31)) % n);
-    }
-};
-
-std::string damaged(std::string text, Dice& dice) {
-    constexpr const char* words[] = {"nan", "1e999", "-",         "(",       ")",  ",",  "\n,",
-                                     "\\",  "=",     "1D",        "{",       "}",  "[",  "]",
-                                     "\"",  "0",     "999999999", "USER(1)", "\n", "&\n"};
-    for (std::size_t n = 1 + dice.below(4); n > 0 && !text.empty(); --n) {
-        const std::size_t at = dice.below(text.size());
-        const std::size_t line = text.rfind('\n', at) == text.npos ? 0 : text.rfind('\n', at),
-                          end = std::min(text.find('\n', at), text.size());
-        switch (dice.below(6)) {
-            case 0: text.erase(line, end > line ? end - line : 1); break;
-            case 1: text.insert(at, text.substr(line, end - line)); break;
-            case 2: text[at] = static_cast<char>(dice.below(256)); break;
-            case 3: text.insert(at, words[dice.below(std::size(words))]); break;
-            case 4: text.resize(at); break;
-            default:
-                text.replace(at, std::min<std::size_t>(1 + dice.below(6), text.size() - at),
-                             words[dice.below(std::size(words))]);
-        }
-    }
-    return text;
-}
-
-TEST(Import, NoDamageEndsOtherThanInAnAnswer) {
-    Dice dice{20};
-    for (const auto& entry : fs::directory_iterator(folder / "samples")) {
-        const std::string text = support::text_of(entry.path());
-        for (int n = 0; n < 12; ++n) {
-            const std::string input = damaged(text, dice);
-            EXPECT_NO_THROW(entry.path().extension() == ".adm" ? fuzz::adm(input) : fuzz::chrono(input))
-                << entry.path() << n;
-        }
-    }
-    for (const auto& entry : fs::directory_iterator(folder / "fixtures")) {
-        const std::string text = support::text_of(entry.path());
-        for (int n = 0; n < 200; ++n) {
-            const std::string input = damaged(text, dice);
-            EXPECT_NO_THROW(entry.path().extension() == ".sub" ? fuzz::subsystem(input)
-                                                               : fuzz::property(input))
-                << entry.path() << n;
-        }
-    }
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
-#include "tests/fuzz/import_targets.hpp"
-
-#include <stdexcept>
 #include <string>
 
 #include "models/import/import.hpp"
 #include "models/reader/property_file.hpp"
 #include "models/reader/scene_file.hpp"
+#include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
 namespace {
@@ -16,16 +14,12 @@ void import(std::string_view input, const std::string& file) {
          {importer::Options{}, importer::Options{"", true, true}, importer::Options{"wheel", false, true}}) {
         try {
             const importer::Imported result = importer::import_text(input, file, options);
-            if (result.yaml.empty()) throw std::logic_error("nothing was written");
+            if (result.yaml.empty()) throw Fault("nothing was written");
         } catch (const SceneError& error) {
             if (!std::string_view(error.what()).starts_with(file + ":"))
-                throw std::logic_error("a refusal without a place: " + std::string(error.what()));
+                throw Fault("a refusal without a place: " + std::string(error.what()));
         }
     }
-}
-
-std::string_view text(const std::uint8_t* data, std::size_t size) {
-    return {reinterpret_cast<const char*>(data), size};
 }
 
 }  // namespace
@@ -43,13 +37,8 @@ void property(std::string_view input) {
             }
     } catch (const SceneError& error) {
         if (!std::string_view(error.what()).starts_with("model.bus:"))
-            throw std::logic_error("a refusal without a place: " + std::string(error.what()));
+            throw Fault("a refusal without a place: " + std::string(error.what()));
     }
 }
-
-int fuzz_adm(const std::uint8_t* data, std::size_t size) { return adm(text(data, size)), 0; }
-int fuzz_chrono(const std::uint8_t* data, std::size_t size) { return chrono(text(data, size)), 0; }
-int fuzz_property(const std::uint8_t* data, std::size_t size) { return property(text(data, size)), 0; }
-int fuzz_subsystem(const std::uint8_t* data, std::size_t size) { return subsystem(text(data, size)), 0; }
 
 }  // namespace elastocheck::fuzz
