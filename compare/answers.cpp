@@ -78,10 +78,9 @@ Stand freed(const Way& way, const Equilibrium& state) {
     return free;
 }
 
-// One jack a wheel, at the height where its centre is; returns the first one's position in Model::joints.
-std::size_t jack_up(Stand& stand) {
-    const std::size_t first = stand.model.joints.size();
-    for (const Wheel& wheel : stand.model.wheels) {
+// Jacks under the first wheels, each at the height where the wheel's centre is.
+Stand jacked_up(Stand stand, std::size_t wheels) {
+    for (const Wheel& wheel : std::span(stand.model.wheels).first(wheels)) {
         const Point centre{wheel.body, wheel.centre_local};
         const Vector3d here = position(stand.state.poses, centre);
         const int joint = static_cast<int>(stand.model.joints.size());
@@ -94,7 +93,7 @@ std::size_t jack_up(Stand& stand) {
             {joint, PointInPlane{centre, {ground, here}, {ground, Vector3d::UnitZ()}, 0}});
         stand.state.reactions.emplace_back();
     }
-    return first;
+    return stand;
 }
 
 std::vector<Disturbance> causes_at(const Model& model) {
@@ -149,7 +148,7 @@ Response respond(const Gait& gait, const Model& model, const Branch& branch, con
 Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state, Analyses& analyses) {
     Answers answers;
     const std::size_t wheels = way.model.wheels.size();
-    Stand stand = freed(way, state);
+    const Stand stand = freed(way, state);
     const auto wrenches = causes_at(way.model);
     if (const Response free = respond(gait, stand.model, stand.branch, stand.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
@@ -160,12 +159,21 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
             free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
     }
 
-    const std::size_t first = jack_up(stand);
-    std::vector<Disturbance> changes = wrenches;
-    for (std::size_t w = 0; w < wheels; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
+    const std::size_t first = stand.model.joints.size();
     const bool steers = steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
-    if (steers) changes.push_back(Motion{steering});
-    Response jacked = respond(gait, stand.model, stand.branch, stand.state, changes, analyses.jacked);
+    const auto on_jacks = [&](std::size_t count, std::optional<recursive::Analysis>& analysis) {
+        const Stand up = jacked_up(stand, count);
+        std::vector<Disturbance> changes = wrenches;
+        for (std::size_t w = 0; w < count; ++w) changes.push_back(Motion{static_cast<int>(first + w)});
+        if (steers) changes.push_back(Motion{steering});
+        return respond(gait, up.model, up.branch, up.state, changes, analysis);
+    };
+    Response jacked = on_jacks(wheels, analyses.jacked);
+    if (jacked.outcome == Outcome::inconsistent_constraints && wheels > 1)
+        if (Response one = on_jacks(1, analyses.tied); one.outcome == Outcome::converged) {
+            jacked = std::move(one);
+            answers.tied = true;
+        }
     if (jacked.outcome != Outcome::converged) {
         answers.why_not = told(jacked);
         return answers;
@@ -175,8 +183,9 @@ Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium
         jacked.increments.pop_back();
     }
     answers.held = by_wheel(jacked.increments, wheels);
-    answers.travel.assign(jacked.increments.end() - static_cast<std::ptrdiff_t>(wheels),
+    answers.travel.assign(jacked.increments.end() - static_cast<std::ptrdiff_t>(answers.tied ? 1 : wheels),
                           jacked.increments.end());
+    answers.travel.resize(wheels, Motions(way.model.bodies.size()));
     return answers;
 }
 

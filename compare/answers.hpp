@@ -6,6 +6,8 @@
 //   free     what jacks and tyres exert acts on as a dead force at the same point, and they are gone
 //   jacked   the free one with every wheel centre on a jack of its own, which stands at the height where it is
 //
+// Of an axle that can only go up and down, or only sway, one wheel centre's height is that of all: one jack says it.
+//
 // A jack and a dead force at its point, both upright, turn alike when the wheel does, so the tangent is that of the branch
 // in all but what holds the wheels.
 #pragma once
@@ -30,6 +32,8 @@ struct Answers {
     Motions steering;  // jacked: the steering joint driven by 1 m or 1 rad; empty where none stands
     std::vector<std::array<Motions, causes>> held;  // per wheel and cause, jacked: per N, per N·m
     std::vector<std::array<Motions, causes>> free;  // likewise, free; empty where `why_not_free` says why
+    bool tied = false;  // the wheels move only as one: `jacked` has one jack, under the first wheel; that motion is
+                        // the first of `travel`, and the others are none
     std::string why_not;                            // there is none of the first three
     std::string why_not_free;                       // there is none of the last
     bool nothing_resists = false;                   // why not: a wheel is free to move, which is no failure

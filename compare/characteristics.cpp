@@ -65,9 +65,12 @@ Motions sum(std::span<const Motions> causes, std::span<const double> weights) {
     return total;
 }
 
-// All wheels raised alike by 1 m; the wheels of an axle against each other, the left up.
-Motions raised(const Wheels& wheels) {
-    return sum(wheels.answers.travel, std::vector<double>(wheels.answers.travel.size(), 1.0));
+// All wheels raised alike by 1 m; where they are tied, as they move, and this one by 1 m. The wheels of an axle against
+// each other, the left up, which tied ones never are.
+Motions raised(const Wheels& wheels, std::size_t w) {
+    const auto& first = wheels.answers.travel.front();
+    const double whole = wheels.answers.tied ? 1 / moved(wheels.state, first, wheels.centre(w)).z() : 1;
+    return sum(wheels.answers.travel, std::vector<double>(wheels.answers.travel.size(), whole));
 }
 Motions rolled(const Wheels& wheels) {
     std::vector<double> weights;
@@ -95,6 +98,7 @@ double roll_centre(const Wheels& wheels) {
         const Vector3d d = moved(wheels.state, wheels.answers.travel[0], patch);
         return ratio(wheels.at(patch).y() * d.y(), d.z(), nowhere);
     }
+    if (wheels.answers.tied) return undefined;
     const Motions roll = rolled(wheels);
     Eigen::Matrix2d A;
     Vector2d c[2], b;
@@ -182,7 +186,7 @@ double stiffness(const Wheels& wheels, std::size_t w, int cause) {
 // How fast the point goes forward as all wheels rise alike: the tangent of the angle at which a force along the road is
 // carried by the links instead of by the springs.
 double forward_per_travel(const Wheels& wheels, const Point& at) {
-    const Vector3d d = moved(wheels.state, raised(wheels), at);
+    const Vector3d d = moved(wheels.state, raised(wheels, 0), at);
     return ratio(d.x(), d.z(), nowhere);
 }
 // The point at which a driving force acts on the links: an axle housing bears the torque itself, a wheel on a shaft leaves
@@ -202,7 +206,7 @@ double steer_gradient(const Wheels& wheels, std::size_t w) {
 }
 
 double shortening(const Wheels& wheels, const Point& i, const Point& j) {
-    const Motions by = raised(wheels);
+    const Motions by = raised(wheels, 0);
     return -(wheels.at(j) - wheels.at(i))
                 .normalized()
                 .dot(moved(wheels.state, by, j) - moved(wheels.state, by, i));
@@ -240,36 +244,39 @@ constexpr const char* no_vertical = "the wheel does not rise";
 constexpr const char* does_not_steer = "the steering does not turn the wheel about an upright axis here";
 constexpr const char* gives_nothing = "rigid: nothing gives";
 constexpr const char* not_steered = "the steering does not stand on this branch";
+constexpr const char* does_not_roll = "its wheels move only as one: the axle does not roll";
 constexpr const char* no_rate = "nothing resists the travel of the wheel, or nothing lets it travel";
 
 const std::array table{
     Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising alike; positive towards toe-in "
           "in jounce",
-          never, [](const Wheels& x, std::size_t w) { return x.toe(w, raised(x)); }},
+          never, [](const Wheels& x, std::size_t w) { return x.toe(w, raised(x, w)); }},
     Entry{Of::every_wheel, "bump_camber", Unit::deg_per_100mm,
           "change of camber over travel of the wheel centre, all wheels rising alike; positive where the top "
           "leans out in "
           "jounce",
-          never, [](const Wheels& x, std::size_t w) { return x.camber(w, raised(x)); }},
-    Entry{
-        Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
-        "lateral displacement of the contact patch over travel, all wheels rising alike; positive outwards "
-        "in jounce",
-        never,
-        [](const Wheels& x, std::size_t w) { return x.side(w) * moved(x.state, raised(x), x.patch(w)).y(); }},
+          never, [](const Wheels& x, std::size_t w) { return x.camber(w, raised(x, w)); }},
+    Entry{Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
+          "lateral displacement of the contact patch over travel, all wheels rising alike; positive outwards "
+          "in jounce",
+          never,
+          [](const Wheels& x, std::size_t w) {
+              return x.side(w) * moved(x.state, raised(x, w), x.patch(w)).y();
+          }},
     Entry{Of::every_wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising alike; positive to "
           "the back in "
           "jounce",
-          never, [](const Wheels& x, std::size_t w) { return -moved(x.state, raised(x), x.centre(w)).x(); }},
+          never,
+          [](const Wheels& x, std::size_t w) { return -moved(x.state, raised(x, w), x.centre(w)).x(); }},
     Entry{Of::every_wheel, "front_view_swing_arm", Unit::mm,
           "distance from the wheel centre, across, to where the carrier seen from the front turns about, all "
           "wheels rising "
           "alike; positive where that is inboard",
           "the carrier does not turn as seen from the front: the arm is endless",
           [](const Wheels& x, std::size_t w) {
-              const Motions by = raised(x);
+              const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
               return ratio(x.side(w) * v.z(), turned(by, x[w].body).x(), nowhere);
           }},
@@ -279,7 +286,7 @@ const std::array table{
           "rising alike; positive where that is ahead of the wheel",
           "the carrier does not turn as seen from the side: the arm is endless",
           [](const Wheels& x, std::size_t w) {
-              const Motions by = raised(x);
+              const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
               return ratio(v.z(), turned(by, x[w].body).y(), nowhere);
           }},
@@ -415,11 +422,17 @@ const std::array table{
     Entry{Of::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; positive "
           "towards toe-in",
-          never, [](const Wheels& x, std::size_t w) { return x.toe(w, rolled_towards(x, w)); }},
+          does_not_roll,
+          [](const Wheels& x, std::size_t w) {
+              return x.answers.tied ? undefined : x.toe(w, rolled_towards(x, w));
+          }},
     Entry{Of::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where the top "
           "leans out",
-          never, [](const Wheels& x, std::size_t w) { return x.camber(w, rolled_towards(x, w)); }},
+          does_not_roll,
+          [](const Wheels& x, std::size_t w) {
+              return x.answers.tied ? undefined : x.camber(w, rolled_towards(x, w));
+          }},
     Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, the other "
           "wheel's opposite",

@@ -76,7 +76,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const auto asked = asked_for(ways, gait.every);
     const double middle = asked[asked.size() / 2];
     const bool both_ways = ways.size() > 1;
-    auto& [front, start, in_the_middle, back] = run.landmarks;
+    auto& marks = run.landmarks;
     static_cast<Walked&>(run) = walk(model, channels, branch, ways, gait, [&](const Equilibrium& state) {
         for (const Leg by : legs) {
             auto& worst = run.judged[static_cast<std::size_t>(by)];
@@ -85,15 +85,15 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
         run.scale = larger(run.scale, scale_of(way.model, branch, {&state, 1}));
         // The farthest on either side comes last.
         if (state.load == 0)
-            start = state;
+            marks.start = state;
         else if (both_ways && state.load * way.branch.to > 0)
-            front = state;
+            marks.front = state;
         else
-            back = state;
-        if (state.load == middle) in_the_middle = state;
+            marks.back = state;
+        if (state.load == middle) marks.middle = state;
     });
-    if (!front) front = start;
-    if (!back) back = start;
+    if (!marks.front) marks.front = marks.start;
+    if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
         run.compliance = compliance_of(model, way, gait, run);
     if (gait.leg == Leg::recursive || gait.leg == Leg::series) run.seconds = seconds_alone(ways, gait);

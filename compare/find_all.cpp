@@ -162,10 +162,9 @@ AllEquilibria find_all(const Model& model, const Branch& branch, double a, const
             ++all.other_way_round;
             return;
         }
-        const bool over =
-            std::ranges::any_of(std::views::iota(std::size_t{0}, reached.size()), [&](std::size_t b) {
-                return found.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
-            });
+        bool over = false;
+        for (std::size_t b = 0; b < reached.size(); ++b)
+            over = over || found.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
         if (over && !on_branch) {
             ++all.turned_over;
             return;

@@ -66,9 +66,9 @@ struct Row {
     double constraint_error = 0;  // likewise
     std::vector<double> values;   // per channel, in its unit
 };
-// What the recursion tells once of the two models that answer on a way (answers.hpp), whatever the state.
+// What the recursion tells once of the models that answer on a way (answers.hpp), whatever the state.
 struct Analyses {
-    std::optional<recursive::Analysis> free, jacked;  // made when they are first asked for
+    std::optional<recursive::Analysis> free, jacked, tied;  // made when they are first asked for
 };
 // By whoever walks as `gait` says: a characteristic is asked of the leg that found the state.
 Row row_of(const Model& model, std::span<const Channel> channels, const Way& way, const Gait& gait,

@@ -20,7 +20,8 @@ struct Features {
 };
 
 void take(Features& features, JointKind& kind) {
-    auto& [points, directions, markers] = features;
+    auto& points = features.points;
+    auto& directions = features.directions;
     const auto take_points = [&](auto& joint) { points.insert(points.end(), {&joint.i, &joint.j}); };
     const auto along_an_axis = [&](auto& joint) {
         take_points(joint);
@@ -54,7 +55,8 @@ void take(Features& features, JointKind& kind) {
 
 Features features_of(Scene& scene) {
     Features features;
-    auto& [points, directions, markers] = features;
+    auto& points = features.points;
+    auto& markers = features.markers;
     for (auto& joint : scene.joints) take(features, joint.kind);
     for (auto& elastic : scene.elastics)
         std::visit(overloaded{[&](AxialSpring& e) {

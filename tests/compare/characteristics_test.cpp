@@ -130,6 +130,37 @@ TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromThe
     }
 }
 
+// On an oblique slide: both wheels go back by a quarter of what they rise and across by a tenth, and neither goes without
+// the other.
+TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
+    const Model model = model_of(R"(
+points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4]}
+bodies: {axle: {origin: mid}}
+joints: {slide: {type: translational, bodies: [axle, ground], at: mid, axis: [-0.25, 0.1, 1]}}
+springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
+branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
+wheels:
+  left: {body: axle, centre: l, contact_patch: pl, spin_axis: y, side: left}
+  right: {body: axle, centre: r, contact_patch: pr, spin_axis: -y, side: right}
+)");
+    for (const Leg leg : all_legs) {
+        SCOPED_TRACE(name(leg));
+        const Read is(model, leg);
+        EXPECT_TRUE(is.answers.tied);
+        for (const std::string wheel : {"left.", "right."}) {
+            EXPECT_NEAR(is[wheel + "recession_gradient"], 25, 1e-9);
+            EXPECT_NEAR(is[wheel + "track_gradient"], wheel == "left." ? 10 : -10, 1e-9);
+            EXPECT_NEAR(is[wheel + "bump_steer"], 0, 1e-12);
+            EXPECT_EQ(is[wheel + "roll_steer"], undefined);
+            // Half of the spring's 50 N/mm and what an oblique way makes of it: each patch takes 1 N.
+            EXPECT_NEAR(is[wheel + "wheel_rate"], 25, 1e-9);
+            EXPECT_EQ(is[wheel + "wheel_rate_in_roll"], undefined);
+        }
+        EXPECT_NEAR(is["coil.motion_ratio"], 1, 1e-9);
+        EXPECT_EQ(is["roll_centre_height"], undefined);
+    }
+}
+
 // The patch goes back by (0.1 + 0.3)/0.5 of what it rises, the centre by 0.1/0.5: the pivot is ahead and above.
 TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
