@@ -8,6 +8,7 @@
 
 #include "compare/trim.hpp"
 #include "models/import/export_adm.hpp"
+#include "models/import/export_chrono.hpp"
 #include "models/import/import.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reports/command/arguments.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
+constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
 importer::Options options(const ImportRequest& request) {
     return {.wheel = request.wheel,
@@ -122,12 +124,14 @@ int import(const ImportRequest& request) {
 
 CLI::App* add_export_command(CLI::App& app, ExportRequest& request) {
     auto* command =
-        app.add_subcommand("export", "Write a scene as another program's model, trimmed: ADAMS .adm");
+        app.add_subcommand("export", "Write a scene as another program's model, trimmed: ADAMS, Chrono");
     command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    command->add_option("--format", request.format, "adm (default): an ADAMS dataset")
-        ->check(one_of({"adm"}));
+    command
+        ->add_option("--format", request.format,
+                     "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)")
+        ->check(one_of({"adm", "chrono"}));
     command->add_option("-o,--output", request.output, "write it to this file instead")
-        ->check(a_file("*.adm"));
+        ->check(a_file("*.adm *.json"));
     command->add_flag("--allow-missing", request.allow_missing,
                       "warn of what the other program has no element for, instead of refusing the scene");
     add_settings(*command, request.settings);
@@ -136,11 +140,13 @@ CLI::App* add_export_command(CLI::App& app, ExportRequest& request) {
 
 int export_scene(const ExportRequest& request) {
     const Scene scene = compare::trim(read_scene(request.scene, request.settings)).scene;
-    const importer::Exported result = importer::export_adm(scene, request.allow_missing);
+    const bool chrono = request.format == "chrono";
+    const importer::Exported result = chrono ? importer::export_chrono(scene, request.allow_missing)
+                                             : importer::export_adm(scene, request.allow_missing);
     if (request.output.empty())
         print("{}", result.text);
     else
-        write_whole(request.output, result.text, dataset_file);
+        write_whole(request.output, result.text, chrono ? suspension_file : dataset_file);
     for (const auto& line : importer::told(result.notes))
         if (line.starts_with("Warning") || line.starts_with("MISSING")) complain("elastocheck: {}\n", line);
     return fine;

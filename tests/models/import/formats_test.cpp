@@ -8,6 +8,7 @@
 
 #include "compare/legs.hpp"
 #include "models/compile.hpp"
+#include "models/import/export_chrono.hpp"
 #include "models/import/import.hpp"
 #include "models/reader/scene_file.hpp"
 #include "tests/models/import/imports.hpp"
@@ -288,6 +289,51 @@ TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
     EXPECT_NEAR(turned.j.A_local.angularDistance(turned.i.A_local), M_PI / 2, 1e-9);
     EXPECT_LE(turned.i.A_local.angularDistance(plain.i.A_local), 1e-12);
     EXPECT_THROW(bushing("frame_j: {x: y}, "), SceneError);
+}
+
+// ---- There and back.
+
+// Wherever the scene was imported from, the deck of it that export writes is imported as a scene that goes the same way.
+TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
+    for (const char* name :
+         {"generic__MultiLink.json", "generic__DoubleWishbone.json", "generic__SemiTrailingArm.json",
+          "generic__ThreeLinkIRS.json", "hmmwv__HMMWV_DoubleWishboneFront_bushings.json",
+          "generic__HendricksonPRIMAXX.json", "generic__DeDionAxle.json"}) {
+        SCOPED_TRACE(name);
+        const auto imported = [](std::string_view text) {
+            return parse_scene(importer::import_text(text, "model.json", {}).yaml, "scene");
+        };
+        Scene first = imported(sample(name));
+        // Chrono's are of one hard-coded curve, which no entry says.
+        std::erase_if(first.elastics, [](const Elastic& e) { return e.written_as == WrittenAs::stop; });
+        const Scene second = imported(importer::export_chrono(first, false).text);
+        const auto end_of = [](const Scene& scene) {
+            const Model model = compile(scene);
+            const auto path = compare::walk(compare::ways_of(model, model.branches.front(), 4),
+                                            {.leg = compare::Leg::equilibrium});
+            std::vector<Vector3d> centres;
+            for (const auto& point : path.points)
+                for (const Wheel& wheel : model.wheels) {
+                    const auto& pose = point.poses.at(static_cast<std::size_t>(wheel.body));
+                    centres.push_back(pose.r + pose.p * wheel.centre_local);
+                    centres.push_back(pose.p * wheel.spin_axis_local);
+                }
+            return centres;
+        };
+        const auto a = end_of(first), b = end_of(second);
+        ASSERT_EQ(a.size(), b.size());
+        ASSERT_GT(a.size(), 8u);
+        for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LE((a[k] - b[k]).norm(), 1e-9) << k;
+        EXPECT_GT((a.front() - a.back()).norm(), 0.01);
+    }
+}
+
+TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
+    const Scene strut = read_scene(fs::path(ELASTOCHECK_SCENES) / "mcpherson_strut.yaml");
+    EXPECT_THROW(importer::export_chrono(strut, false), SceneError);
+    EXPECT_NE(importer::export_chrono(strut, true).text.find("// MISSING: element"), std::string::npos);
+    const Scene arch = read_scene(fs::path(ELASTOCHECK_SCENES) / "two_spring_arch.yaml");
+    EXPECT_THROW(importer::export_chrono(arch, true), SceneError);  // no wheel
 }
 
 // ---- Samples
