@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "compare/legs.hpp"
@@ -303,7 +304,14 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
         const auto imported = [](std::string_view text) {
             return parse_scene(importer::import_text(text, "model.json", {}).yaml, "scene");
         };
-        Scene first = imported(sample(name));
+        std::string text = sample(name);
+        for (const auto& [key, angle] :
+             {std::pair{"\"Toe Angle (deg)\":", " 0.5"}, {"\"Camber Angle (deg)\":", " -1.5"}})
+            if (const auto at = text.find(key); at != text.npos) {
+                const auto value = text.find_first_not_of(' ', at + std::strlen(key));
+                text.replace(value, text.find(',', value) - value, angle);
+            }
+        Scene first = imported(text);
         // Chrono's are of one hard-coded curve, which no entry says.
         std::erase_if(first.elastics, [](const Elastic& e) { return e.written_as == WrittenAs::stop; });
         const Scene second = imported(importer::export_chrono(first, false).text);
