@@ -367,7 +367,7 @@ std::string junit(const std::vector<GatedScene>& scenes) {
         for (auto& test : tests_of(scene)) tests.push_back(std::move(test));
     for (const std::size_t most_lines : {50, 10, 3, 1})
         if (std::string xml = junit_of(tests, tests.size(), most_lines); xml.size() < most_junit) return xml;
-    std::ranges::stable_partition(tests, [](const Test& test) { return !test.passed(); });
+    std::stable_partition(tests.begin(), tests.end(), [](const Test& test) { return !test.passed(); });
     std::size_t most = tests.size();
     for (;; most /= 2)
         if (std::string xml = junit_of(tests, most, 1); xml.size() < most_junit) return xml;
