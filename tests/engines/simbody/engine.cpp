@@ -285,6 +285,19 @@ Outcome advance(const Model& model, const Branch& branch, double from, double to
     return first == Outcome::converged ? advance(model, branch, half, to, halvings - 1, x) : first;
 }
 
+// How many steps a driven angle takes over `by` of the parameter, since half a turn on its sine is the same.
+int turns(const Model& model, const Branch& branch, double by) {
+    double steps = 1;
+    for (const Driver& driver : branch.drivers)
+        if (const auto* motion = std::get_if<Motion>(&driver.what)) {
+            const int driven = model.joints[static_cast<std::size_t>(motion->joint)].driven;
+            const auto& kind = model.constraints[static_cast<std::size_t>(driven)].kind;
+            if (std::holds_alternative<DirectionAtAngle>(kind))
+                steps = std::max(steps, std::ceil(std::abs(driver.rate * by) / far));
+        }
+    return static_cast<int>(steps);
+}
+
 Equilibrium state_at(double a, const Model& model, const Branch& branch, const SimTK::Vector& x) {
     Mechanism mechanism(standing_at(a, model, branch));
     mechanism.state.updQ() = x(0, mechanism.state.getNQ());
@@ -306,7 +319,11 @@ EquilibriumPath simbody(const Model& model, const Branch& branch, std::span<cons
     SimTK::Vector x;  // of the last equilibrium
     double from = values.empty() ? 0 : values.front();
     for (const double a : values) {
-        path.outcome = advance(model, branch, from, a, most_halvings, x);
+        const int steps = turns(model, branch, a - from);
+        path.outcome = Outcome::converged;
+        for (int k = 0; k < steps && path.outcome == Outcome::converged; ++k)
+            path.outcome = advance(model, branch, from + (a - from) * k / steps,
+                                   from + (a - from) * (k + 1) / steps, most_halvings, x);
         if (path.outcome != Outcome::converged) {
             path.detail = branch.name + ", on the way to " + std::to_string(a) + ": " + name(path.outcome);
             break;

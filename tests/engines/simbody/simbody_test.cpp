@@ -102,16 +102,20 @@ constexpr double known =
 
 // Of all scenes that it has the elements for, in few steps; that the references agree is another test's.
 TEST(Simbody, StandsWhereTheReferencesStandWithItsLawOfABushing) {
-    int compared = 0;
+    int scenes_compared = 0, branches_compared = 0;
+    double largest = 0;
     for (const auto& name : support::scene_names()) try {
             const Scene scene = with(Angles::cardan, support::scene(name));
             for (const auto& [branch, distance] : distances(scene, 4, {Leg::equilibrium})) {
                 EXPECT_TRUE(distance <= same) << name << ", " << branch << ": " << distance << " mm";
-                ++compared;
+                largest = std::max(largest, distance);
+                ++branches_compared;
             }
+            ++scenes_compared;
         } catch (const NotRepresented&) {
         }
-    EXPECT_GE(compared, 80);  // branches
+    EXPECT_GE(branches_compared, 80);
+    fmt::print("{} scenes, {} branches: at most {:.1e} mm\n", scenes_compared, branches_compared, largest);
 }
 
 class Suspension : public testing::TestWithParam<const char*> {};
@@ -120,8 +124,12 @@ INSTANTIATE_TEST_SUITE_P(Simbody, Suspension, testing::Values("mcpherson", "doub
 
 TEST_P(Suspension, IsTheSameByBothReferencesWithCardanAngles) {
     const Scene scene = with(Angles::cardan, support::scene(GetParam()));
-    for (const auto& [branch, distance] : distances(scene, 8, {Leg::equilibrium, Leg::energy}))
+    double largest = 0;
+    for (const auto& [branch, distance] : distances(scene, 8, {Leg::equilibrium, Leg::energy})) {
         EXPECT_TRUE(distance <= same) << branch << ": " << distance << " mm";
+        largest = std::max(largest, distance);
+    }
+    fmt::print("{}, one law: at most {:.1e} mm\n", GetParam(), largest);
 }
 
 TEST_P(Suspension, IsTheSameByBothReferencesAsWrittenButForTheKnownDifference) {
@@ -132,6 +140,7 @@ TEST_P(Suspension, IsTheSameByBothReferencesAsWrittenButForTheKnownDifference) {
         largest = std::max(largest, distance);
     }
     EXPECT_GT(largest, 100 * same) << "the laws are no longer different";
+    fmt::print("{}, as written: at most {:.1e} mm\n", GetParam(), largest);
 }
 
 TEST(Simbody, AMicrometreOfATieRodIsSeen) {
@@ -160,7 +169,7 @@ TEST(Simbody, WhatALoadPushesAndNothingResistsDoesNotSettle) {
 TEST(Simbody, ACrankTurnsAsFarAsItIsDrivenWhateverTheSteps) {
     const Scene scene = support::scene("slider_crank");
     const Model model = compile(scene);
-    for (const int steps : {1, 3, 4})
+    for (const int steps : {1, 2, 3, 4})
         for (const auto& [branch, distance] : distances(scene, steps, {Leg::equilibrium}))
             EXPECT_TRUE(distance <= same) << branch << " in " << steps << " steps: " << distance << " mm";
 }
