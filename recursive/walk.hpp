@@ -137,6 +137,7 @@ template <class Real>
 bool contradict_at(March<Real>& s, const Node<Real>& node, State<Real>& q, Vector<Real>& lambda) {
     constexpr int corrections = 3;  // each a thousandth of the one before, or less
     if (!says_twice(s)) return false;
+    const Counts counts = s.counts;  // judges, finds nothing: not counted
     q = node.q;
     lambda = node.lambda;
     for (int k = 0; k < corrections; ++k) {
@@ -147,6 +148,7 @@ bool contradict_at(March<Real>& s, const Node<Real>& node, State<Real>& q, Vecto
         lambda += s.x.tail(s.m());
     }
     residual_at(s, q, lambda);
+    s.counts = counts;
     return contradict(s, q);
 }
 
