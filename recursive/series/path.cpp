@@ -64,9 +64,8 @@ struct Walk {
     double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
     int side = 0;  // sign of the determinant where the way began, by arc length of that bordered by x'
     Softest<double> softest = {};
-    bool stable = false;    // where the way began, which then is to stay so
-    bool law_ends = false;  // it has come to where that of a bushing does
-    Vector<double> x;       // where on the polynomial
+    bool stable = false;  // where the way began, which then is to stay so
+    Vector<double> x;     // where on the polynomial
     Path path;
 
     Walk(March<double>& s_, std::vector<Followed>& curves_, const Options& options_, Drive drive)
@@ -200,33 +199,11 @@ void stop_at_knots(const Walk& w, End& end) {
             end.over.push_back(crossing);
 }
 
-// Where the first bushing has turned half a turn, W = 0 of its quaternion: there its law ends, and the polynomial would go
-// straight on to another one's.
-std::optional<double> half_a_turn(const Equations& e, double reach) {
-    std::optional<double> first;
-    for (const auto& element : e.elastics) {
-        const auto* bushing = std::get_if<BushingSeries>(&element);
-        if (bushing == nullptr || !bushing->twists()) continue;
-        const auto W = [&](double tau) {
-            double value = 0;
-            for (int k = e.order(); k-- > 0;) value = value * tau + bushing->W.c[k];
-            return value;
-        };
-        if (const auto met = first_zero(W, first.value_or(reach))) first = met;
-    }
-    return first;
-}
-
 // How far the expansion at the parameter a_0 carries; an outcome where there is no way on.
 Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
     end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false, {}, {}};
     if (std::isnan(end.tau)) return Outcome::not_finite;
     const double reached = end.tau;
-    if (const auto met = half_a_turn(w.e, end.tau)) {
-        constexpr double nearly = 0.999, there = 1e-6;
-        if ((w.law_ends = *met < there)) return Outcome::branch_lost;
-        end.tau = nearly * *met;
-    }
     if (w.by_arc()) {
         end.tau = std::min(end.tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
         if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
@@ -470,8 +447,6 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
         case Outcome::dividing_point:
             return at + ": another curve of equilibria crosses the branch, which is unstable past this point";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
-        case Outcome::branch_lost:
-            return at + (w.law_ends ? ": a bushing has turned half a turn, where its law ends" : "");
         case Outcome::loaded_idle_mode:
             return at + ": the load pushes what nothing resists: " + idle_modes(diagnosis);
         default: return at;

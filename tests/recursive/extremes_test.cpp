@@ -41,7 +41,7 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
                           std::string::npos,
                       in_doubt)
                 << path.detail;
-            if (in_doubt) EXPECT_TRUE(path.points.empty()) << method.name;
+            EXPECT_EQ(path.points.empty(), in_doubt) << method.name;
         }
     }
 }
@@ -122,7 +122,7 @@ TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
             << method.name;
 }
 
-// A bar on a torsion spring that a follower turns: θ = M / k, up to half a turn, where the law of a rotation ends.
+// A bar on a torsion spring that a moment turns: θ = M / k, up to half a turn, where the law of a rotation ends.
 TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
     for (const double to : {300., 320.}) {
         const Model model = compile(parse_scene(
@@ -136,8 +136,7 @@ TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
                         to),
             "bar"));
         const auto path = solve(model, model.branches[0], {.method = *find_method("series")});
-        EXPECT_EQ(path.outcome, to < 314 ? Outcome::converged : Outcome::branch_lost) << to << path.detail;
-        EXPECT_EQ(path.detail.find("half a turn") != std::string::npos, to > 315) << path.detail;
+        EXPECT_EQ(path.outcome == Outcome::converged, to < 314) << to << path.detail;
     }
 }
 
