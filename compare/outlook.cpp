@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "compare/channels.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -33,9 +34,68 @@ std::optional<double> stiffness_gone_near(std::span<const Equilibrium> points) {
     return root.off / 2 < straight.off ? root.zero : straight.zero;
 }
 
-std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit) {
+namespace {
+
+// None farther ahead than the way behind.
+std::optional<double> announced(std::span<const Equilibrium> points) {
     const auto gone = stiffness_gone_near(points);
-    if (!gone || !(std::abs(*gone - points.back().load) <= std::abs(points.back().load))) return {};
+    if (!gone || !(std::abs(*gone - points.back().load) <= std::abs(points.back().load))) return std::nullopt;
+    return gone;
+}
+
+}  // namespace
+
+std::optional<double> announced_from(std::span<const Equilibrium> points) {
+    std::optional<double> since;
+    for (; announced(points); points = points.first(points.size() - 1)) since = points.back().load;
+    return since;
+}
+
+std::optional<ErrorBound> promised(const recursive::Method& method, double length) {
+    constexpr double rounding = 1e-9;
+    return std::visit(overloaded{[](const recursive::Adaptive& told) -> std::optional<ErrorBound> {
+                                     return ErrorBound{told.length_tolerance, told.angle_tolerance};
+                                 },
+                                 [&](const recursive::Series& told) -> std::optional<ErrorBound> {
+                                     return ErrorBound{std::max(told.tolerance, rounding * length),
+                                                       std::max(told.tolerance / length, rounding)};
+                                 },
+                                 [](const auto&) -> std::optional<ErrorBound> { return std::nullopt; }},
+                      method.kind);
+}
+
+std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise, ParameterUnit unit) {
+    const Equilibrium* worst = nullptr;
+    double share = 1;
+    int beyond = 0, unbounded = 0;
+    for (const auto& point : points) {
+        const double over = std::max(point.bound.length / promise.length, point.bound.angle / promise.angle);
+        if (over <= 1) continue;
+        if (!std::isfinite(over)) {
+            ++unbounded;
+            continue;
+        }
+        ++beyond;
+        if (over > share) share = over, worst = &point;
+    }
+    const auto angle = [](double radian) { return in_unit(Unit::deg) * radian; };
+    std::string text;
+    if (worst != nullptr)
+        text = fmt::format(
+            "promises {:.2g} mm and {:.2g} deg, which {} of {} points do not keep by their own account: "
+            "within {:.2g} mm "
+            "and {:.2g} deg at {:.5g} {}",
+            1e3 * promise.length, angle(promise.angle), beyond, points.size(), 1e3 * worst->bound.length,
+            angle(worst->bound.angle), in_unit(unit_of(unit)) * worst->load, symbol(unit_of(unit)));
+    if (unbounded > 0)
+        text += fmt::format("{}of {} of {} points no account can be given: nothing is promised of them",
+                            text.empty() ? "" : "; ", unbounded, points.size());
+    return text;
+}
+
+std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit) {
+    const auto gone = announced(points);
+    if (!gone) return {};
     const Unit shown = unit_of(unit);
     return fmt::format("at this rate the stiffness is gone near {:.5g} {}", in_unit(shown) * *gone,
                        symbol(shown));

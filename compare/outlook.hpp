@@ -1,4 +1,5 @@
-// What lies ahead of a path whose points give account of themselves: where the stiffness that is left will be gone.
+// What a path whose points give account of themselves comes to: where the stiffness that is left will be gone, and whether
+// what its method promises is kept.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "models/equilibrium_path.hpp"
 #include "models/scene.hpp"
+#include "recursive/method.hpp"
 
 namespace elastocheck::compare {
 
@@ -18,5 +20,15 @@ std::optional<double> stiffness_gone_near(std::span<const Equilibrium> points);
 // "at this rate the stiffness is gone near -211.5 N"; empty where there is nothing to announce: no such value, or one
 // farther ahead than the way behind.
 std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit);
+
+// Since when the last points have announced it: the load of the first of those from which on each has.
+std::optional<double> announced_from(std::span<const Equilibrium> points);
+
+// What a method promises of every point on its own: `adaptive` its tolerances; the series to be exact but for its own
+// tolerance and rounding, 1e-9 of the length of the scene [m] and 1e-9 rad. Of the others none.
+std::optional<ErrorBound> promised(const recursive::Method& method, double length);
+
+// Where the bounds of the points do not hold what is promised, in words; empty where all do.
+std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise, ParameterUnit unit);
 
 }  // namespace elastocheck::compare

@@ -73,6 +73,12 @@ bool is_finite(const Stand& where) {
            std::ranges::all_of(where.turns, [](const auto& q) { return q.coeffs().allFinite(); });
 }
 
+// How far a place may be off where the origin and the orientation of its body may be so far.
+double of_place(const ErrorBound& body, const Place& place) {
+    const double lever = place.at.s_local.norm();
+    return lever > 0 ? body.length + lever * body.angle : body.length;
+}
+
 // The largest over all places; NaN where a number is none.
 ErrorBound apart(const Stand& a, const Stand& b) {
     ErrorBound most{0, 0};
@@ -108,7 +114,15 @@ struct Known {
     Knowledge how = Knowledge::none;
     Stand where;
     ErrorBound within;
-    bool stable = false;  // shown to be: of what is proved alone
+    bool of_bodies = false;  // whether that is of the bodies, or of the places
+    bool stable = false;     // shown to be: of what is proved alone
+
+    double length(const Place& place) const { return of_bodies ? of_place(within, place) : within.length; }
+    double length(const std::vector<Place>& places) const {  // of all of them
+        double most = 0;
+        for (const auto& place : places) most = std::max(most, length(place));
+        return most;
+    }
 };
 
 struct WayRun {
@@ -139,19 +153,34 @@ bool is_reference(const Solver& solver) {
     return solver.gait.leg == Leg::equilibrium || solver.gait.leg == Leg::energy;
 }
 
-ErrorBound claim_of(const Solver& solver, const ErrorBound& account, double size) {
-    if (std::isfinite(account.length) && std::isfinite(account.angle)) return account;
-    if (is_reference(solver)) return exact(size);
+// What a solver claims of a state: of every body, or of every place.
+struct Claim {
+    ErrorBound bound = {};
+    bool of_bodies = true;
+
+    double length(const Place& place) const { return of_bodies ? of_place(bound, place) : bound.length; }
+    // Of all places together.
+    ErrorBound most(const std::vector<Place>& places) const {
+        ErrorBound worst{0, bound.angle};
+        for (const auto& place : places) worst.length = std::max(worst.length, length(place));
+        return worst;
+    }
+};
+
+Claim claim_of(const Solver& solver, const ErrorBound& account, double size) {
+    if (std::isfinite(account.length) && std::isfinite(account.angle)) return {account};
     const ErrorBound rounding = exact(size);
-    return std::visit(overloaded{[&](const recursive::Adaptive& told) {
-                                     return ErrorBound{std::max(told.length_tolerance, rounding.length),
-                                                       std::max(told.angle_tolerance, rounding.angle)};
+    if (is_reference(solver)) return {rounding, false};
+    return std::visit(overloaded{[&](const recursive::Adaptive& told) -> Claim {
+                                     return {{std::max(told.length_tolerance, rounding.length),
+                                              std::max(told.angle_tolerance, rounding.angle)}};
                                  },
-                                 [&](const recursive::Series& told) {
-                                     return ErrorBound{std::max(told.tolerance, rounding.length),
-                                                       std::max(told.tolerance / size, rounding.angle)};
+                                 [&](const recursive::Series& told) -> Claim {
+                                     return {{std::max(told.tolerance, rounding.length),
+                                              std::max(told.tolerance / size, rounding.angle)},
+                                             false};
                                  },
-                                 [](const auto&) { return ErrorBound{}; }},
+                                 [](const auto&) -> Claim { return {}; }},
                       solver.gait.recursion.method.kind);
 }
 
@@ -169,12 +198,18 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
         const Found &one = run.found[i], &other = run.found[j];
         if (point >= one.stands.size() || point >= other.stands.size()) continue;
         const ErrorBound distance = apart(one.stands[point], other.stands[point]);
-        const ErrorBound c_i = claim_of(solvers[i], one.accounts[point], run.size),
-                         c_j = claim_of(solvers[j], other.accounts[point], run.size);
-        if (distance.length <= c_i.length + c_j.length && distance.angle <= c_i.angle + c_j.angle)
-            return {Knowledge::references,
-                    one.stands[point],
-                    {distance.length + eps * run.reach, distance.angle + eps}};
+        const ErrorBound c_i = claim_of(solvers[i], one.accounts[point], run.size).most(run.places),
+                         c_j = claim_of(solvers[j], other.accounts[point], run.size).most(run.places);
+        if (!(distance.length <= c_i.length + c_j.length && distance.angle <= c_i.angle + c_j.angle))
+            continue;
+        // By its account, of the one that says more; without, as near as two can be by chance.
+        const bool first = c_i.length <= c_j.length;
+        const Found& tighter = first ? one : other;
+        const bool by_account = std::isfinite(tighter.accounts[point].length);
+        const ErrorBound within = by_account ? (first ? c_i : c_j) : distance;
+        return {Knowledge::references,
+                tighter.stands[point],
+                {within.length + eps * run.reach, within.angle + eps}};
     }
     return {};
 }
@@ -194,8 +229,6 @@ reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) 
 // By proof, from the first state of those that should be exact for which it succeeds.
 Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Equilibrium>>& states,
              std::size_t point, const reference::certificate::Tolerance& tolerance) {
-    double lever = 0;  // of a place about the origin of its body
-    for (const auto& place : run.places) lever = std::max(lever, place.at.s_local.norm());
     for (const auto& path : states) {
         if (point >= path.size()) continue;
         const auto certificate =
@@ -203,15 +236,34 @@ Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Eq
         if (certificate.answer == reference::certificate::Answer::proved)
             return {Knowledge::proved,
                     stand(way.model, run.places, path[point]),
-                    {certificate.error.length + lever * certificate.error.angle, certificate.error.angle},
+                    {certificate.error.length, certificate.error.angle},
+                    true,
                     certificate.stable};
     }
     return {};
 }
 
-bool keeps(const ErrorBound& claim, const ErrorBound& distance, const ErrorBound& known_within) {
-    return distance.length - known_within.length <= claim.length &&
-           distance.angle - known_within.angle <= claim.angle;
+// How far a state is off at least: by so much, where so much was claimed. All of it kept: 0 and 0.
+struct Breach {
+    ErrorBound least{0, 0}, claimed{0, 0};
+    bool any() const { return !(least.length <= 0 && least.angle <= 0); }
+};
+
+// |x - x_T| less e, and less the rounding of both as they are written down: a place so far from the origin has so few digits.
+Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const Known& known) {
+    Breach worst;
+    const double digits = 4 * eps;
+    for (std::size_t k = 0; k < run.places.size(); ++k) {
+        const Place& place = run.places[k];
+        const double within = known.length(place) + digits * run.reach,
+                     length = (where.p[k] - known.where.p[k]).norm() - within,
+                     angle =
+                         where.turns[k].angularDistance(known.where.turns[k]) - known.within.angle - digits;
+        if (length <= claim.length(place) && angle <= claim.bound.angle) continue;
+        if (!(length <= worst.least.length) || !worst.any())
+            worst = {{length, angle}, {claim.length(place), claim.bound.angle}};
+    }
+    return worst;
 }
 
 WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver>& solvers) {
@@ -266,9 +318,9 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
         for (std::size_t s = 0; s < solvers.size(); ++s) {
             Found& found = run.found[s];
             if (k >= found.stands.size()) continue;
-            const ErrorBound claim = claim_of(solvers[s], found.accounts[k], run.size);
+            const Claim claim = claim_of(solvers[s], found.accounts[k], run.size);
             found.elsewhere[k] =
-                (!keeps(claim, apart(found.stands[k], known.where), known.within) &&
+                (breach(run, claim, found.stands[k], known).any() &&
                  reference::certificate::certify(way.model, way.branch, states[s][k], tolerance).answer ==
                      reference::certificate::Answer::proved);
         }
@@ -374,7 +426,8 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
             cell.why = "a state is no number";
             return;
         }
-        const ErrorBound claim = claim_of(solver, found.accounts[k], run.size);
+        const Claim claim_here = claim_of(solver, found.accounts[k], run.size);
+        const ErrorBound claim = claim_here.most(run.places);
         promises &= std::isfinite(claim.length);
         no_digit |= std::isfinite(found.accounts[k].length) && found.accounts[k].length >= cell.range;
         cell.claim = k == 0 ? claim.length : std::max(cell.claim, claim.length);
@@ -385,11 +438,13 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         const Known& known = run.known[k];
         if (cell.knowledge == Knowledge::none || known.how == Knowledge::retold) cell.knowledge = known.how;
         const ErrorBound d = apart(found.stands[k], known.where);
-        worst = std::max(worst, d.length + known.within.length);
-        if (!keeps(claim, d, known.within)) {
+        worst = std::max(worst, d.length + known.length(run.places));
+        if (const Breach broken = breach(run, claim_here, found.stands[k], known); broken.any()) {
             (found.elsewhere[k] ? elsewhere : breaks) = true;
-            cell.why = fmt::format("off by {:.2e} mm and {:.2e} rad, and claims {:.2e} mm and {:.2e} rad",
-                                   1e3 * d.length, d.angle, 1e3 * claim.length, claim.angle);
+            cell.why =
+                fmt::format("off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} rad",
+                            1e3 * broken.least.length, std::max(0.0, broken.least.angle),
+                            1e3 * broken.claimed.length, broken.claimed.angle);
         }
     }
     if (cell.knowledge != Knowledge::none) {
@@ -425,8 +480,8 @@ void judge_retold(const Solver& solver, const Found& found, const WayRun& run, c
         const Stand here = only(found.stands[k], both.here),
                     there = retold(only(base_found.stands[k], both.there), how);
         const ErrorBound d = apart(here, there);
-        const ErrorBound c = claim_of(solver, found.accounts[k], run.size),
-                         c_base = claim_of(solver, base_found.accounts[k], base.size);
+        const ErrorBound c = claim_of(solver, found.accounts[k], run.size).most(run.places),
+                         c_base = claim_of(solver, base_found.accounts[k], base.size).most(base.places);
         if (!std::isfinite(c.length) && !same_bodies) continue;
         const double rounding = 1e4 * eps * run.reach,
                      allowed = std::isfinite(c.length) && std::isfinite(c_base.length)
@@ -484,10 +539,10 @@ void lend(const WayRun& base, const Retelling& how, WayRun& run) {
     if (both.here.size() != run.places.size()) return;
     for (std::size_t k = 0; k < std::min(run.known.size(), base.known.size()); ++k)
         if (run.known[k].how == Knowledge::none && base.known[k].how != Knowledge::none)
-            run.known[k] = {
-                Knowledge::retold,
-                retold(only(base.known[k].where, both.there), how),
-                {how.length * base.known[k].within.length + eps * run.reach, base.known[k].within.angle}};
+            run.known[k] = {Knowledge::retold,
+                            retold(only(base.known[k].where, both.there), how),
+                            {how.length * base.known[k].length(base.places) + eps * run.reach,
+                             base.known[k].within.angle}};
 }
 
 template <class T>
@@ -526,8 +581,10 @@ const char* name(Verdict verdict) {
 std::vector<Solver> solvers() {
     std::vector<Solver> all;
     for (const auto& method : recursive::methods)
-        all.push_back({std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
-    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
+        all.push_back({std::string(method.name),
+                       {.leg = Leg::recursive, .recursion = {.method = method}, .account = true}});
+    for (const Leg leg : {Leg::equilibrium, Leg::energy})
+        all.push_back({name(leg), {.leg = leg, .account = true}});
     return all;
 }
 

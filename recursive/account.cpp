@@ -115,7 +115,9 @@ struct Accountant {
         external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);
         elastic_force<Real>(s.model, s.inputs, q, s.force);
         const Real acts = size_of_force(s, s.applied) + size_of_force(s, s.force);
-        if (!(open <= Real(guard::closed)) || !(left <= 1e-9L * acts + noise)) return none;
+        if (!(open <= std::max<Real>(1, static_cast<Real>(s.length)) * written(s, q)) ||
+            !(left <= 1e-9L * acts + noise))
+            return none;
         // A pose is written down with the digits of a double.
         Real reach = 0;
         for (BodyId b = 0; b < q.bodies(); ++b) reach = std::max(reach, q[b].r.norm());

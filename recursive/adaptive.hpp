@@ -130,6 +130,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         if (trial.verdict == Verdict::believed) {
             const Real log_next = log_determinant(s.system.lu);
             if (begins_stable && unstable()) trial.verdict = Verdict::turned_over;
+            if (contradict_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
             between(node, next, Real(0.5), q, lambda);
             trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
             if (trial.outcome == Outcome::converged) {

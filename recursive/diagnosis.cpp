@@ -279,15 +279,16 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
 
 // The rows that repeat, by the joints that they belong to.
 void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeating, const VectorXd& Phi,
-                    Diagnosis& result) {
+                    double reach, Diagnosis& result) {
     std::vector<std::map<int, double>> among;  // of each redundancy: Σ y² by joint
     for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
         const int joint = joint_of_row[static_cast<std::size_t>(repeating.rows[c])];
         if (result.redundant.empty() || result.redundant.back().joint != joint) {
-            result.redundant.push_back({joint, 0, false, {}});
+            result.redundant.emplace_back().joint = joint;
             among.emplace_back();
         }
         ++result.redundant.back().rows;
+        result.redundant.back().left = std::max(result.redundant.back().left, repeating.left[c]);
         for (Columns::InnerIterator y(repeating.dependencies, static_cast<Eigen::Index>(c)); y; ++y)
             if (std::abs(y.value()) > part_threshold)
                 among.back()[joint_of_row[static_cast<std::size_t>(y.row())]] += y.value() * y.value();
@@ -304,6 +305,10 @@ void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeat
         const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
         const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
         r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
+        // A row comes of levers that are differences of coordinates, and turns as far as the joints are open.
+        constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
+        r.undecided = r.left > digits * (1 + reach / result.length) +
+                                   10 * result.constraint_error / std::min(1.0, result.length);
     }
 }
 
@@ -395,7 +400,9 @@ Diagnosis diagnose(const Model& model) {
     result.rank = m - static_cast<int>(repeating.rows.size());
     std::vector<int> joint_of_row;  // rising
     for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
-    find_redundant(joint_of_row, repeating, Phi, result);
+    double reach = 0;
+    for (const auto& body : model.bodies) reach = std::max(reach, body.design.r.norm());
+    find_redundant(joint_of_row, repeating, Phi, reach, result);
     result.determined.assign(model.joints.size(), true);
     find_undetermined(joint_of_row, repeating.dependencies, result);
 
@@ -457,6 +464,16 @@ std::string moving(const std::vector<std::string>& outputs) {
 std::string body_of(const IdleMode& mode) { return mode.description.substr(0, mode.description.find(": ")); }
 
 }  // namespace
+
+std::string undecided(const Model& model, const Diagnosis& diagnosis) {
+    const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);
+    if (in_doubt == diagnosis.redundant.end()) return {};
+    return fmt::format(
+        "whether joint '{}' repeats what others hold cannot be told: {:.1e} of one of its equations is left, "
+        "more than "
+        "rounding and less than {:.0e}; draw it to repeat them, or not to",
+        model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->left, rank_threshold);
+}
 
 std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis) {
     std::vector<std::string> lines, spinning;

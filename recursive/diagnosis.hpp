@@ -31,6 +31,8 @@ struct Redundancy {
     int joint = 0;             // position in Model::joints
     int rows = 0;              // how many of its rows repeat what the joints before it already hold
     bool contradicts = false;  // whether Φ ≠ 0 there: the joints cannot all be met
+    double left = 0;  // the most that is left of such a row of unit length: 0 of one that repeats exactly
+    bool undecided = false;  // whether that is more than rounding: it may repeat, or hold something more
     // The joints that the repetition is among, and what each has of the left null vectors y of the row-scaled Φ_q, squared:
     // largest first, together 1. Taking out any of them takes out the repetition.
     std::vector<std::pair<int, double>> shares;
@@ -58,6 +60,9 @@ struct Diagnosis {
 };
 
 Diagnosis diagnose(const Model& model);
+
+// Which joint cannot be told from one that repeats others, in words; empty where all can.
+std::string undecided(const Model& model, const Diagnosis& diagnosis);
 
 // As a person would say them, one a line: "strut: rotation about ..., moves no output", those that spin together: "both 'a'
 // and 'b' spin about themselves, moves no output".

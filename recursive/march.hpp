@@ -41,6 +41,8 @@ inline constexpr double rounding = 1e7;
 // Joints that are open by less than this [m, rad] as drawn are closed: their points have been written down
 // with nine digits.
 inline constexpr double closed = 1e-9;
+// Joints that say a thing twice are drawn to agree to nine digits of L, or of a direction; else they say two.
+inline constexpr double agreeing = 1e-9;
 // The linearisation of a rotation, eq. (6), is off by half at a radian.
 inline constexpr double largest_turn = 1;
 // One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
@@ -392,6 +394,44 @@ void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambd
         s.lower += held * s.Phi_d;
     }
     ++s.counts.evaluations;
+}
+
+// Whether any joint says what others say already.
+template <class Real>
+bool says_twice(const March<Real>& s) {
+    return s.system.borders() > s.system.held.idle;
+}
+
+// What a number of the model is worth as a share of L, or of a direction: a double, of the largest coordinate.
+template <class Real>
+Real written(const March<Real>& s, const State<Real>& q) {
+    Real reach = 0;
+    for (BodyId b = 0; b < q.bodies(); ++b) reach = std::max(reach, q[b].r.norm());
+    const Real digit = std::max(std::numeric_limits<Real>::epsilon(),
+                                static_cast<Real>(std::numeric_limits<double>::epsilon()));
+    return 64 * digit * (1 + reach / static_cast<Real>(s.length));
+}
+
+// The largest |Φ_k| in `Phi`, as a share of L where it is a length.
+template <class Real>
+Real largest_gap(const March<Real>& s, const Vector<Real>& Phi) {
+    Real worst = 0;
+    for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
+        const ConstraintKind& kind = s.model.constraints[c].kind;
+        const bool direction = std::holds_alternative<PerpendicularDirections>(kind) ||
+                               std::holds_alternative<DirectionAtAngle>(kind);
+        const Real open = Phi.segment(s.inputs.row[c], static_cast<Eigen::Index>(rows(kind))).norm();
+        const Real share = direction ? open : open / static_cast<Real>(s.length);
+        if (!(share <= worst)) worst = share;
+    }
+    return worst;
+}
+
+// Whether joints that say a thing twice say two at q, by what residual_at has left in s.lower where corrections have come to
+// rest: the border has taken up what they cannot both meet.
+template <class Real>
+bool contradict(const March<Real>& s, const State<Real>& q) {
+    return says_twice(s) && !(largest_gap(s, s.lower) <= static_cast<Real>(guard::agreeing) + written(s, q));
 }
 
 // amount · ∂/∂t or ∂/∂a of the same right-hand side, at the present inputs.

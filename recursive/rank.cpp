@@ -140,6 +140,7 @@ Repeated repeated(const Rows& rows) {
             y.append_to(dependencies, static_cast<int>(result.rows.size()));
             y.clear();
             result.rows.push_back(k);
+            result.left.push_back(largest);
         }
         x.clear();
     }

@@ -17,8 +17,9 @@ constexpr double rank_threshold = 1e-9;  // of rows of unit length: what is left
 // Row k repeats where it is a combination of the rows before it. Then row k - Σ y_i row i = 0 over those that do not
 // repeat themselves is its dependency, which is unique: column by column yᵀ, of unit length, y_k > 0.
 struct Repeated {
-    std::vector<int> rows;  // rising
-    Columns dependencies;   // [rows × repeated]
+    std::vector<int> rows;     // rising
+    std::vector<double> left;  // largest entry of what no combination of the rows before makes up of it
+    Columns dependencies;      // [rows × repeated]
 };
 Repeated repeated(const Rows& rows);
 

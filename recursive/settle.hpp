@@ -130,6 +130,11 @@ Outcome settle_truly(March<Real>& s) {
         if (size <= enough || !(size < before)) break;
         before = size;
     }
+    if (says_twice(s)) {
+        residual_at(s, node.q, node.lambda);
+        --s.counts.evaluations;  // judges, finds nothing
+        if (contradict(s, node.q)) return Outcome::inconsistent_constraints;
+    }
     s.q = s.before = node.q;
     s.lambda = node.lambda;
     s.orientation = s.system.lu.orientation;

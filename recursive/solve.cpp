@@ -40,8 +40,11 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
                 detail += ", or what was idle or redundant at the design position no longer is";
             break;
         case Outcome::inconsistent_constraints:
-            detail = fmt::format("the joints cannot be closed; as drawn they are open by |Φ| = {:.3g}",
-                                 diagnosis.constraint_error);
+            if (!std::isnan(stopped))
+                detail += ": joints that say a thing twice contradict each other";
+            else
+                detail = fmt::format("the joints cannot be closed; as drawn they are open by |Φ| = {:.3g}",
+                                     diagnosis.constraint_error);
             break;
         case Outcome::limit_point:
             detail += ": a limit point, past it no equilibrium continues the branch";
@@ -80,6 +83,8 @@ EquilibriumPath sweep(Precision precision, const Model& model, const Branch& bra
 // As the method finds it.
 EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
+    if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
+        return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         if (options.precision != Precision::twofold)
             throw std::invalid_argument("the series is computed in double precision only");

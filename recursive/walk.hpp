@@ -131,6 +131,27 @@ Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>&
     return trial;
 }
 
+// Whether the joints contradict each other at the node whose factors are in the system: what stays open when corrections
+// with them have come to rest. q and lambda are room for that.
+template <class Real>
+bool contradict_at(March<Real>& s, const Node<Real>& node, State<Real>& q, Vector<Real>& lambda) {
+    constexpr int corrections = 3;  // each a thousandth of the one before, or less
+    if (!says_twice(s)) return false;
+    const Counts counts = s.counts;  // judges, finds nothing: not counted
+    q = node.q;
+    lambda = node.lambda;
+    for (int k = 0; k < corrections; ++k) {
+        residual_at(s, q, lambda);
+        back_substitute(s);
+        s.dq = s.x.head(s.n());
+        advance(q, s.dq);
+        lambda += s.x.tail(s.m());
+    }
+    residual_at(s, q, lambda);
+    s.counts = counts;
+    return contradict(s, q);
+}
+
 // Why a path does not go on from `node`, judged by the smallest trial of length h that failed.
 template <class Real>
 Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vector<Real>& curvature, Real h,

@@ -14,7 +14,8 @@ constexpr double straight = 0.25;  // of a chord, that it may be from the mean o
 // Whether it is the branch that ends, not the numbers.
 bool ends(Outcome outcome) {
     return outcome == Outcome::limit_point || outcome == Outcome::dividing_point ||
-           outcome == Outcome::singular || outcome == Outcome::branch_lost;
+           outcome == Outcome::singular || outcome == Outcome::branch_lost ||
+           outcome == Outcome::inconsistent_constraints;
 }
 
 bool starts_as_drawn(const Branch& branch) {
@@ -28,7 +29,24 @@ Outcome settles(March<double>& s, const Branch& branch, const Analysis& analysis
     return judge(s, s.q, analysis.pivot_ratio);
 }
 
-// The chord from one node to the next against the tangents at its ends.
+// Whether an element has turned over on the way: a spring that points the other way has gone through a length of nothing,
+// a bushing whose rotation does has gone through half a turn. Its force jumps there, and Newton's method lands beyond.
+bool turned_over(const AxialSpring& e, const State<double>& from, const State<double>& to) {
+    return !(deformation<double>(e, from).D.dot(deformation<double>(e, to).D) > 0);
+}
+bool turned_over(const Bushing& e, const State<double>& from, const State<double>& to) {
+    constexpr double quarter = 1.5;  // of a turn [rad], nearly
+    const Vector3<double> before = deformation<double>(e, from).theta(),
+                          after = deformation<double>(e, to).theta();
+    return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
+}
+bool any_turned_over(const Model& model, const State<double>& from, const State<double>& to) {
+    return std::ranges::any_of(model.elastics, [&](const auto& element) {
+        return std::visit([&](const auto& e) { return turned_over(e, from, to); }, element.kind);
+    });
+}
+
+// The chord from one node to the next against the tangents at its ends, and nothing turned over.
 bool is_straight(const March<double>& s, const Going<double>& going, const Node<double>& from,
                  const Node<double>& to) {
     Vector<double> chord(s.n());
@@ -38,7 +56,8 @@ bool is_straight(const March<double>& s, const Going<double>& going, const Node<
         chord.segment<3>(6 * b + 3) = logarithm<double>(turned);
     }
     const Vector<double> mean = (to.p - from.p) / 2 * (from.dq + to.dq);
-    return share<double>(going, chord - mean) <= straight * share<double>(going, chord) + 1;
+    return share<double>(going, chord - mean) <= straight * share<double>(going, chord) + 1 &&
+           !any_turned_over(s.model, from.q, to.q);
 }
 
 // Whether the few tangents come through.
@@ -47,11 +66,14 @@ bool comes_through(March<double>& s, double to) {
     Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     differentiate(s, going, node);
     Vector<double> curvature = Vector<double>::Zero(s.n()), lambda_curvature = Vector<double>::Zero(s.m());
+    State<double> q = s.q;
+    Vector<double> lambda = s.lambda;
     double h = longest;  // of the way
     for (double gone = 0; gone < 1;) {
         const double ahead = gone + h < 1 - h / 8 ? gone + h : 1;
         next.p = to * ahead;
         const Trial<double> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+        if (trial.verdict == Verdict::believed && contradict_at(s, next, q, lambda)) return false;
         if (trial.verdict == Verdict::believed && is_straight(s, going, node, next)) {
             curvature = (next.dq - node.dq) / (next.p - node.p);
             lambda_curvature = (next.dlambda - node.dlambda) / (next.p - node.p);

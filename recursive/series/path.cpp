@@ -99,11 +99,11 @@ struct Walk {
 double largest_force(const March<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
 double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff(); }
 
-// Joints that say a thing twice may be driven to say two: the border takes up what they cannot both meet.
+// Joints that say a thing twice may be driven to say two.
 bool contradicts(March<double>& s) {
-    if (s.system.borders() == s.system.held.idle) return false;
+    if (!says_twice(s)) return false;
     residual_at(s, s.q, s.lambda);
-    return !(largest_violation(s) <= 1e-9 * std::max(1.0, s.length));
+    return contradict(s, s.q);
 }
 
 // Whether what acts at the present place pushes what is held.
@@ -497,21 +497,33 @@ Path follow(const Model& model, const Branch& branch, const Options& options) {
     return follow(model, branch, options, analyse(model));
 }
 
+namespace {
+
+// What τ of a load is worth where the load is the parameter: rounding of the reach, and of the load itself, which is more
+// where expansions are short.
+double slack(const Expansion& x, double load) {
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    return 1e-12 * x.reach + 4 * eps * (std::abs(load) + std::abs(x.load[0])) / std::abs(x.load[1]);
+}
+
+}  // namespace
+
 std::optional<Place> find(const Path& path, double load) {
     for (std::size_t k = 0; k < path.expansions.size(); ++k) {
         const Expansion& x = path.expansions[k];
         const double from = x.load[0], to = polynomial(x.load, x.reach);
         const bool linear = x.load.size() < 3 || x.load.tail(x.load.size() - 2).isZero(0);
         // An end is reached to rounding only.
-        const double slack = 1e-12 * std::abs(to - from);
+        const double rounding = 1e-12 * std::abs(to - from);
         if (linear) {
             const double tau = (load - from) / x.load[1];
-            if (tau >= -slack && tau <= x.reach * (1 + 1e-12)) return Place{k, std::clamp(tau, 0.0, x.reach)};
+            if (tau >= -slack(x, load) && tau <= x.reach + slack(x, load))
+                return Place{k, std::clamp(tau, 0.0, x.reach)};
         } else {
-            if (std::abs(load - from) <= slack) return Place{k, 0};
+            if (std::abs(load - from) <= rounding) return Place{k, 0};
             if (const auto tau = first_zero([&](double t) { return polynomial(x.load, t) - load; }, x.reach))
                 return Place{k, *tau};
-            if (k + 1 == path.expansions.size() && std::abs(load - to) <= slack) return Place{k, x.reach};
+            if (k + 1 == path.expansions.size() && std::abs(load - to) <= rounding) return Place{k, x.reach};
         }
     }
     return std::nullopt;
@@ -561,7 +573,8 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
             const double load = branch.to * static_cast<double>(next) / points;
             double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
                                          : (load - expansion.load[0]) / expansion.load[1];
-            const bool beyond = tau > expansion.reach * (1 + 1e-12);
+            const double rounding = path.arc_length ? 1e-12 * expansion.reach : slack(expansion, load);
+            const bool beyond = tau > expansion.reach + rounding;
             if (beyond && !(last && path.arc_length && next + 1 == recording.points)) break;
             tau = std::clamp(tau, 0.0, expansion.reach);
             taus.push_back(tau);

@@ -167,6 +167,11 @@ int run(int argc, char** argv) {
             "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
             "or series")
         ->check(one_of(rungs_of_recursion));
+    bool account = false;
+    solve_command->add_flag(
+        "--account", account,
+        "say where the stiffness that is left will be gone, as the points announce it; adaptive and "
+        "series always do, and whether they keep what they promise");
     solve_command->add_flag("--arc-length", recursion_request.arc_length,
                             "series: follow the path by arc length, through limit points");
     solve_command
@@ -255,8 +260,10 @@ int run(int argc, char** argv) {
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
                 return compare_legs(scene, settings, {how, every, detail, within, formulations}, delivery);
-            solve_request.gait = {
-                .leg = reference ? *leg : compare::Leg::recursive, .recursion = how, .every = every};
+            solve_request.gait = {.leg = reference ? *leg : compare::Leg::recursive,
+                                  .recursion = how,
+                                  .every = every,
+                                  .account = account};
             solve_request.detail = detail;
             return solve(scene, settings, solve_request, delivery);
         }

@@ -10,6 +10,7 @@
 #include "compare/channels.hpp"
 #include "compare/characteristics.hpp"
 #include "compare/elements.hpp"
+#include "compare/outlook.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
 #include "recursive/diagnosis.hpp"
@@ -59,6 +60,32 @@ std::vector<Channel> asked_for(const Model& model, const std::vector<std::string
     return chosen(all, patterns);
 }
 
+// What the points of one way have said of themselves.
+using Account = std::vector<Equilibrium>;
+
+// Ways come one after the other, each from its start.
+void add_account(const Equilibrium& state, std::vector<Account>& ways) {
+    if (ways.empty() || state.load == 0) ways.emplace_back();
+    Equilibrium& point = ways.back().emplace_back();
+    point.load = state.load;
+    point.bound = state.bound;
+    point.stiffness_left = state.stiffness_left;
+}
+
+// One line each: what the method promises and does not keep, and where the stiffness will be gone.
+void tell_account(const std::string& who, const Branch& branch, const std::optional<ErrorBound>& promise,
+                  const std::vector<Account>& ways) {
+    const auto unit = compare::unit_of(branch.unit);
+    for (const Account& points : ways) {
+        if (const auto text = promise ? compare::unkept(points, *promise, branch.unit) : std::string();
+            !text.empty())
+            complain("{}: {}: {}\n", who, branch.name, text);
+        if (const auto from = compare::announced_from(points))
+            complain("{}: {}: {}, announced from {:.5g} {} on\n", who, branch.name,
+                     compare::outlook(points, branch.unit), in_unit(unit) * *from, symbol(unit));
+    }
+}
+
 }  // namespace
 
 std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
@@ -102,15 +129,23 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     std::vector<compare::Walked> kept;  // for the document alone
     write(curves_header(channels));
     int code = fine;
+    const std::string who = leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
+    const auto promise = leg == compare::Leg::recursive
+                             ? compare::promised(how.method, recursive::diagnose(model).length)
+                             : std::nullopt;
+    compare::Gait gait = request.gait;
+    gait.account = account || promise;
     for (const auto& branch : model.branches) {
+        std::vector<Account> accounts;
         if (csv) progress(branch.name);
         const auto ways = compare::ways_of(model, branch, how.steps);
         compare::Analyses analyses;
         compare::Walked whole;
         whole.curve.unit = compare::unit_of(branch.unit);
         const EquilibriumPath path = compare::walk(
-            ways, request.gait,
+            ways, gait,
             [&](const Equilibrium& state) {
+                if (gait.account) add_account(state, accounts);
                 return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },
             [&](const compare::Row& row) {
@@ -125,9 +160,9 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
+        tell_account(who, branch, promise, accounts);
         if (path.outcome == Outcome::converged) continue;
-        complain("{}: {}: {}\n", leg == compare::Leg::recursive ? how.method.name : name(leg),
-                 name(path.outcome), path.detail);
+        complain("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;
     }
     if (csv) csv->finish();

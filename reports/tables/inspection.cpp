@@ -159,7 +159,9 @@ std::string inspection(const Inspected& inspected) {
     for (const auto& r : std::span(d.redundant).first(shown(d.redundant.size()))) {
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
              model.joints[static_cast<std::size_t>(r.joint)].name, r.rows,
-             r.contradicts ? ", and contradict it" : "");
+             r.contradicts ? ", and contradict it"
+             : r.undecided ? ", or nearly: that cannot be told"
+                           : "");
         std::string among;
         for (const auto& [joint, share] : std::span(r.shares).first(shown(r.shares.size())))
             among += fmt::format("{}'{}' {:.0f} %", among.empty() ? "" : ", ",

@@ -50,6 +50,41 @@ TEST(Outlook, ABucklingLoadIsAnnouncedFromHalfTheWay) {
     }
 }
 
+TEST(Outlook, IsToldSinceThePointFromWhichOnItIsSaid) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    const auto path = accounted(model, -211, Leg::series);
+    const std::span<const Equilibrium> points(path.points);
+    const auto from = announced_from(points);
+    ASSERT_TRUE(from.has_value());
+    for (std::size_t k = 3; k <= points.size(); ++k)
+        EXPECT_EQ(!outlook(points.first(k), ParameterUnit::newton).empty(), points[k - 1].load <= *from)
+            << points[k - 1].load;
+    EXPECT_LT(-211, *from);
+    EXPECT_FALSE(announced_from(accounted(model, 150, Leg::series).points).has_value());
+}
+
+TEST(Outlook, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {
+    const auto promise = promised(*recursive::find_method("adaptive"), 1);
+    ASSERT_TRUE(promise.has_value());
+    EXPECT_EQ(promise->length, recursive::Adaptive{}.length_tolerance);
+    EXPECT_FALSE(promised(*recursive::find_method("published"), 1).has_value());
+    std::vector<Equilibrium> points(3);
+    for (std::size_t k = 0; k < 3; ++k)
+        points[k].load = 1e3 * static_cast<double>(k), points[k].bound = {promise->length, promise->angle};
+    EXPECT_EQ(unkept(points, *promise, ParameterUnit::newton), "");
+    points[2].bound.length *= 2;
+    EXPECT_TRUE(
+        unkept(points, *promise, ParameterUnit::newton)
+            .starts_with(
+                "promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep by their own account: "
+                "within 0.02 mm and 0.001 deg at 2000 N"))
+        << unkept(points, *promise, ParameterUnit::newton);
+    points[1].bound = {};
+    EXPECT_TRUE(unkept(points, *promise, ParameterUnit::newton)
+                    .ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
+        << unkept(points, *promise, ParameterUnit::newton);
+}
+
 TEST(Outlook, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {
     const Model model = compile(support::scene("two_spring_arch"));
     EXPECT_EQ(outlook(accounted(model, 150, Leg::equilibrium).points, ParameterUnit::newton), "");

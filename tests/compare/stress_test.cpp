@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/random_scenes.hpp"
 #include "compare/retold.hpp"
 #include "compare/stress.hpp"
 #include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -98,7 +100,7 @@ TEST(Stress, AnHonestOutcomeIsNotWrong) {
 }
 
 TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
-    // The published recursion of the pendulum is off by so much (its head has the closed form), and claims nothing.
+    // The published recursion of the pendulum is off by so much (its head has the closed form), and says so.
     const Survival survival =
         stress(std::vector{Trial{"pendulum", "x", {"as it is", small("pendulum", 60)}}});
     for (const auto& cell : survival.cells) {
@@ -107,12 +109,26 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
             EXPECT_NEAR(cell.error, cell.range * std::pow(10, -cell.digits), 1e-6 * cell.error) << told(cell);
         }
         if (cell.solver == "published") {
-            EXPECT_EQ(cell.verdict, Verdict::unpromised);
+            EXPECT_EQ(cell.verdict, Verdict::right);
             EXPECT_LT(cell.digits, 4);
+            EXPECT_GT(cell.claim, 0.5 * cell.error);
         }
         if (cell.solver == "equilibrium") {
             EXPECT_EQ(cell.verdict, Verdict::right);
             EXPECT_GT(cell.digits, 9);
+        }
+    }
+}
+
+// A bound is of origins and orientations: a place that is far from its body's origin may be off by more than the origin is.
+TEST(Stress, WhatIsClaimedOfABodyIsHeldAgainstItsPlacesWithTheirLevers) {
+    const Survival survival =
+        stress(std::vector{Trial{"seed 1", "x", {"as it is", parse_scene(random_scene(1), "seed 1")}}});
+    for (const auto& cell : survival.cells) {
+        EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+        if (cell.solver == "published") {
+            EXPECT_EQ(cell.verdict, Verdict::right) << told(cell);
+            EXPECT_GT(cell.error, 1e-4);  // [m], of a probe; of the origin it is less
         }
     }
 }

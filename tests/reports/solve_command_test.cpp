@@ -56,6 +56,17 @@ TEST(SolveCommand, WritesTheRowsOfThePointsBitByBitOnEveryScene) {
     }
 }
 
+TEST(SolveCommand, SaysWhatThePointsAnnounce) {
+    const std::string arch = "solve " + scenes + "/two_spring_arch.yaml --steps 40";
+    for (const char* asked : {" --method series", " --method adaptive", " --account"}) {
+        const Said said = elastocheck_says(arch + asked);
+        EXPECT_TRUE(contains(said.err, "the stiffness is gone near -2") &&
+                    contains(said.err, " N, announced from -"))
+            << asked << said.err;
+    }
+    EXPECT_FALSE(contains(elastocheck_says(arch).err, "announced"));
+}
+
 TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 3";
     const auto all = cells_of(elastocheck_says(command).out);
