@@ -124,6 +124,29 @@ Verdict side_of(Walk& walk, const Station& next) {
     return Verdict::uncertain;
 }
 
+// Whether springs and links point where they did, nearly: on a long step one may have gone through where it has no length,
+// and the chord between two straight ways does not tell.
+bool directions_are_kept(const System& system, const VectorXd& from, const VectorXd& to) {
+    constexpr double nearly = 0.9;  // the cosine
+    const auto kept = [&](const Point& i, const Point& j) {
+        const auto between = [&](const VectorXd& x) {
+            return Eigen::Vector3d(position(frame_of(system, x, j.body), j.s_local) -
+                                   position(frame_of(system, x, i.body), i.s_local));
+        };
+        const Eigen::Vector3d a = between(from), b = between(to);
+        return a.dot(b) >= nearly * a.norm() * b.norm();
+    };
+    for (const auto& elastic : system.model->elastics)
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind);
+            spring && !kept(spring->i, spring->j))
+            return false;
+    for (const auto& constraint : system.model->constraints)
+        if (const auto* link = std::get_if<DistanceBetween>(&constraint.kind);
+            link && !kept(link->i, link->j))
+            return false;
+    return true;
+}
+
 // How far a rounding of all that the joints hold moves a state; its signs are those of fractions of multiples of the golden
 // ratio, which know nothing of the system.
 // What is soft answers with more, and is judged as a stiffness: as far as it has become softer it does not count.
@@ -155,6 +178,8 @@ Trial try_step(Walk& walk, double t) {
     const double h = t - walk.here.t;
     if (!is_continuation(system, walk.here, next))
         trial.verdict = Verdict::another_branch;
+    else if (pose_size(system, dx) > longest_step && !directions_are_kept(system, walk.here.x, next.x))
+        trial.verdict = Verdict::out_of_reach;
     else if (const auto exit = first_exit(walk.here.curves, next.curves, h, walk.pieces))
         trial.verdict = Verdict::past_knot, trial.knot = walk.here.t + *exit * h;
     else if (!(std::isfinite(correction) && correction <= last_correction))
