@@ -142,6 +142,11 @@ TEST(DamagedScene, WithBytesOverwritten) {
 }
 
 // What has a meaning in YAML or in a scene does more damage than any byte.
+// Prose, in which a number is none.
+bool contains_comment_or_name(const std::string& line) {
+    return line.find('#') != std::string::npos || line.starts_with("name:");
+}
+
 // Where a number stands: no letter, digit, point or sign touches it.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
     static const std::regex number(R"([-+]?\d+\.?\d*(e[-+]?\d+)?(?![\w.]))");
@@ -150,6 +155,9 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& t
         const auto first = static_cast<std::size_t>(at->position()),
                    length = static_cast<std::size_t>(at->length());
         const char before = first > 0 ? text[first - 1] : '\n';
+        const std::string line =
+            text.substr(text.rfind('\n', first) + 1, first - text.rfind('\n', first) - 1);
+        if (contains_comment_or_name(line)) continue;
         if (before == ' ' || before == '[' || before == ',') places.emplace_back(first, length);
     }
     return places;
