@@ -5,6 +5,7 @@
 
 #include "models/branch.hpp"
 #include "reference/energy/balance.hpp"
+#include "reference/energy/centred.hpp"
 #include "reference/energy/conservative.hpp"
 #include "reference/energy/solve.hpp"
 
@@ -20,11 +21,15 @@ double max_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b) ? 
 
 }  // namespace
 
-Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state) {
-    if (!stands_on(model, branch))
+Residuals residuals(const Model& as_told, const Branch& branch, const Equilibrium& as_found) {
+    if (!stands_on(as_told, branch))
         throw std::invalid_argument("the model does not stand on branch '" + branch.name +
                                     "', or it goes two ways");
-    if (state.poses.size() != model.bodies.size()) return {unknown, unknown, unknown, unknown};
+    if (as_found.poses.size() != as_told.bodies.size()) return {unknown, unknown, unknown, unknown};
+    const Eigen::Vector3d centre = centre_of(as_told);
+    const Model model = about(as_told, centre);
+    Equilibrium state = as_found;
+    state.poses = moved_by(std::move(state.poses), -centre);
     const Chart chart = chart_about(state.poses);
     const Course course = course_of(model, branch);
     const Prescribed prescribed = at(course, state.load);

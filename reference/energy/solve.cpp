@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "models/branch.hpp"
 #include "reference/energy/account.hpp"
+#include "reference/energy/centred.hpp"
 #include "reference/energy/conservative.hpp"
 #include "reference/energy/cost.hpp"
 #include "reference/energy/reactions.hpp"
@@ -94,12 +96,14 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
 
     std::vector<double> ends(values.begin(), values.end());
     ends.push_back(branch.to);
-    const Course course = course_of(model, branch);
+    const Eigen::Vector3d centre = centre_of(model);
+    const Model here = about(model, centre);
+    const Course course = course_of(here, branch);
     double span = 0;
     for (const double a : ends)
         if (std::isfinite(a)) span = std::max(span, std::abs(a));
-    Path path{model, options,      scales_of(model, course, ends), course, turning_bushings(model, course),
-              span,  result.counts};
+    Path path{here, options,      scales_of(here, course, ends), course, turning_bushings(here, course),
+              span, result.counts};
 
     const std::string settling = "settling from the design pose";
     if (const auto failure = impossible_length(path, 0)) return fail(*failure, settling, "");
@@ -118,6 +122,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
                         reached + in_units(walk.state.a));
         Equilibrium point = equilibrium(path, walk.state);
         if (options.account) give_account(path, walk.state, point);
+        point.poses = moved_by(std::move(point.poses), centre);
+        point.bound.length += std::numeric_limits<double>::epsilon() * centre.norm();
         if (visit)
             visit(point);
         else

@@ -80,7 +80,17 @@ bool has_divided(const Walk& walk, const Trial& trial) {
 }  // namespace
 
 Failure unanswerable(const System& system, const VectorXd& left) {
-    if (left.tail(system.constraint_rows).norm() > left.head(6 * system.bodies).norm())
+    // What truly repeats itself is balanced by itself, and leaves the bodies nothing but round-off.
+    constexpr double repeated = 1e-11;
+    const double of_joints = left.tail(system.constraint_rows).norm(),
+                 of_bodies = left.head(6 * system.bodies).norm();
+    if (of_joints > of_bodies && of_bodies > repeated * of_joints)
+        return {
+            Outcome::iteration_limit,
+            fmt::format(
+                "the joints {} so nearly repeat each other that arithmetic cannot tell what they leave free",
+                joints_in(system, left.tail(system.constraint_rows)))};
+    if (of_joints > of_bodies)
         return {Outcome::inconsistent_constraints,
                 fmt::format("the joints {} contradict each other",
                             joints_in(system, left.tail(system.constraint_rows)))};
@@ -95,7 +105,8 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     const bool settling = walk.stage == Stage::settling;
     const std::string where =
         settling ? fmt::format("while settling at {}, {:.0f} % of the way", at(0), 100 * walk.here.t)
-                 : fmt::format("between {} and {}", at(walk.here.t), at(t));
+        : at(walk.here.t) == at(t) ? "at " + at(t)
+                                   : fmt::format("between {} and {}", at(walk.here.t), at(t));
 
     if (!settling && has_divided(walk, trial))
         return {Outcome::dividing_point,
@@ -107,10 +118,13 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     if (trial.verdict == Verdict::uncertain)
         return {Outcome::singular,
                 "the system is too nearly singular to say that the branch goes on " + where};
-    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen some steps
-    // further.
-    constexpr double further = 12;
-    const double target = settling ? 0 : walk.here.t + further * (t - walk.here.t);
+    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen farther on.
+    constexpr double further = 12, far = 1.8e-4;  // such steps; of the whole way
+    const double target =
+        settling
+            ? 0
+            : walk.here.t + std::copysign(std::max(further * std::abs(t - walk.here.t), far * walk.length),
+                                          t - walk.here.t);
     const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
     if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
         return {Outcome::inconsistent_constraints,

@@ -1,5 +1,8 @@
 #include "reference/equilibrium/linearisation.hpp"
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 namespace elastocheck::reference::equilibrium {
@@ -12,6 +15,10 @@ using Eigen::VectorXd;
 // Of the equilibrated matrix: a column that its QR finds this close to those before it is null. Healthy models stay
 // above 1e-6.
 constexpr double null_threshold = 1e-11;
+
+// ... but constraints that repeat each other up to an angle σ do hold, and have a singular value σ² over a stiffness in J:
+// what J takes to more than `nothing`, and is of reactions but for a part of about σ that is of bodies.
+constexpr double nothing = 1e-13, least_angle = 1e-9, largest_angle = 1e-3;
 
 // Of the equilibrated matrix too: with a condition number below it has no null space, and is not asked for one.
 constexpr double surely_regular = 1e8;
@@ -71,6 +78,35 @@ Equilibrated equilibrated(const Sparse& J) {
     return of;
 }
 
+// The unknowns of bodies: after them A has no entry on both sides.
+Index of_bodies(const Sparse& A) {
+    Index n = 0;
+    for (Index j = 0; j < A.cols(); ++j)
+        for (Sparse::InnerIterator at(A, j); at; ++at) n = std::max(n, std::min<Index>(at.row(), j) + 1);
+    return n;
+}
+
+// These columns without what is null by the threshold only. Looked for among all their combinations, which takes a dense
+// matrix, where one is not quite null.
+Sparse without_angles(const Sparse& A, const Sparse& columns) {
+    const Sparse images = A * columns;
+    bool all = true;
+    for (Index k = 0; k < columns.cols() && all; ++k)
+        all = images.col(k).norm() <= nothing * columns.col(k).norm();
+    if (all) return columns;
+    MatrixXd V = Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ() *
+                 MatrixXd::Identity(columns.rows(), columns.cols());
+    const Eigen::JacobiSVD<MatrixXd> svd(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
+    V *= svd.matrixV();
+    std::vector<Index> kept;
+    for (Index k = 0; k < V.cols(); ++k) {
+        const double part = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
+        if (!(part > least_angle && part < largest_angle && (A * V.col(k)).norm() > nothing))
+            kept.push_back(k);
+    }
+    return MatrixXd(V(Eigen::all, kept)).sparseView();
+}
+
 Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
     const Index n = J.rows(), k = modes.count();
     if (k == 0) return J;
@@ -112,7 +148,10 @@ bool track(Linearisation& at) {
 NullSpaces null_spaces(const Sparse& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
     if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
-    const auto [right, left] = null_bases(A, null_threshold);
+    const auto [near_right, near_left] = null_bases(A, null_threshold);
+    const Sparse A_t = A.transpose();
+    Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
+    if (right.cols() != left.cols()) right = near_right, left = near_left;
     return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
 }
 

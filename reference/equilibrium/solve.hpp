@@ -16,7 +16,7 @@ struct Options {
     double tolerance =
         1e-12;  // on the largest scaled residual; a point is accepted on this, never on a solver's word
     int iteration_limit = 100;  // per solve
-    int halvings = 16;          // of the whole branch: the smallest step, before the branch is given up
+    int halvings = 40;          // of the whole branch: the smallest step, before the branch is given up
     bool account =
         false;  // every point carries its bound, and the stiffness that is left there (account.hpp)
 };

@@ -247,8 +247,8 @@ Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffn
     const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
     const double round_off = std::max({from.round_off, middle.round_off, to.round_off});
     const double least = std::min({l_0, l_m, l_1});
-    if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1)) || least < -round_off)
-        return Stability::lost;
+    if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1))) return Stability::uncertain;
+    if (least < -round_off) return Stability::lost;
     // A pair of eigenvalues that became negative: through zero together, or round it as a complex pair. Where they
     // went round, the least modulus is not small, and hardly changes over a step that is short enough.
     constexpr double hardly = 0.25;

@@ -1,10 +1,12 @@
 // Whatever happens to the text of a scene, the reader returns a scene of finite numbers or throws SceneError.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
 #include <random>
+#include <regex>
 
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
@@ -140,6 +142,56 @@ TEST(DamagedScene, WithBytesOverwritten) {
 }
 
 // What has a meaning in YAML or in a scene does more damage than any byte.
+// Prose, in which a number is none.
+bool contains_comment_or_name(const std::string& line) {
+    return line.find('#') != std::string::npos || line.starts_with("name:");
+}
+
+// Where a number stands: no letter, digit, point or sign touches it.
+std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
+    static const std::regex number(R"([-+]?\d+\.?\d*(e[-+]?\d+)?(?![\w.]))");
+    std::vector<std::pair<std::size_t, std::size_t>> places;
+    for (std::sregex_iterator at(text.begin(), text.end(), number), end; at != end; ++at) {
+        const auto first = static_cast<std::size_t>(at->position()),
+                   length = static_cast<std::size_t>(at->length());
+        const char before = first > 0 ? text[first - 1] : '\n';
+        const std::string line =
+            text.substr(text.rfind('\n', first) + 1, first - text.rfind('\n', first) - 1);
+        if (contains_comment_or_name(line)) continue;
+        if (before == ' ' || before == '[' || before == ',') places.emplace_back(first, length);
+    }
+    return places;
+}
+
+TEST(DamagedScene, WithAnyOneNumberThatIsNoneOrBeyondRangeIsRefusedAtItsLine) {
+    int refused = 0;
+    for (const std::string& text : sound_texts())
+        for (const auto& [first, length] : numbers_in(text))
+            for (const char* bad :
+                 {".nan", ".inf", "-.inf", "nan", "inf", "1e308", "-1e308", "1e999", "5e-324", "-1e-310"}) {
+                const auto line = 1 + std::ranges::count(text.substr(0, first), '\n');
+                try {
+                    parse_scene(text.substr(0, first) + bad + text.substr(first + length), "damaged.yaml");
+                    ADD_FAILURE() << bad << " in line " << line << " is taken:\n" << text;
+                } catch (const SceneError& error) {
+                    EXPECT_TRUE(
+                        std::string(error.what()).starts_with("damaged.yaml:" + std::to_string(line) + ": "))
+                        << bad << " in line " << line << ": " << error.what();
+                    ++refused;
+                }
+            }
+    EXPECT_GT(refused, 3000);
+}
+
+TEST(DamagedScene, WithAnyOneNumberAtTheEndOfItsRange) {
+    Tally tally;
+    for (const std::string& text : sound_texts())
+        for (const auto& [first, length] : numbers_in(text))
+            for (const char* extreme : {"0", "1e30", "-1e30", "1e-30", "-1e-30"})
+                read_damaged(text.substr(0, first) + extreme + text.substr(first + length), tally);
+    report(tally);
+}
+
 TEST(DamagedScene, WithTokensPutAnywhere) {
     const char* const tokens[] = {
         "{",    "}",    "[",     "]",    ",",   ":",    ": ",       "- ",          "? ", "#",     "&a ",

@@ -1,6 +1,7 @@
 // Right, or an honest outcome: every way in which a branch can fail, reached on purpose.
 #include <fmt/format.h>
 
+#include "models/branch.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
@@ -349,6 +350,22 @@ TEST(EquilibriumOutcome, ExtremeRatesGiveAnEquilibriumOrAnHonestOutcome) {
             }
         }
     ::testing::Test::RecordProperty("converged", fmt::format("{} of {}", converged, compared));
+}
+
+// The road carries the wheel up through the seat of its spring, past which nothing is as it was: however far it is to go.
+TEST(EquilibriumOutcome, AStraightWayEndsWhereASpringLosesItsLength) {
+    const Model all = compile(scene("tyre_on_road"));
+    const Branch way = ways(all.branches[0]).back();
+    const Model model = on_branch(all, way);
+    for (const double to : {0.6, 60., 1e6}) {
+        const std::vector<double> points = {0, to};
+        const auto path = solve(model, way, points);
+        EXPECT_NE(path.outcome, Outcome::converged) << to;
+        EXPECT_EQ(path.points.size(), 1u) << path.detail;
+    }
+    const Branch down = ways(all.branches[0]).front();
+    const std::vector<double> points = {0, -1e3};
+    EXPECT_EQ(solve(on_branch(all, down), down, points).outcome, Outcome::converged);
 }
 
 TEST(EquilibriumOutcome, NothingToSolveIsSolved) {

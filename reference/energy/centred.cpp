@@ -1,0 +1,33 @@
+#include "reference/energy/centred.hpp"
+
+namespace elastocheck::reference::energy {
+
+using Eigen::Vector3d;
+
+Vector3d centre_of(const Model& model) {
+    Vector3d c = Vector3d::Zero();
+    for (const Body& body : model.bodies) c += body.design.r / static_cast<double>(model.bodies.size());
+    return c.allFinite() ? c : Vector3d::Zero();
+}
+
+Model about(const Model& model, const Vector3d& c) {
+    Model here = model;
+    for (Body& body : here.bodies) body.design.r -= c;
+    const auto move = [&](auto& at) {
+        if (at.body == ground) at.s_local -= c;
+    };
+    const auto move_both = [&](auto& kind) {
+        if constexpr (requires { kind.i.s_local; }) move(kind.i), move(kind.j);
+    };
+    for (Constraint& constraint : here.constraints) std::visit(move_both, constraint.kind);
+    for (Elastic& elastic : here.elastics) std::visit(move_both, elastic.kind);
+    for (ModelJoint& joint : here.joints) move(joint.at);
+    return here;
+}
+
+std::vector<Pose> moved_by(std::vector<Pose> poses, const Vector3d& r) {
+    for (Pose& pose : poses) pose.r += r;
+    return poses;
+}
+
+}  // namespace elastocheck::reference::energy
