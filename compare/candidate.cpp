@@ -438,7 +438,11 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         return worst;
     };
     for (const auto& left : result.leftovers)
-        if (left.why_not.empty() && !(state_error(left) <= tolerance.mm)) within = false;
+        if (const double missed = state_error(left); left.why_not.empty() && !(missed <= tolerance.mm)) {
+            within = false;
+            result.said.push_back(fmt::format("its states miss the constraints of branch '{}' by {:.2g} mm",
+                                              left.branch, missed));
+        }
 
     if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
     if (judged == 0)

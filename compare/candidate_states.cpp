@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "compare/candidate.hpp"
+#include "compare/characteristics.hpp"
 #include "compare/elements.hpp"
 #include "reference/equilibrium/solve.hpp"
 
@@ -35,6 +37,7 @@ const Way& way_to(const std::vector<Way>& ways, double load) {
 Comparison outline(const Model& model) {
     Comparison result;
     result.channels = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(result.channels));
     for (const auto& branch : model.branches) {
         BranchComparison& of = result.branches.emplace_back();
         of.branch = branch.name;
