@@ -242,9 +242,10 @@ bool energy_bears_witness(const BranchComparison& branch) {
 }
 
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
-                         const BranchComparison& branch) {
+                         const BranchComparison& branch, Of of) {
     Objections objections;
     for (const auto& run : branch.runs) {
+        if (run.leg == Leg::recursive && of == Of::references) continue;
         if (run.leg == Leg::energy && branch.second != Leg::energy)
             continue;  // is not asked, and need not be
         if (run.outcome != Outcome::converged)

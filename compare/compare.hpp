@@ -100,9 +100,11 @@ struct BranchComparison {
 bool energy_bears_witness(const BranchComparison& branch);
 
 // Why the references do not count as one truth on a branch whose runs and readings are there; `asked` is the
-// branch of the model.
+// branch of the model. Of all legs: or the recursion did not get through, which objects to a verdict on it, and to none
+// on somebody else.
+enum class Of { all_legs, references };
 Objections disagreements(const Model& model, const std::vector<Channel>& channels, const Branch& asked,
-                         const BranchComparison& branch);
+                         const BranchComparison& branch, Of of = Of::all_legs);
 
 struct Comparison {
     std::vector<Channel> channels;  // of the model, then the totals of what redundant joints share

@@ -75,6 +75,13 @@ void raise(const std::vector<Channel>& channels, std::size_t c, double differenc
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 Accuracy worse(const Accuracy& a, const Accuracy& b) { return {worse(a.mm, b.mm), worse(a.deg, b.deg)}; }
 
+Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
+                       const std::vector<double>& at) {
+    Tally tally;
+    for (std::size_t k = 0; k < a.size(); ++k) tally.add(b[k] - a[k], at[k]);
+    return tally.result();
+}
+
 Reading at_equal_parameter(const Curve& a, const Curve& b) {
     if (a.values.empty() || b.values.empty()) return nothing("a curve is empty");
     std::vector<Tally> tallies(a.values.front().size());

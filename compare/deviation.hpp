@@ -30,6 +30,10 @@ struct Reading {
     int outside = 0;                  // points of a that b does not reach (equal abscissa)
 };
 
+// Of b from a, number by number; `at` says where. Its `range` is left to who knows the whole of a.
+Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
+                       const std::vector<double>& at);
+
 // Points with the same parameter. Values that are not finite make the deviation NaN, never zero.
 Reading at_equal_parameter(const Curve& a, const Curve& b);
 

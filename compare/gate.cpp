@@ -79,7 +79,7 @@ bool all_finite(const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
 }
 
-const Tolerance* tolerance_of(const Tolerances& tolerances, const Series& s) {
+const Allowance* tolerance_of(const Tolerances& tolerances, const Series& s) {
     auto found = tolerances.find(s.channel);
     if (found == tolerances.end() && is_characteristic(s.quantity)) found = tolerances.find("characteristic");
     if (found == tolerances.end() && is_compliance(s.quantity)) found = tolerances.find("compliance");
@@ -88,13 +88,13 @@ const Tolerance* tolerance_of(const Tolerances& tolerances, const Series& s) {
 }
 
 bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
-bool sane(const Tolerance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
+bool sane(const Allowance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
 
 // By how much a number of the series has to move until an engineer notices: as the baseline says, else as usual.
 double noticeable(const Baseline& baseline, const Series& s) {
     static const Tolerances usual = default_tolerances(ToleranceClass::physical);
     const auto own = baseline.tolerances.find(ToleranceClass::physical);
-    const Tolerance* t = own == baseline.tolerances.end() ? nullptr : tolerance_of(own->second, s);
+    const Allowance* t = own == baseline.tolerances.end() ? nullptr : tolerance_of(own->second, s);
     if (!sane(t)) t = tolerance_of(usual, s);
     return t == nullptr ? 0 : t->atol + t->rtol * scale(baseline.accepted, s);
 }
@@ -128,7 +128,7 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     if (is_characteristic(was.quantity) &&
         (branch == nullptr || branch->a.empty() || landmarks(branch->a).size() != was.values.size()))
         return cannot("has not as many numbers as its branch has landmarks");
-    const Tolerance* tolerance = tolerance_of(tolerances, was);
+    const Allowance* tolerance = tolerance_of(tolerances, was);
     if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
 

@@ -81,12 +81,12 @@ Measurement measure(const Model& model, const Comparison& comparison);
 // |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; the largest entry of a characteristic or of a
 // row of compliances; of the equilibrium leg's curve
 // for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
-struct Tolerance {
+struct Allowance {
     double atol = 0, rtol = 0;
 };
 
 // By channel where it is listed, else "characteristic", "compliance", else by unit.
-using Tolerances = std::map<std::string, Tolerance>;
+using Tolerances = std::map<std::string, Allowance>;
 Tolerances default_tolerances(ToleranceClass kind);
 
 // An absolute bound on a deviation, in the channel's unit, over every branch: it gates accuracy, not change.

@@ -142,32 +142,10 @@ std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
     return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
 }
 
-// What is studied: positions and angles, no reaction.
-std::vector<Channel> motion(const Model& model) {
-    auto list = channels(model);
-    std::erase_if(list, [](const Channel& channel) { return !channel.kinematic(); });
-    return list;
-}
-
 Walked walk_with_steps(const Model& model, const std::vector<Channel>& channels, Way way, int steps,
                        const recursive::Method& method) {
     way.branch.steps = steps;
     return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
-}
-
-// The ways of a branch as the references walk them, each with its share of every number of steps.
-std::vector<std::pair<Way, std::vector<int>>> ways_with_steps(const Model& model, const Branch& branch,
-                                                              const std::vector<int>& steps) {
-    std::vector<std::pair<Way, std::vector<int>>> result;
-    for (const auto& way : ways_of(model, branch, reference_points))
-        result.emplace_back(way, std::vector<int>{});
-    for (const int N : steps) {
-        Branch whole = branch;
-        whole.steps = N;
-        const auto shares = ways(whole);
-        for (std::size_t w = 0; w < shares.size(); ++w) result[w].second.push_back(shares[w].steps);
-    }
-    return result;
 }
 
 // All levels of one method on one way.
@@ -196,22 +174,61 @@ MethodStudy study_method(const Model& model, const std::vector<Channel>& channel
     m.constraint_order = order_of(Phi, 1e-12);
     if (!m.not_studied.empty()) return m;
 
-    std::vector<const Curve*> curves{&references.truth, &references.other};
-    for (const auto& level : levels) curves.push_back(&level);
-    const double formal = std::max(method.formal_order, 1.0);  // to its own limit
-    const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
-        const Span span = common_span(by, curves);
-        for (const std::size_t c : main_channels(channels))
-            reading.push_back(study_channel(steps, levels, references, c, formal, by, span));
-    };
-    read(parameter, m.equal_parameter);
-    const Abscissa by = common_abscissa(channels, curves);
-    m.no_abscissa = by.why_not;
-    if (by.why_not.empty()) read(by.channel, m.equal_abscissa);
+    study_levels(m, channels, main_channels(channels), steps, levels, references,
+                 std::max(method.formal_order, 1.0));  // to its own limit
     return m;
 }
 
 }  // namespace
+
+std::vector<Channel> motion(const Model& model) {
+    auto list = channels(model);
+    std::erase_if(list, [](const Channel& channel) { return !channel.kinematic(); });
+    return list;
+}
+
+std::vector<std::pair<Way, std::vector<int>>> ways_with_steps(const Model& model, const Branch& branch,
+                                                              const std::vector<int>& steps) {
+    std::vector<std::pair<Way, std::vector<int>>> result;
+    for (const auto& way : ways_of(model, branch, reference_points))
+        result.emplace_back(way, std::vector<int>{});
+    for (const int N : steps) {
+        Branch whole = branch;
+        whole.steps = N;
+        const auto shares = ways(whole);
+        for (std::size_t w = 0; w < shares.size(); ++w) result[w].second.push_back(shares[w].steps);
+    }
+    return result;
+}
+
+void study_levels(MethodStudy& study, const std::vector<Channel>& all,
+                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
+                  const std::vector<Curve>& levels, const References& references, double formal_order) {
+    std::vector<const Curve*> curves{&references.truth, &references.other};
+    for (const auto& level : levels) curves.push_back(&level);
+    const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
+        const Span span = common_span(by, curves);
+        for (const std::size_t c : studied)
+            reading.push_back(study_channel(steps, levels, references, c, formal_order, by, span));
+    };
+    read(parameter, study.equal_parameter);
+    const Abscissa by = common_abscissa(all, curves);
+    study.no_abscissa = by.why_not;
+    if (by.why_not.empty()) read(by.channel, study.equal_abscissa);
+}
+
+std::vector<std::string> unfit(const References& known, const std::string& way) {
+    std::vector<std::string> reasons;
+    for (const auto& why : known.failures) reasons.push_back(fmt::format("{}: {}", way, why));
+    if (!reasons.empty()) return reasons;
+    const Bounds bounds = bounds_of({}, known.scale);
+    if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
+        reasons.push_back(fmt::format(
+            "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} deg are "
+            "allowed",
+            way, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
+    return reasons;
+}
 
 bool Study::conclusive() const {
     if (!inconclusive.empty()) return false;
@@ -234,16 +251,8 @@ Study study(const Model& model, const StudyOptions& options) {
         for (const auto& [way, steps] : ways_with_steps(model, branch, options.steps)) {
             if (options.progress) options.progress(fmt::format("{}: references", way.name));
             const References known = references(model, all, way.branch, {way});
-            for (const auto& why : known.failures)
-                result.inconclusive.push_back(fmt::format("{}: {}", way.name, why));
+            std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
             if (!known.failures.empty()) continue;
-            const Bounds bounds = bounds_of({}, known.scale);
-            if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
-                result.inconclusive.push_back(fmt::format(
-                    "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} deg "
-                    "are "
-                    "allowed",
-                    way.name, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
             if (std::ranges::adjacent_find(steps, std::greater_equal<>{}) != steps.end()) {
                 result.inconclusive.push_back(
                     fmt::format("{}: its share of the steps is too small for levels", way.name));

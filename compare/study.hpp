@@ -17,6 +17,7 @@
 
 #include "compare/channels.hpp"
 #include "compare/convergence.hpp"
+#include "compare/curve.hpp"
 #include "models/equilibrium_path.hpp"
 #include "models/model.hpp"
 #include "recursive/method.hpp"
@@ -73,6 +74,24 @@ struct Study {
 
 // Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
 Study study(const Model& model, const StudyOptions& options = {});
+
+// One method on one way whose levels are walked already, by whomever: curves of `all` channels, of which the main ones that
+// `studied` names (positions in `all`) are studied, in the order of `steps`. Formal order: NaN if unknown.
+struct References;
+void study_levels(MethodStudy& study, const std::vector<Channel>& all,
+                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
+                  const std::vector<Curve>& levels, const References& references, double formal_order);
+
+// Why the references do not do for a study: they failed, or are further apart than is allowed.
+std::vector<std::string> unfit(const References& references, const std::string& way);
+
+// The ways of a branch as the references of a study walk them, each with its share of every number of steps.
+struct Way;
+std::vector<std::pair<Way, std::vector<int>>> ways_with_steps(const Model& model, const Branch& branch,
+                                                              const std::vector<int>& steps);
+
+// The channels that are studied: positions and angles, no reaction.
+std::vector<Channel> motion(const Model& model);
 
 // ---- What the formulation gap is made of.
 //

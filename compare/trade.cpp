@@ -237,12 +237,14 @@ void recommend(const Model& model, const std::vector<Channel>& channels, Trade& 
 
 }  // namespace
 
-Tolerance parse_tolerance(std::string_view text) {
+Tolerance parse_tolerance(std::string_view text, Asks asks) {
+    const bool forces = asks == Asks::forces_too;
     const auto refuse = [&](std::string_view why) {
-        throw std::invalid_argument(
-            fmt::format("tolerance '{}': {}; allowed: a length in mm, an angle in deg or both, each above 0, "
-                        "such as 0.01mm,0.001deg",
-                        text, why));
+        throw std::invalid_argument(fmt::format(
+            "tolerance '{}': {}; allowed: {}, each above 0, such as 0.01mm,0.001deg{}", text, why,
+            forces ? "a length in mm, an angle in deg, a force in N, a moment in Nm, or some of these"
+                   : "a length in mm, an angle in deg or both",
+            forces ? ",1N" : ""));
     };
     const auto trim = [](std::string_view word) {
         while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
@@ -250,7 +252,8 @@ Tolerance parse_tolerance(std::string_view text) {
         return word;
     };
     Tolerance result;
-    bool mm = false, deg = false;
+    const std::pair<std::string_view, double*> known[] = {
+        {"mm", &result.mm}, {"deg", &result.deg}, {"N", &result.newton}, {"Nm", &result.newton_metre}};
     for (std::string_view rest = text;;) {
         const auto comma = rest.find(',');
         const std::string_view word = trim(rest.substr(0, comma));
@@ -262,13 +265,12 @@ Tolerance parse_tolerance(std::string_view text) {
         if (error != std::errc{} || !std::isfinite(value) || !(value > 0))
             refuse(fmt::format("'{}' is not a finite number above 0", word));
         const std::string_view unit = trim(word.substr(static_cast<std::size_t>(end - word.data())));
-        if (unit != "mm" && unit != "deg")
+        const auto* const of = std::ranges::find(known, unit, [](const auto& entry) { return entry.first; });
+        if (of >= known + (forces ? 4 : 2))
             refuse(unit.empty() ? fmt::format("'{}' has no unit", word)
                                 : fmt::format("'{}' is not a unit of it", unit));
-        bool& given = unit == "mm" ? mm : deg;
-        if (given) refuse(fmt::format("{} is given twice", unit));
-        given = true;
-        (unit == "mm" ? result.mm : result.deg) = value;
+        if (std::isfinite(*of->second)) refuse(fmt::format("{} is given twice", unit));
+        *of->second = value;
         if (comma == rest.npos) return result;
         rest.remove_prefix(comma + 1);
     }

@@ -35,11 +35,15 @@ namespace elastocheck::compare {
 struct Tolerance {
     double mm = std::numeric_limits<double>::infinity();
     double deg = std::numeric_limits<double>::infinity();
+    // Of forces and moments, where somebody judges these.
+    double newton = std::numeric_limits<double>::infinity();
+    double newton_metre = std::numeric_limits<double>::infinity();
 };
 
-// "0.01mm,0.001deg": a length, an angle or both, in any order.
-// Throws std::invalid_argument that says what is allowed.
-Tolerance parse_tolerance(std::string_view text);
+// "0.01mm,0.001deg": a length, an angle or both, in any order; where forces are judged as well a force (N) and a moment
+// (Nm). Throws std::invalid_argument that says what is allowed.
+enum class Asks { motion, forces_too };
+Tolerance parse_tolerance(std::string_view text, Asks asks = Asks::motion);
 
 // max(mm / tolerance, deg / tolerance): up to 1 is good enough. NaN if either is.
 double share_of(const Tolerance& tolerance, const Accuracy& error);

@@ -44,4 +44,10 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
 // `solve` does.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
+// The reactions, one a joint, that leave the least of the balances where the bodies are at these poses; of smallest size
+// where joints share a load as they like. Whoever finds poses alone is judged with them. Throws as `solve` does, and
+// unless there is one pose a body; NaN where a pose or a force is none.
+std::vector<Wrench> reactions_at(const Model& model, const Branch& branch, double a,
+                                 const std::vector<Pose>& poses);
+
 }  // namespace elastocheck::reference::equilibrium

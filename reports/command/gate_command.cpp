@@ -13,6 +13,7 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reports/command/arguments.hpp"
+#include "reports/command/candidate_options.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
@@ -20,6 +21,7 @@
 #include "reports/files/files.hpp"
 #include "reports/gate/baseline.hpp"
 #include "reports/gate/gate_report.hpp"
+#include "reports/tables/candidate_tables.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/terminal.hpp"
 
@@ -32,6 +34,7 @@ using compare::ToleranceClass;
 struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
+    CandidateRequest candidate;  // somebody else's solver, judged on every scene
     std::string folder, junit, summary, kind, from, reason;
     bool accept = false, as_json = false;
     std::function<void(std::string_view)> progress;
@@ -171,6 +174,40 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
                                       was.input_hash, is.input_hash, what));
 }
 
+// By the default tolerance, whatever the baseline says: a candidate is right or not, and has nothing accepted.
+void judge_candidate(const Task& task, const GateOptions& options, GatedScene& scene) {
+    const LoadedScene loaded = load_scene(task.scene, options.settings);
+    compare::Options how;
+    how.prove = false;
+    how.progress = options.progress;
+    const auto comparison = compare::compare(loaded.model, how);
+    for (const auto& output : outputs_of(options.candidate, task.scene, {steps_of(loaded.model)})) {
+        const auto judgement =
+            judged(output, options.candidate, loaded, comparison, compare::default_tolerance, false);
+        scene.notes.push_back(sentence(judgement, comparison));
+        scene.verdict.compared += judgement.compared;
+        for (const auto& reason : judgement.reasons)
+            scene.verdict.reasons.push_back(fmt::format("candidate '{}': {}", judgement.name, reason));
+        if (judgement.verdict != compare::Grade::fail) continue;
+        std::vector<compare::Offence> offences;
+        for (const auto& worst : judgement.worst)
+            if (!(worst.max <= worst.tolerance))
+                offences.push_back({.branch = worst.branch,
+                                    .quantity = worst.kind == compare::ReadingKind::equal_parameter
+                                                    ? compare::Quantity::deviation_at_equal_parameter
+                                                    : compare::Quantity::deviation_at_equal_abscissa,
+                                    .channel = fmt::format("{} of '{}'", worst.channel, judgement.name),
+                                    .unit = symbol(worst.unit),
+                                    .of_limit = true,
+                                    .was = worst.tolerance,
+                                    .is = worst.max});
+        if (offences.empty())
+            scene.verdict.reasons.push_back(
+                fmt::format("candidate '{}': its states miss the constraints", judgement.name));
+        scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(), offences.end());
+    }
+}
+
 GatedScene gate_scene(const Task& task, const GateOptions& options) {
     GatedScene scene = unjudged(task);
     if (!task.no_scene.empty()) {
@@ -180,6 +217,7 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
     try {
         if (const auto was = accepted(task, scene)) {
             judge(*was, measured(task, options), options.kind, scene);
+            if (options.candidate.wanted()) judge_candidate(task, options, scene);
             // A baseline made in the same run would find itself right.
             if (says_yes("CI"))
                 if (const std::string why = not_committed(task.baseline); !why.empty())
@@ -195,6 +233,9 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
         scene.bad_input = true;
         scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));
     } catch (const SceneError& error) {
+        scene.bad_input = true;
+        scene.verdict.reasons.emplace_back(error.what());
+    } catch (const SheetError& error) {  // of --candidate
         scene.bad_input = true;
         scene.verdict.reasons.emplace_back(error.what());
     } catch (const BaselineError& error) {  // of --from
@@ -288,6 +329,12 @@ int accept(const GateOptions& options) {
 }
 
 int gate(const GateOptions& options) {
+    check(options.candidate, options.settings);
+    if (options.candidate.wanted() && options.accept)
+        throw std::invalid_argument("--candidate: not with --accept: nothing of a candidate is kept");
+    if (!options.candidate.files.empty() && options.scenes.size() != 1)
+        throw std::invalid_argument(
+            "--candidate: a file is of one scene; name it, or give --candidate-command");
     if (options.accept) return accept(options);
     const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
@@ -345,6 +392,7 @@ GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progre
         ->add_option("--from", options->from,
                      "judge this measurement (a file like a baseline); nothing is solved")
         ->check(a_file("*.json"));
+    add_candidate_options(*command, options->candidate);
     add_json(*command, options->as_json);
     command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
     command->add_option("--reason", options->reason, "why, in words; with --accept");

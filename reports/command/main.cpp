@@ -22,6 +22,7 @@
 #include "reports/command/gate_command.hpp"
 #include "reports/command/grammar.hpp"
 #include "reports/command/import_command.hpp"
+#include "reports/command/judge_command.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
 #include "reports/command/manual.hpp"
@@ -179,6 +180,10 @@ int run(int argc, char** argv) {
                      "series: write the derivatives of travel and outputs to this CSV file")
         ->check(a_file("*.csv"));
     solve_command
+        ->add_option("--states", solve_request.states,
+                     "write the poses of the bodies as well, as JSON lines, to this file")
+        ->check(a_file("*.jsonl"));
+    solve_command
         ->add_option("--channels", solve_request.channels,
                      "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters")
         ->delimiter(',');
@@ -216,6 +221,16 @@ int run(int argc, char** argv) {
     trade_command->add_option("-o,--output", output, "folder for result.json, trade.csv and precision.csv")
         ->check(a_folder());
 
+    CandidateRequest candidate;  // of compare, converge and trade
+    for (auto* command : {compare_command, converge_command, trade_command})
+        add_candidate_options(*command, candidate);
+
+    JudgeRequest judge_request;
+    auto* judge_command = add_judge_command(app, judge_request);
+    judge_command->add_option("-o,--output", output, "folder for result.json and curves.csv")
+        ->check(a_folder());
+    add_json(*judge_command, as_json);
+
     ReportRequest request;
     const auto* report_command = add_report_command(app, request);
 
@@ -248,6 +263,7 @@ int run(int argc, char** argv) {
         const Delivery delivery{.folder = output, .as_json = as_json, .command = command};
         const Detail detail = keep_all ? Detail::everything : Detail::required;
         if (*equilibria_command) return equilibria(equilibria_request, delivery, progress);
+        if (*judge_command) return judge(judge_request, delivery);
         if (*stress_command) return stress(stress_request, delivery, progress);
         if (*inspect_command) return inspect(scene, settings, detail, verbose, delivery);
         if (*solve_command || *compare_command) {
@@ -259,7 +275,8 @@ int run(int argc, char** argv) {
             if (!solve_request.rates.empty() && !std::holds_alternative<recursive::Series>(how.method.kind))
                 throw std::invalid_argument("--rates: only with --method series");
             if (*compare_command)
-                return compare_legs(scene, settings, {how, every, detail, within, formulations}, delivery);
+                return compare_legs(scene, settings, {how, every, detail, within, candidate, formulations},
+                                    delivery);
             solve_request.gait = {.leg = reference ? *leg : compare::Leg::recursive,
                                   .recursion = how,
                                   .every = every,
@@ -269,8 +286,8 @@ int run(int argc, char** argv) {
         }
         if (*gate_command.parsed) return gate_command.run();
         if (*certify_command.parsed) return certify_command.run(command);
-        if (*converge_command) return converge(scene, settings, rungs, levels, delivery);
-        return trade(scene, settings, tolerance, delivery);
+        if (*converge_command) return converge(scene, settings, rungs, levels, candidate, delivery);
+        return trade(scene, settings, tolerance, candidate, delivery);
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {

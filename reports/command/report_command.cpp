@@ -22,6 +22,7 @@
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
+#include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/field.hpp"
 #include "reports/document/json.hpp"
@@ -30,6 +31,7 @@
 #include "reports/files/folder.hpp"
 #include "reports/page/gnuplot.hpp"
 #include "reports/page/report.hpp"
+#include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
@@ -115,6 +117,16 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
     // A million steps, as `elastocheck trade` takes them, show more of round-off and take half a minute.
     document["precision"] = precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
+    if (request.candidate.wanted()) {
+        document["candidates"] = json::array();
+        const auto tolerance = compare::parse_tolerance(request.tolerance);
+        for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
+            const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
+                                          request.tolerance != ReportRequest{}.tolerance);
+            document["candidates"].push_back(
+                candidate_json(judgement, comparison, sentence(judgement, comparison)));
+        }
+    }
     add_verdict(document, comparison.compared, reasons);
     auto judgement = compare::assess(model, comparison, trade_options.tolerance,
                                      request.tolerance != ReportRequest{}.tolerance);
@@ -212,6 +224,7 @@ CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
                         "column of --measured that says which branch a point belongs to (default: branch)");
     command->add_option("--case", request.cases,
                         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated");
+    add_candidate_options(*command, request.candidate);
     command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
         ->check(one_of({"svg", "pdf"}));
     command->add_flag(
@@ -227,6 +240,9 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         throw std::invalid_argument("report: needs scene files or --from a result.json, one of the two");
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
+    if (request.candidate.wanted() && request.scenes.size() != 1)
+        throw std::invalid_argument("report: --candidate belongs to one scene; give one");
+    check(request.candidate, request.settings);
     const auto start = std::chrono::steady_clock::now();
     // What can be wrong is said before the work, not after it.
     if (request.open && request.archive)
@@ -269,6 +285,13 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
                      {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
+    for (const auto& scene : result["scenes"])  // a candidate's verdict is the page's, as of `judge`
+        if (scene.contains("candidates"))
+            for (const auto& candidate : scene["candidates"]) {
+                complain("{}\n", candidate["sentence"].get<std::string>());
+                if (candidate["verdict"] == "fail") code = limit_broken;
+                if (candidate["verdict"] == "not judged" && code == fine) code = could_not_judge;
+            }
     for (const auto& answer : answers)
         if (!answer.conclusive) {
             code = could_not_judge;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reports/command/arguments.hpp"
+#include "reports/command/candidate_options.hpp"
 
 namespace elastocheck::reports {
 
@@ -19,6 +20,7 @@ struct ReportRequest {
     std::string measured;                  // CSV
     std::string branch_column = "branch";  // of it
     std::vector<std::string> cases;  // "THEIRS=OURS": names in that column, and the branches that they mean
+    CandidateRequest candidate;      // somebody else's solver, of one scene
     std::string alarms;              // JSON, what `./dev mutate` found
     std::string stress;              // JSON, what `elastocheck stress` found
     std::string tolerance = "0.01mm,0.001deg";

@@ -17,6 +17,7 @@
 #include "recursive/series/path.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/tables/csv.hpp"
@@ -113,6 +114,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     const auto& [leg, how, refine, every, account] = request.gait;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
+    if (!request.states.empty()) check_may_write(request.states, states_file);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
     const auto channels = asked_for(model, request.channels);
@@ -125,6 +127,8 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
 
     std::optional<FileToBe> csv;
     if (!delivery.folder.empty()) csv.emplace(delivery.folder, curves_file);
+    std::optional<FileToBe> states;
+    if (!request.states.empty()) states.emplace(request.states, states_file);
     const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : delivery.say(lines); };
     std::vector<compare::Walked> kept;  // for the document alone
     write(curves_header(channels));
@@ -146,6 +150,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             ways, gait,
             [&](const Equilibrium& state) {
                 if (gait.account) add_account(state, accounts);
+                if (states) states->add(state_line(model, branch.name, state));
                 return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },
             [&](const compare::Row& row) {
@@ -166,6 +171,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         code = could_not_judge;
     }
     if (csv) csv->finish();
+    if (states) states->finish();
     if (delivery.as_json) {
         nlohmann::ordered_json part =
             scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));

@@ -16,6 +16,7 @@ struct SolveRequest {
     Detail detail = Detail::required;
     std::vector<std::string> channels;  // names, or patterns with *; none: all
     std::string rates;                  // CSV of the derivatives, by the series; empty: none
+    std::string states = {};            // JSON lines of the poses, as a candidate writes them; empty: none
 };
 
 // Each row is written as its point is found, but for the way that comes reversed. What is wrong with the request is said

@@ -16,8 +16,11 @@
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
+#include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
+#include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/formulation_tables.hpp"
 #include "reports/tables/inspection.hpp"
@@ -49,6 +52,67 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
     return methods;
 }
 
+// What a candidate's accuracy costs: its command at some numbers of steps. A run that could not be judged says so in its row.
+compare::Table price_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
+                        const compare::Tolerance& tolerance) {
+    std::vector<CandidateRun> runs;
+    compare::Comparison comparison;
+    for (const int steps : {10, 40, 160, 640}) {
+        compare::Options options;
+        options.recursion.steps = steps;
+        options.prove = false;
+        options.progress = progress;
+        comparison = compare::compare(loaded.model, options);
+        double leg = 0;
+        for (const auto& branch : comparison.branches)
+            leg += branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].seconds;
+        for (const auto& output : outputs_of(request, file, {steps}))
+            runs.push_back({steps, output.seconds, output.cpu, leg,
+                            judged(output, request, loaded, comparison, tolerance, true)});
+    }
+    progress("");
+    return candidate_trade_table(runs, comparison);
+}
+
+// The levels of a candidate: files that say how many steps they have, or a run of its command for each number.
+compare::Study study_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
+                        const std::vector<int>& steps) {
+    for (const auto& text : request.files)
+        if (text.find('=') == text.npos)
+            throw std::invalid_argument(
+                fmt::format("--candidate {}: how many steps it has is missing; allowed: 75={}", text, text));
+    if (!request.files.empty() && !request.command.empty())
+        throw std::invalid_argument("converge: --candidate or --candidate-command, one of the two");
+    const compare::Comparison outline = compare::outline(loaded.model);
+    const ColumnMap map = request.map.empty()
+                              ? ColumnMap{}
+                              : read_column_map(read_whole(request.map, largest_baseline), request.map);
+    std::vector<compare::CandidateLevel> levels;
+    std::string name;
+    auto outputs = outputs_of(request, file, steps);
+    std::ranges::stable_sort(outputs, {}, &CandidateOutput::steps);
+    compare::Study failed;
+    for (const auto& output : outputs) {
+        if (name.empty()) name = output.name;
+        const auto refuse = [&](const std::string& why) {
+            failed.inconclusive.push_back(fmt::format("{}: {}", output.file, why));
+        };
+        try {
+            if (output.failed.empty())
+                levels.push_back({output.steps, read_candidate(output.content, output.file, output.name,
+                                                               loaded.scene, loaded.model, outline, map)
+                                                    .points});
+            else
+                refuse(output.failed);
+        } catch (const SheetError& error) {
+            if (!output.of_command) throw;
+            refuse(error.what());
+        }
+    }
+    if (!failed.inconclusive.empty()) return failed;
+    return compare::study_candidate(loaded.model, name, levels, progress);
+}
+
 }  // namespace
 
 int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose,
@@ -71,6 +135,7 @@ int inspect(const std::string& file, const Settings& settings, Detail detail, bo
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const Delivery& delivery) {
     (void)compare::parse_tolerance(request.within);  // what is wrong with it is said before the work
+    check(request.candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
@@ -90,8 +155,16 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     progress("");
     delivery.say(tables(model, comparison));
     if (study) delivery.say(formulation_text(*study, comparison));
-    const auto judgement = compare::assess(model, comparison, compare::parse_tolerance(request.within),
-                                           request.within != CompareRequest{}.within);
+    const auto tolerance = compare::parse_tolerance(request.within);
+    const bool asked = request.within != CompareRequest{}.within;
+    const auto judgement = compare::assess(model, comparison, tolerance, asked);
+    std::vector<compare::CandidateJudgement> candidates;
+    for (const auto& output :
+         outputs_of(request.candidate, file,
+                    {request.recursion.steps > 0 ? request.recursion.steps : steps_of(model)})) {
+        candidates.push_back(judged(output, request.candidate, loaded, comparison, tolerance, asked));
+        delivery.say("\n" + candidate_text(candidates.back(), comparison));
+    }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
@@ -104,14 +177,24 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         }
         add_verdict(part, comparison.compared, reasons);
         part["judgement"] = judgement_json(judgement);
+        for (const auto& candidate : candidates)
+            part["candidates"].push_back(
+                candidate_json(candidate, comparison, sentence(candidate, comparison)));
         deliver(delivery, std::move(part), std::move(files));
     }
     delivery.say(sentence(judgement) + "\n");
-    return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
+    bool judged_all =
+        true;  // that it differs is what `compare` is asked, as of the recursion; `judge` makes it an exit code
+    for (const auto& candidate : candidates) {
+        delivery.say(sentence(candidate, comparison) + "\n");
+        judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
+    }
+    return judged_all && comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 
 int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names,
-             const std::vector<int>& steps, const Delivery& delivery) {
+             const std::vector<int>& steps, const CandidateRequest& candidate, const Delivery& delivery) {
+    check(candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
@@ -120,6 +203,8 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     options.methods = methods_named(names);
     if (!steps.empty()) options.steps = steps;
     options.progress = progress;
+    std::optional<compare::Study> of_candidate;
+    if (candidate.wanted()) of_candidate = study_of(candidate, file, loaded, options.steps);
     compare::Study study;
     std::vector<compare::BranchAttribution> attribution;
     if (!options.methods.empty()) {
@@ -132,8 +217,10 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
     progress("");
     if (!options.methods.empty()) delivery.say(study_text(model, study, attribution));
     delivery.say(order_text(order_table(orders)));
-    const bool conclusive =
-        (options.methods.empty() || study.conclusive()) && (orders.empty() || compare::conclusive(orders));
+    if (of_candidate) delivery.say("\nthe candidate: " + study_text(model, *of_candidate, {}));
+    const bool conclusive = (!of_candidate || of_candidate->conclusive()) &&
+                            (options.methods.empty() || study.conclusive()) &&
+                            (orders.empty() || compare::conclusive(orders));
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         std::vector<NamedContent> files;
@@ -148,6 +235,12 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
             files.push_back({"orders.csv", csv(order_table(orders))});
         }
         auto reasons = study.inconclusive;
+        if (of_candidate) {
+            part["candidate_convergence"] = study_json(*of_candidate, {});
+            files.push_back({"candidate_convergence.csv", csv(study_table(*of_candidate))});
+            files.push_back({"candidate_step_errors.csv", csv(step_table(*of_candidate))});
+            std::ranges::copy(of_candidate->inconclusive, std::back_inserter(reasons));
+        }
         if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
         add_verdict(part, 0, reasons);
         deliver(delivery, std::move(part), std::move(files));
@@ -156,7 +249,11 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
 }
 
 int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
-          const Delivery& delivery) {
+          const CandidateRequest& candidate, const Delivery& delivery) {
+    check(candidate, settings);
+    if (!candidate.files.empty())
+        throw std::invalid_argument(
+            "trade: a --candidate file says nothing of time; give --candidate-command");
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
@@ -167,10 +264,16 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
     progress("");
     delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
+    std::optional<compare::Table> of_candidate;
+    if (candidate.wanted()) {
+        of_candidate = price_of(candidate, file, loaded, options.tolerance);
+        delivery.say("\nthe candidate\n" + candidate_trade_text(*of_candidate));
+    }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
+        if (of_candidate) part["candidate_trade"] = table_json(*of_candidate);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
         deliver(delivery, std::move(part),

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -19,11 +18,6 @@ using json = nlohmann::ordered_json;
 using compare::Leg;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-[[noreturn]] void fail(const std::string& file, int line, const std::string& what) {
-    throw MeasurementError(line > 0 ? fmt::format("{}:{}: {}", file, line, what)
-                                    : fmt::format("{}: {}", file, what));
-}
 
 struct Column {
     std::string name;
@@ -45,35 +39,6 @@ struct Points {
         return nullptr;
     }
 };
-
-std::string_view trimmed(std::string_view word) {
-    while (!word.empty() && (word.front() == ' ' || word.front() == '\t')) word.remove_prefix(1);
-    while (!word.empty() && (word.back() == ' ' || word.back() == '\t' || word.back() == '\r'))
-        word.remove_suffix(1);
-    if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = word.substr(1, word.size() - 2);
-    return word;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (;;) {
-        const auto comma = line.find(',');
-        cells.push_back(trimmed(line.substr(0, comma)));
-        if (comma == line.npos) return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-double number(std::string_view cell, const std::string& file, int line, const std::string& column) {
-    if (cell.empty()) return nan;
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-        fail(file, line,
-             fmt::format("{}: {} is not a number; allowed: a number with a decimal point, or nothing", column,
-                         reader::quote(cell)));
-    return value;
-}
 
 std::string unit_suffix(compare::Unit unit) {
     return unit == compare::Unit::mm ? "mm" : unit == compare::Unit::percent ? "percent" : "deg";
@@ -108,22 +73,22 @@ std::string column_of(const std::string& branch, const compare::Comparison& all)
 void check_parameters(const Points& points, const std::string& file, const compare::Comparison& all) {
     if (points.branch.empty()) {
         if (points.parameters.size() > 1)
-            fail(file, 1,
-                 fmt::format("{} and {}: a column 'branch' has to say which of them places a point",
-                             points.parameters[0], points.parameters[1]));
+            fail_at(file, 1,
+                    fmt::format("{} and {}: a column 'branch' has to say which of them places a point",
+                                points.parameters[0], points.parameters[1]));
         if (points.parameters.size() == 1 && parameter_columns(all).size() > 1)
-            fail(file, 1,
-                 fmt::format(
-                     "{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
-                     points.parameters[0]));
+            fail_at(file, 1,
+                    fmt::format(
+                        "{}: not every branch goes by it; a column 'branch' has to say where a point belongs",
+                        points.parameters[0]));
         return;
     }
     for (std::size_t k = 0; k < points.branch.size(); ++k)
         for (const auto& parameter : points.parameters) {
             const std::string own = column_of(points.branch[k], all);
             if (own != parameter && std::isfinite((*points.find(parameter))[k]))
-                fail(file, points.lines[k],
-                     fmt::format("{}: branch '{}' goes by {}", parameter, points.branch[k], own));
+                fail_at(file, points.lines[k],
+                        fmt::format("{}: branch '{}' goes by {}", parameter, points.branch[k], own));
         }
 }
 
@@ -140,9 +105,9 @@ std::string branch_named(std::string_view cell, const compare::Comparison& all, 
     std::vector<std::string> branches;
     for (const auto& branch : all.branches) branches.push_back(branch.branch);
     if (std::ranges::find(branches, name) == branches.end())
-        fail(file, line,
-             fmt::format("{}: the scene has no {}{}", cases.column, reader::quote(name),
-                         reader::did_you_mean(name, branches, "allowed")));
+        fail_at(file, line,
+                fmt::format("{}: the scene has no {}{}", cases.column, reader::quote(name),
+                            reader::did_you_mean(name, branches, "allowed")));
     return name;
 }
 
@@ -167,72 +132,53 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
     }
     for (const auto& output : outputs) known.push_back(output.name);
 
-    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // the byte-order mark that spreadsheets write
-    if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
-        fail(file, 0, "is UTF-16; save it as CSV in UTF-8");
-    int number_of_line = 0, branch_column = -1;
-    for (std::string_view rest = csv; !rest.empty();) {
-        ++number_of_line;
-        const auto end = rest.find('\n');
-        const std::string_view line = rest.substr(0, end);
-        rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
-        if (trimmed(line).empty()) continue;
-        const auto cells = cells_of(line);
-        if (points.columns.empty()) {
-            for (const auto cell : cells) {
-                const std::string name(cell);
-                if (points.find(name) != nullptr)
-                    fail(file, number_of_line,
-                         fmt::format("column {} stands there twice", reader::quote(name)));
-                if (std::ranges::find(known, name) == known.end())
-                    fail(file, number_of_line,
-                         fmt::format("unknown column {}{}", reader::quote(name),
-                                     reader::did_you_mean(name, known, "allowed")));
-                Column column{name, -1, false, false, {}};
-                for (const auto& output : outputs)
-                    if (output.name == name) column = output;
-                if (name == cases.column) branch_column = static_cast<int>(points.columns.size());
-                points.columns.push_back(column);
-            }
-            continue;
+    int branch_column = -1;
+    const auto head = [&](const Cells& cells, int line) {
+        for (const auto cell : cells) {
+            const std::string name(cell);
+            if (points.find(name) != nullptr)
+                fail_at(file, line, fmt::format("column {} stands there twice", reader::quote(name)));
+            if (std::ranges::find(known, name) == known.end())
+                fail_at(file, line,
+                        fmt::format("unknown column {}{}", reader::quote(name),
+                                    reader::did_you_mean(name, known, "allowed")));
+            Column column{name, -1, false, false, {}};
+            for (const auto& output : outputs)
+                if (output.name == name) column = output;
+            if (name == cases.column) branch_column = static_cast<int>(points.columns.size());
+            points.columns.push_back(column);
         }
-        if (cells.size() != points.columns.size())
-            fail(file, number_of_line,
-                 fmt::format("{} cells, but {} columns are named in the first line", cells.size(),
-                             points.columns.size()));
-        if (points.lines.size() == most_measured)
-            fail(file, number_of_line,
-                 fmt::format("more points than {}, the most that are read", most_measured));
-        points.lines.push_back(number_of_line);
+    };
+    read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
+        points.lines.push_back(line);
         for (std::size_t k = 0; k < cells.size(); ++k) {
             if (static_cast<int>(k) == branch_column) {
-                points.branch.push_back(branch_named(cells[k], all, cases, file, number_of_line));
+                points.branch.push_back(branch_named(cells[k], all, cases, file, line));
                 points.columns[k].values.push_back(0);
             } else {
-                points.columns[k].values.push_back(
-                    number(cells[k], file, number_of_line, points.columns[k].name));
+                points.columns[k].values.push_back(number_in(cells[k], file, line, points.columns[k].name));
             }
         }
-    }
-    if (points.columns.empty()) fail(file, 0, "empty; the first line names the columns");
-    if (points.columns.front().values.empty()) fail(file, 0, "no point in it");
+    });
     const auto is_parameter = [&](const Column& c) { return c.channel < 0 && c.name != cases.column; };
     const auto is_place = [&](const Column& c) { return c.travel || is_parameter(c); };
     if (branch_column < 0 && cases.column != LoadCases{}.column)
-        fail(file, 1, fmt::format("no column {}, which --branch-column names", reader::quote(cases.column)));
+        fail_at(file, 1,
+                fmt::format("no column {}, which --branch-column names", reader::quote(cases.column)));
     if (std::ranges::none_of(points.columns, is_place)) {
         std::vector<std::string> allowed = parameter_columns(all);
         for (const auto& output : outputs)
             if (output.travel) allowed.push_back(output.name);
-        fail(file, 1, "no column says where a point is" + reader::did_you_mean("", allowed, "allowed"));
+        fail_at(file, 1, "no column says where a point is" + reader::did_you_mean("", allowed, "allowed"));
     }
     if (std::ranges::count_if(points.columns, [](const Column& c) { return c.travel; }) > 1)
-        fail(file, 1, "two columns of travel say where a point is; one at most");
+        fail_at(file, 1, "two columns of travel say where a point is; one at most");
     for (const auto& column : points.columns)
         if (is_parameter(column)) points.parameters.push_back(column.name);
     check_parameters(points, file, all);
     if (std::ranges::none_of(points.columns, [](const Column& c) { return c.channel >= 0 && !c.travel; }))
-        fail(file, 1, "no output among the columns; " + reader::did_you_mean("", known, "allowed").substr(2));
+        fail_at(file, 1,
+                "no output among the columns; " + reader::did_you_mean("", known, "allowed").substr(2));
     return points;
 }
 
@@ -242,9 +188,9 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
                      const compare::Comparison& all, const LoadCases& cases) {
     for (const auto& [theirs, ours] : cases.names)
         if (std::ranges::find(all.branches, ours, &compare::BranchComparison::branch) == all.branches.end())
-            fail(file, 0, fmt::format("--case {}={}: the scene has no branch '{}'", theirs, ours, ours));
+            fail_at(file, 0, fmt::format("--case {}={}: the scene has no branch '{}'", theirs, ours, ours));
     const Points points = read(csv, file, all, cases);
-    compare::Measured measured;
+    compare::Points measured;
     measured.branch = points.branch;
     for (const auto& column : points.columns) {
         if (column.name == cases.column) continue;
@@ -266,7 +212,7 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     try {
         found = compare::compare_measured(model, all, measured);
     } catch (const std::invalid_argument& error) {
-        fail(file, 1, error.what());
+        fail_at(file, 1, error.what());
     }
     json columns = json::object();
     if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;

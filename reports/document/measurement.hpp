@@ -2,7 +2,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,13 +9,11 @@
 
 #include "compare/compare.hpp"
 #include "models/model.hpp"
+#include "reports/files/sheet.hpp"
 
 namespace elastocheck::reports {
 
-// "FILE:line: column: what is wrong, what is allowed".
-struct MeasurementError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
+using MeasurementError = SheetError;
 
 // How the file says which branch a point belongs to: by a column, in the scene's names or in its own.
 struct LoadCases {

@@ -22,6 +22,7 @@ struct FileKind {
 };
 inline constexpr FileKind curves_file{"curves", "branch,leg,parameter,unit,"};
 inline constexpr FileKind rates_file{"rates", "branch,parameter,parameter unit,"};
+inline constexpr FileKind states_file{"states", R"({"branch":)"};
 inline constexpr FileKind baseline_file{"baseline", R"({"schema": "elastocheck/baseline/)"};
 inline constexpr FileKind junit_file{
     "JUnit report", R"(<?xml version="1.0" encoding="UTF-8"?><testsuites name="elastocheck gate")"};

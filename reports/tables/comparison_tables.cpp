@@ -79,15 +79,13 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
                    "uncertainty");
     for (const std::size_t c : shown(all, branch, load)) {
         const auto& d = load.channels[c];
-        fmt::format_to(out, "  {:<24}{:>11.5g}   {:>9}{:>9.4g}{:>9}{:>9}   ",
+        fmt::format_to(out, "  {:<24}{:>11.5g}   {}   ",
                        fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range,
-                       signed_value(d.signed_max), d.at, value_or_zero(d.rms), share(d.max, d.range));
+                       deviation_cells(d));
         if (travel.channels.empty()) {
             fmt::format_to(out, "{:<36}", "-");
         } else {
-            const auto& t = travel.channels[c];
-            fmt::format_to(out, "{:>9}{:>9.4g}{:>9}{:>9}", signed_value(t.signed_max), t.at,
-                           value_or_zero(t.rms), share(t.max, t.range));
+            text += deviation_cells(travel.channels[c]);
         }
         fmt::format_to(out, "   {:>11.1e}\n", doubt.channels[c].max);
     }
@@ -183,6 +181,11 @@ std::string not_asked(const compare::BranchComparison& branch) {
 }
 
 }  // namespace
+
+std::string deviation_cells(const compare::Deviation& d) {
+    return fmt::format("{:>9}{:>9.4g}{:>9}{:>9}", signed_value(d.signed_max), d.at, value_or_zero(d.rms),
+                       share(d.max, d.range));
+}
 
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;

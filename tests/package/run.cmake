@@ -23,6 +23,9 @@ consumer(consumer "converged in 100 steps" WITHOUT Ceres NLopt CLI11 nlohmann_js
 # The program of the README, on the scene that the README names.
 consumer(example "\n80 mm: -?[0-9.]+ deg\n$" WITHOUT CLI11 pugixml
          ARGUMENTS ${WORK}/prefix/share/elastocheck/scenes/double_wishbone.yaml)
+# The other one: a solver as a leg.
+consumer(candidate "off on .*\nfail, [0-9]+ numbers compared\n$" WITHOUT CLI11 pugixml
+         ARGUMENTS ${WORK}/prefix/share/elastocheck/scenes/mcpherson.yaml)
 execute_process(COMMAND ${WORK}/prefix/bin/elastocheck inspect ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reports/page/numbers.hpp"
+#include "reports/page/sections/candidate.hpp"
 #include "reports/page/sections/common.hpp"
 #include "reports/page/sections/measured.hpp"
 #include "reports/page/sections/sections.hpp"
@@ -134,6 +135,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
                   .y = output.axis};
     figure.series = {reference, energy, published};
     if (measured) figure.series.push_back(*measured);
+    if (!output.load)
+        for (auto& series : candidate_series(scene, sweep, output.channel, output.change, travel))
+            figure.series.push_back(std::move(series));
     double low = INFINITY, high = -INFINITY;
     for (const auto& row : reference.rows)
         if (row.size() == 2) low = std::min(low, row[1]), high = std::max(high, row[1]);

@@ -8,7 +8,7 @@ std::vector<Section> sections_of(const Field& scene) {
         const char* title;
         std::vector<std::optional<Section> (*)(const Field&)> sections;
     };
-    const Part parts[] = {{"", {first_section, drawing_section}},
+    const Part parts[] = {{"", {candidate_section, first_section, drawing_section}},
                           {"What it does", {characteristics_section, curves_section, forces_section}},
                           {"How far to trust it",
                            {measured_section, verdict_section, deviation_section, price_section,

@@ -12,6 +12,7 @@ namespace elastocheck::reports {
 
 // Each makes its section from one scene of result.json, or nothing when the scene has nothing for it. Throws
 // ResultError where the document lacks something it should have.
+std::optional<Section> candidate_section(const Field& scene);
 std::optional<Section> first_section(const Field& scene);
 std::optional<Section> verdict_section(const Field& scene);
 std::optional<Section> deviation_section(const Field& scene);

@@ -1,0 +1,488 @@
+#include "compare/candidate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "compare/characteristics.hpp"
+#include "compare/deformation.hpp"
+#include "compare/readings.hpp"
+#include "reference/equilibrium/solve.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double same_load = 1e-14;  // of a branch's length: what is left of a number in another unit
+constexpr double end_met = 1e-9;     // of a branch's length: a point this far past its end is at its end
+constexpr double part_left = 1e-6;   // likewise: what is left of a branch that counts as not given
+
+const Curve& truth_of(const BranchComparison& branch) {
+    return branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+}
+
+double bound_of(Unit unit, const Tolerance& tolerance) {
+    switch (unit) {
+        case Unit::mm: return tolerance.mm;
+        case Unit::deg: return tolerance.deg;
+        case Unit::newton: return tolerance.newton;
+        case Unit::newton_metre: return tolerance.newton_metre;
+        default: return std::numeric_limits<double>::infinity();  // nothing is asked of rates
+    }
+}
+
+// ---- The equilibrium leg at points of somebody else.
+
+// Its outputs at loads [SI] of a branch, those of its own grid visited on the way; nothing where it does not come.
+class Reference {
+  public:
+    Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
+        : model_(model),
+          ways_(ways_of(model, branch, steps)),
+          sorted_(asked_for(ways_, 1)),
+          channels_(std::move(channels)) {
+        std::ranges::sort(sorted_);
+    }
+
+    const std::vector<double>* at(double load) const {
+        if (std::isnan(load)) return nullptr;
+        const auto found = known_.find(load);
+        return found == known_.end() ? nullptr : &found->second;
+    }
+
+    // The load that stands for this one: that of a step, and an end, that is met to its last digits; NaN beyond.
+    double placed(double load) const {
+        const double length = sorted_.back() - sorted_.front();
+        const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
+        if (near != sorted_.end() && *near - load <= same_load * length) return *near;
+        for (const auto& way : ways_) {
+            const double to = way.branch.to;
+            if (load * to < 0) continue;
+            if (std::abs(load) <= std::abs(to)) return load;
+            if (std::abs(load) <= std::abs(to) * (1 + end_met)) return to;
+        }
+        return nan;
+    }
+
+    void visit(const std::vector<double>& loads) {
+        Analyses analyses;
+        for (const auto& way : ways_) {
+            const double to = way.branch.to;
+            std::vector<double> asked;
+            for (const double load : loads)
+                if (std::isfinite(load) && load * to >= 0 && std::abs(load) <= std::abs(to) &&
+                    at(load) == nullptr)
+                    asked.push_back(load);
+            if (asked.empty()) continue;
+            const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
+            std::ranges::sort(asked, nearer);
+            std::vector<double> all = asked_for({way}, 1);
+            std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(asked.back()); });
+            std::ranges::copy(asked, std::back_inserter(all));
+            std::ranges::sort(all, nearer);
+            all.erase(std::ranges::unique(all).begin(), all.end());
+            bool ended = false;
+            reference::equilibrium::solve(way.model, way.branch, all, {}, [&](const Equilibrium& state) {
+                ended = ended || !ends_at_table(way.model, way.branch, state).empty();
+                if (ended || !std::ranges::binary_search(asked, state.load, nearer)) return;
+                known_[state.load] =
+                    row_of(model_, channels_, way, {.leg = Leg::equilibrium}, state, analyses).values;
+            });
+        }
+    }
+
+  private:
+    const Model& model_;
+    std::vector<Way> ways_;
+    std::vector<double> sorted_;  // loads of its steps
+    std::vector<Channel> channels_;
+    std::map<double, std::vector<double>> known_;
+};
+
+// ---- One reading of one branch.
+
+struct Asked {  // of the points on one branch
+    std::vector<std::size_t> points;
+    std::vector<double> x;     // where the candidate says that each is: parameter [unit] or abscissa
+    std::vector<double> load;  // where the reference is asked for it [SI]; NaN where it does not come there
+};
+
+// What the candidate has of it and the reference, column by column.
+CandidateReading compared(const Asked& asked, const std::vector<PointColumn>& columns, Reference& reference,
+                          const BranchComparison& branch) {
+    CandidateReading reading;
+    std::vector<const std::vector<double>*> rows;
+    std::vector<std::size_t> points;
+    for (std::size_t k = 0; k < asked.points.size(); ++k) {
+        if (std::isnan(asked.x[k])) continue;  // it does not say where it is
+        const auto* row = std::isnan(asked.load[k]) ? nullptr : reference.at(asked.load[k]);
+        if (row == nullptr) {
+            ++reading.outside;
+            continue;
+        }
+        rows.push_back(row);
+        points.push_back(asked.points[k]);
+        reading.at.push_back(asked.x[k]);
+    }
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        std::vector<double> mine, truth, at, all_mine, all_truth;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double value = columns[c].values[points[k]];
+            const bool said = branch.determined[columns[c].channel] && !std::isnan(value);
+            all_mine.push_back(said ? value : nan);
+            all_truth.push_back(said ? (*rows[k])[c] : nan);
+            if (!said) continue;
+            mine.push_back(value), truth.push_back((*rows[k])[c]), at.push_back(reading.at[k]);
+        }
+        Deviation deviation = deviation_of(truth, mine, at);
+        const auto whole = truth_of(branch).channel(columns[c].channel);
+        const auto [low, high] = std::ranges::minmax(whole);
+        deviation.range = high - low;
+        reading.columns.push_back(deviation);
+        reading.candidate.push_back(std::move(all_mine));
+        reading.truth.push_back(std::move(all_truth));
+    }
+    return reading;
+}
+
+CandidateReading at_equal_parameter(const std::vector<std::size_t>& points, const Candidate& candidate,
+                                    const std::vector<PointColumn>& columns, Reference& reference,
+                                    const BranchComparison& branch) {
+    CandidateReading none;
+    if (candidate.points.a.empty()) {
+        none.not_compared = fmt::format("it says no {}", parameter_word(symbol(branch.unit)));
+        return none;
+    }
+    Asked asked{points, {}, {}};
+    for (const std::size_t k : points) {
+        asked.x.push_back(candidate.points.a[k]);
+        asked.load.push_back(reference.placed(candidate.points.a[k] / in_unit(branch.unit)));
+    }
+    reference.visit(asked.load);
+    return compared(asked, columns, reference, branch);
+}
+
+// Where the candidate says the abscissa of its points, if it does.
+const std::vector<double>* abscissa_of(const Candidate& candidate, const std::vector<PointColumn>& columns,
+                                       int channel) {
+    if (channel < 0) return nullptr;
+    const auto c = static_cast<std::size_t>(channel);
+    if (candidate.points.abscissa == c) return &candidate.points.at;
+    const auto column = std::ranges::find(columns, c, &PointColumn::channel);
+    return column == columns.end() ? nullptr : &column->values;
+}
+
+CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points, const Candidate& candidate,
+                                   const std::vector<PointColumn>& columns,
+                                   const std::vector<Channel>& channels, Reference& reference,
+                                   const BranchComparison& branch) {
+    CandidateReading reading;
+    const auto* said = abscissa_of(candidate, columns, branch.abscissa);
+    if (branch.abscissa < 0) {
+        reading.not_compared = "the scene has no position to read by";
+        return reading;
+    }
+    const auto c = static_cast<std::size_t>(branch.abscissa);
+    const Curve& truth = truth_of(branch);
+    if (said == nullptr) {
+        reading.not_compared = fmt::format("it says no {}", channels[c].name);
+        return reading;
+    }
+    if (const Abscissa by = abscissa(channels, branch.abscissa, truth, truth); !by.why_not.empty()) {
+        reading.not_compared = by.why_not;
+        return reading;
+    }
+    const auto t = truth.channel(c);
+    const double length = std::abs(t.back() - t.front()), rounding = end_met * length;
+    const double per_unit = 1 / in_unit(branch.unit);
+    // The abscissa is the last of what the reference is asked for.
+    const auto travel = [&](double load) {
+        const auto* row = reference.at(load);
+        return row == nullptr ? nan : row->back();
+    };
+    Asked asked{points, {}, {}};
+    std::vector<double> slope;  // Δa/Δt [SI per unit]
+    for (const std::size_t k : points) {
+        const double at = (*said)[k];
+        asked.x.push_back(at);
+        double load = nan, rate = nan;
+        if (at >= std::min(t.front(), t.back()) - rounding &&
+            at <= std::max(t.front(), t.back()) + rounding) {
+            std::size_t i = 1;
+            while (i + 1 < t.size() && (t[i] - at) * (t.back() - t.front()) < 0) ++i;
+            rate = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
+            load = reference.placed(per_unit * truth.a[i - 1] + (at - t[i - 1]) * rate);
+        }
+        asked.load.push_back(load), slope.push_back(rate);
+    }
+    constexpr int passes = 12;
+    reference.visit(asked.load);
+    for (int pass = 0; pass < passes; ++pass) {
+        std::vector<double> next(points.size(), nan);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double off = asked.x[k] - travel(asked.load[k]);
+            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(asked.x[k]))))
+                continue;  // there, or never
+            const double load = reference.placed(asked.load[k] + off * slope[k]);
+            if (load != asked.load[k]) next[k] = load;
+        }
+        reference.visit(next);
+        bool better = false;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double now = travel(asked.load[k]), there = travel(next[k]);
+            if (!(std::abs(asked.x[k] - there) < std::abs(asked.x[k] - now)))
+                continue;  // as near as it comes
+            slope[k] = (next[k] - asked.load[k]) / (there - now);
+            asked.load[k] = next[k];
+            better = true;
+        }
+        if (!better) break;
+    }
+    for (std::size_t k = 0; k < points.size(); ++k)  // a knot, or a branch that ends early
+        if (!(std::abs(travel(asked.load[k]) - asked.x[k]) <= rounding)) asked.load[k] = nan;
+    return compared(asked, columns, reference, branch);
+}
+
+// ---- What is left out.
+
+// "branch 'jounce' past 1500 N"
+void tell_what_is_missing(const Branch& branch, const CandidateBranch& given,
+                          std::vector<std::string>& list) {
+    const double unit = in_unit(given.unit), length = unit * std::abs(branch.to - branch.from);
+    if (std::isnan(given.from)) return;
+    const double from = unit * std::min(branch.from, branch.to), to = unit * std::max(branch.from, branch.to);
+    std::string parts;
+    if (given.from - from > part_left * length)
+        parts += fmt::format(" from {:.6g} to {:.6g} {}", from, given.from, symbol(given.unit));
+    if (to - given.to > part_left * length)
+        parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and", given.to, to,
+                             symbol(given.unit));
+    if (!parts.empty()) list.push_back(fmt::format("branch '{}'{}", branch.name, parts));
+}
+
+void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) {
+    const auto same =
+        std::ranges::find_if(list, [&](const CandidateWorst& w) { return w.unit == worst.unit; });
+    if (same == list.end())
+        list.push_back(worst);
+    else if (worse(worst.max, same->max) != same->max && !std::isnan(same->max))
+        *same = worst;
+}
+
+// Whether the candidate stands still where the reference moves: on every branch and in every column.
+bool nothing_moves(const CandidateJudgement& judgement) {
+    bool moving_reference = false;
+    for (const auto& branch : judgement.branches)
+        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+            const auto& reading = branch.reading(kind);
+            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+                if (reading.columns[c].compared < 2) continue;
+                double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+                for (std::size_t k = 0; k < reading.at.size(); ++k)
+                    for (const int who : {0, 1}) {
+                        const double v = (who == 0 ? reading.candidate : reading.truth)[c][k];
+                        if (std::isfinite(v))
+                            low[who] = std::min(low[who], v), high[who] = std::max(high[who], v);
+                    }
+                if (high[0] - low[0] > 1e-9) return false;
+                moving_reference = moving_reference || high[1] - low[1] > 1e-6;
+            }
+        }
+    return moving_reference;
+}
+
+// All branches one after the other: at equal parameter where there is one, else at equal abscissa.
+Beside beside(const CandidateJudgement& judgement, const Comparison& comparison, std::size_t c) {
+    Beside b;
+    b.column = c;
+    b.channel = judgement.columns[c].channel;
+    for (const auto& branch : judgement.branches) {
+        const auto& reading =
+            branch.equal_parameter.columns.empty() ? branch.equal_abscissa : branch.equal_parameter;
+        if (reading.columns.empty()) continue;
+        const auto& of = *std::ranges::find(comparison.branches, branch.branch, &BranchComparison::branch);
+        const Curve& truth = truth_of(of);
+        for (std::size_t k = 0; k < reading.at.size(); ++k) {
+            if (!std::isfinite(reading.candidate[c][k]) || !std::isfinite(reading.truth[c][k])) continue;
+            b.candidate.push_back(reading.candidate[c][k]);
+            b.reference.push_back(reading.truth[c][k]);
+            b.begin.push_back(truth.values[truth.start][b.channel]);
+            b.at.push_back(reading.at[k]);
+            b.branch.push_back(branch.branch);
+        }
+    }
+    // Of the other outputs of this unit those that the candidate gives as well: their references are there.
+    for (std::size_t d = 0; d < judgement.columns.size(); ++d) {
+        const std::size_t channel = judgement.columns[d].channel;
+        if (d == c || comparison.channels[channel].unit != comparison.channels[b.channel].unit) continue;
+        std::vector<double> values;
+        for (const auto& branch : judgement.branches) {
+            const auto& reading =
+                branch.equal_parameter.columns.empty() ? branch.equal_abscissa : branch.equal_parameter;
+            if (reading.columns.empty()) continue;
+            for (std::size_t k = 0; k < reading.at.size(); ++k)
+                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
+                    values.push_back(reading.truth[d][k]);
+        }
+        b.others.push_back(std::move(values));
+        b.other_channels.push_back(channel);
+    }
+    return b;
+}
+
+}  // namespace
+
+CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
+                                   const Candidate& candidate, const Tolerance& tolerance, bool asked) {
+    CandidateJudgement result;
+    result.name = candidate.name;
+    result.tolerance = tolerance;
+    result.asked = asked;
+    result.leftovers = candidate.leftovers;
+    result.notes = candidate.notes;
+    result.columns = as_they_stand(model, comparison, candidate.points.columns);
+    const auto& channels = comparison.channels;
+    for (const auto& column : result.columns) {
+        const Channel& channel = channels[column.channel];
+        const bool named = !candidate.every_output || !channel.kinematic();
+        result.judged.push_back((channel.main || named) && std::isfinite(bound_of(channel.unit, tolerance)));
+    }
+
+    const auto& places = candidate.points;
+    const bool by_parameter = !places.a.empty();
+    const auto branches = branches_of(model, comparison, places.branch, by_parameter ? places.a : places.at,
+                                      by_parameter ? std::nullopt : places.abscissa);
+    int nowhere = 0;
+    for (const int b : branches) nowhere += b < 0;
+    if (nowhere > 0) result.notes.push_back(fmt::format("{} of its points lie on no branch", nowhere));
+
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const BranchComparison& of = comparison.branches[b];
+        CandidateBranch given{of.branch, of.unit, 0, nan, nan, of.abscissa, {}, {}};
+        std::vector<std::size_t> points;
+        for (std::size_t k = 0; k < branches.size(); ++k)
+            if (branches[k] == static_cast<int>(b)) points.push_back(k);
+        if (points.empty()) {
+            result.not_given.push_back(fmt::format("branch '{}'", of.branch));
+            continue;
+        }
+        given.points = static_cast<int>(points.size());
+        if (by_parameter)
+            for (const std::size_t k : points) {
+                if (std::isnan(places.a[k])) continue;
+                given.from = std::isnan(given.from) ? places.a[k] : std::min(given.from, places.a[k]);
+                given.to = std::isnan(given.to) ? places.a[k] : std::max(given.to, places.a[k]);
+            }
+        tell_what_is_missing(model.branches[b], given, result.not_given);
+        const auto objections = disagreements(model, channels, model.branches[b], of, Of::references);
+        for (const auto& why : objections.texts()) result.reasons.push_back(of.branch + ": " + why);
+        if (!objections.empty()) {
+            given.equal_parameter.not_compared = given.equal_abscissa.not_compared =
+                "the references are none";
+            result.branches.push_back(std::move(given));
+            continue;
+        }
+        std::vector<Channel> outputs;
+        for (const auto& column : result.columns) outputs.push_back(channels[column.channel]);
+        if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
+        Reference reference(model, model.branches[b], of.steps, outputs);
+        given.equal_parameter = at_equal_parameter(points, candidate, result.columns, reference, of);
+        given.equal_abscissa = at_equal_abscissa(points, candidate, result.columns, channels, reference, of);
+        result.branches.push_back(std::move(given));
+    }
+
+    bool within = true;
+    int judged = 0;
+    for (const auto& branch : result.branches)
+        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+            const auto& reading = branch.reading(kind);
+            const bool by_abscissa = kind == ReadingKind::equal_abscissa;
+            if (by_abscissa && branch.abscissa >= 0 && !reading.columns.empty()) {
+                const auto t = truth_of(*std::ranges::find(comparison.branches, branch.branch,
+                                                           &BranchComparison::branch))
+                                   .channel(static_cast<std::size_t>(branch.abscissa));
+                const auto [low, high] = std::ranges::minmax(t);
+                if (!(high - low >= least_travel)) continue;  // nothing to read over
+            }
+            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+                const Deviation& d = reading.columns[c];
+                const Channel& channel = channels[result.columns[c].channel];
+                result.compared += d.compared;
+                if (!result.judged[c] || d.compared == 0) continue;
+                judged += d.compared;
+                const double limit = bound_of(channel.unit, tolerance);
+                CandidateWorst worst;
+                worst.branch = branch.branch, worst.channel = channel.name, worst.unit = channel.unit;
+                worst.max = d.max, worst.end = d.end, worst.range = d.range;
+                worst.kind = kind, worst.at = d.at, worst.tolerance = limit;
+                keep_worst(result.worst, worst);
+                within = within && std::isfinite(d.max) && d.max <= limit;
+                if (!std::isfinite(d.max))
+                    result.reasons.push_back(fmt::format(
+                        "its {} is no number at {:.6g} {} of branch '{}'", channel.name, d.at,
+                        by_abscissa ? symbol(channels[static_cast<std::size_t>(branch.abscissa)].unit)
+                                    : symbol(branch.unit),
+                        branch.branch));
+            }
+        }
+    for (std::size_t k = 0; k < places.a.size(); ++k)
+        if (std::isinf(places.a[k])) {
+            result.reasons.emplace_back("where its points are is no number");
+            break;
+        }
+    const auto state_error = [&](const Leftover& left) {  // of constraints [mm]; NaN is largest
+        double worst = 0;
+        for (const auto& r : left.truth) worst = worse(1e3 * r.length, worst);
+        return worst;
+    };
+    for (const auto& left : result.leftovers)
+        if (const double missed = state_error(left); left.why_not.empty() && !(missed <= tolerance.mm)) {
+            within = false;
+            result.said.push_back(fmt::format("its states miss the constraints of branch '{}' by {:.2g} mm",
+                                              left.branch, missed));
+        }
+
+    if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
+    if (judged == 0)
+        result.reasons.emplace_back(result.compared == 0 ? "nothing was compared"
+                                                         : "nothing that was compared has a tolerance");
+    if (candidate.complete)
+        for (const auto& missing : result.not_given) result.reasons.push_back("it does not give " + missing);
+
+    for (std::size_t c = 0; c < result.columns.size(); ++c) {
+        const double bound = bound_of(channels[result.columns[c].channel].unit, tolerance);
+        bool off = false;
+        for (const auto& branch : result.branches)
+            for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+                const auto& reading = branch.reading(kind);
+                if (reading.columns.empty() || reading.columns[c].compared == 0) continue;
+                const Deviation& d = reading.columns[c];
+                off = off || !(d.max <= (std::isfinite(bound) ? bound : 1e-3 * std::max(d.range, 1e-9)));
+            }
+        if (!off || (candidate.every_output && !result.judged[c])) continue;
+        Beside b = beside(result, comparison, c);
+        b.tolerance = bound;
+        if (auto found = explain(b)) result.explanations.push_back(*found);
+    }
+    for (auto& one : result.explanations)
+        for (const auto& other : result.explanations)
+            one.mutual =
+                one.mutual || (one.kind == Explanation::Kind::other_output && one.kind == other.kind &&
+                               one.other == result.columns[other.column].channel &&
+                               other.other == result.columns[one.column].channel);
+    Points standing = candidate.points;
+    standing.columns = result.columns;
+    for (const auto& one : result.explanations) {
+        const bool told = std::ranges::any_of(result.explanations, [&](const Explanation& other) {
+            return &other < &one && one.mutual && other.mutual &&
+                   one.other == result.columns[other.column].channel;
+        });
+        if (!told) result.said.push_back(describe(one, comparison, standing));
+    }
+    if (result.reasons.empty()) result.verdict = within ? Grade::pass : Grade::fail;
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,76 @@
+#include "reports/command/judge_command.hpp"
+
+#include <fmt/format.h>
+
+#include "recursive/diagnosis.hpp"
+#include "reports/command/exit_code.hpp"
+#include "reports/command/limits.hpp"
+#include "reports/document/candidate.hpp"
+#include "reports/document/document.hpp"
+#include "reports/files/files.hpp"
+#include "reports/tables/candidate_tables.hpp"
+
+namespace elastocheck::reports {
+
+CLI::App* add_judge_command(CLI::App& app, JudgeRequest& request) {
+    auto* command =
+        app.add_subcommand("judge", "Judge another solver's results by the references: pass or fail");
+    command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
+    add_settings(*command, request.settings);
+    add_candidate_options(*command, request.candidate);
+    command
+        ->add_option("--steps", request.steps,
+                     "that the command is asked for per branch (default: as the scene says)")
+        ->check(CLI::Range(1, most_steps));
+    command->add_option("--tolerance", request.tolerance,
+                        "accuracy asked for: mm, deg, N, Nm (default: 0.01mm,0.001deg)");
+    return command;
+}
+
+int judge(const JudgeRequest& request, const Delivery& delivery) {
+    if (!request.candidate.wanted())
+        throw std::invalid_argument("judge: nobody to judge; give --candidate FILE or --candidate-command");
+    const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
+    const bool asked = request.tolerance != JudgeRequest{}.tolerance;
+    check(request.candidate, request.settings);
+    if (!delivery.folder.empty()) Staging::check(delivery.folder);
+    const LoadedScene loaded = load_scene(request.scene, request.settings);
+    const Model& model = loaded.model;
+    check_memory(model, {.steps = request.steps,
+                         .legs = static_cast<int>(compare::legs.size()),
+                         .written = delivery.wants_document()});
+    const int steps = request.steps > 0 ? request.steps : steps_of(model);
+    const auto outputs = outputs_of(request.candidate, request.scene, {steps});
+    compare::Options options;
+    options.recursion.steps = request.steps;
+    options.progress = progress;
+    const compare::Comparison comparison = compare::compare(model, options);
+    progress("");
+    int code = fine;
+    nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
+    std::vector<std::string> reasons;
+    int compared = 0;
+    for (const auto& output : outputs) {
+        const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance, asked);
+        const std::string said = sentence(judgement, comparison);
+        delivery.say(candidate_text(judgement, comparison));
+        delivery.say(said + "\n");
+        candidates.push_back(candidate_json(judgement, comparison, said));
+        compared += judgement.compared;
+        for (const auto& reason : judgement.reasons) reasons.push_back(judgement.name + ": " + reason);
+        if (judgement.verdict == compare::Grade::fail) code = limit_broken;
+        if (judgement.verdict == compare::Grade::not_judged && code == fine) code = could_not_judge;
+    }
+    if (delivery.wants_document()) {
+        auto part =
+            scene_document(loaded.scene, read_whole(request.scene), model, recursive::diagnose(model));
+        if (loaded.trim) add_trim(part, *loaded.trim);
+        add_comparison(part, loaded.scene, model, comparison);
+        part["candidates"] = std::move(candidates);
+        add_verdict(part, compared, reasons);
+        deliver(delivery, std::move(part), {});
+    }
+    return code;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,604 @@
+#include "reports/document/candidate_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "compare/elements.hpp"
+#include "models/reader/cursor.hpp"
+#include "models/reader/words.hpp"
+#include "reports/document/json.hpp"
+#include "reports/files/limits.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Unit;
+using json = nlohmann::ordered_json;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unit_length = 1e-6;  // by which a quaternion may miss the length of one
+
+// ---- Units that a table may be written in.
+
+struct Written {
+    const char* symbol;
+    Unit unit;      // that it is one of
+    double factor;  // one of them in that unit
+};
+constexpr double deg = 180 / std::numbers::pi;
+constexpr std::array written{Written{"mm", Unit::mm, 1},
+                             Written{"cm", Unit::mm, 10},
+                             Written{"m", Unit::mm, 1e3},
+                             Written{"in", Unit::mm, 25.4},
+                             Written{"deg", Unit::deg, 1},
+                             Written{"rad", Unit::deg, deg},
+                             Written{"mrad", Unit::deg, 1e-3 * deg},
+                             Written{"N", Unit::newton, 1},
+                             Written{"kN", Unit::newton, 1e3},
+                             Written{"N·m", Unit::newton_metre, 1},
+                             Written{"Nm", Unit::newton_metre, 1},
+                             Written{"Nmm", Unit::newton_metre, 1e-3},
+                             Written{"kNm", Unit::newton_metre, 1e3}};
+
+std::optional<double> factor_of(std::string_view symbol, Unit unit) {
+    if (symbol.empty() || symbol == compare::symbol(unit)) return 1;
+    for (const auto& w : written)
+        if (w.unit == unit && symbol == w.symbol) return w.factor;
+    return std::nullopt;
+}
+
+std::string allowed_units(Unit unit) {
+    std::vector<std::string> list;
+    for (const auto& w : written)
+        if (w.unit == unit) list.emplace_back(w.symbol);
+    if (list.empty()) list.emplace_back(compare::symbol(unit));
+    return reader::listed(list);
+}
+
+// A number, or one that is said to be none: infinite. NaN where nothing stands.
+double number_or_none(std::string_view cell, const std::string& file, int line, const std::string& column) {
+    if (cell.empty()) return nan;
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value)) return INFINITY;
+    return number_in(cell, file, line, column);
+}
+
+// ---- What a column says.
+
+struct Meaning {
+    enum class Kind { output, parameter, parameter_unit, branch, leg, nothing } kind = Kind::nothing;
+    std::string name;  // in the file
+    std::size_t channel = 0;
+    bool change = false;
+    double factor = 1, offset = 0;
+    std::string unit;  // of a parameter, as written; empty: the branch's own, or a column says it
+};
+using Kind = Meaning::Kind;
+
+// "toe [deg]", "toe_deg", "toe_change_deg", "toe"
+std::optional<Meaning> output_of(std::string_view name, const compare::Comparison& all) {
+    for (std::size_t c = 0; c < all.channels.size(); ++c) {
+        const auto& channel = all.channels[c];
+        if (!name.starts_with(channel.name)) continue;
+        std::string_view rest = name.substr(channel.name.size());
+        Meaning meaning{.kind = Kind::output, .name = std::string(name), .channel = c, .unit = {}};
+        if (rest.starts_with("_change_")) {
+            meaning.change = true;
+            rest.remove_prefix(8);
+        } else if (rest.starts_with(" [") && rest.ends_with("]")) {
+            rest = rest.substr(2, rest.size() - 3);
+        } else if (rest.starts_with("_") && rest.size() > 1) {
+            rest.remove_prefix(1);
+        } else if (!rest.empty()) {
+            continue;
+        }
+        const auto factor = factor_of(rest, channel.unit);
+        if (!factor) continue;
+        meaning.factor = *factor;
+        return meaning;
+    }
+    return std::nullopt;
+}
+
+std::optional<Meaning> parameter_of(std::string_view name) {
+    for (const std::string_view word : {"parameter", "load"}) {
+        if (!name.starts_with(word)) continue;
+        std::string_view rest = name.substr(word.size());
+        if (rest.empty()) return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = {}};
+        if (rest.starts_with(" [") && rest.ends_with("]"))
+            rest = rest.substr(2, rest.size() - 3);
+        else if (rest.starts_with("_"))
+            rest.remove_prefix(1);
+        for (const auto& w : written)
+            if (rest == w.symbol)
+                return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = std::string(rest)};
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string> known_columns(const compare::Comparison& all) {
+    std::vector<std::string> names{"branch", "parameter", "load_N"};
+    for (const auto& channel : all.channels)
+        names.push_back(fmt::format("{} [{}]", channel.name, compare::symbol(channel.unit)));
+    return names;
+}
+
+Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map, const compare::Comparison& all) {
+    const auto wrong = [&](const char* field, const std::string& what) {
+        reader::fail(map.file, entry.line, fmt::format("columns.{}.{}", entry.theirs, field), what);
+    };
+    Meaning meaning{.name = entry.theirs, .unit = {}};
+    if (entry.output == "branch") {
+        meaning.kind = Kind::branch;
+    } else if (entry.output == "parameter" || entry.output == "load") {
+        meaning.kind = Kind::parameter;
+        meaning.unit = entry.unit;
+        meaning.factor = entry.sign, meaning.offset = entry.offset;
+        if (!entry.unit.empty() && std::ranges::find(written, entry.unit, &Written::symbol) == written.end())
+            wrong("unit", fmt::format("{} is no unit; allowed: mm, m, deg, rad, N, kN, Nm, ...",
+                                      reader::quote(entry.unit)));
+    } else {
+        const int channel = compare::find_channel(all.channels, entry.output);
+        if (channel < 0) {
+            std::vector<std::string> names{"parameter", "branch"};
+            for (const auto& c : all.channels) names.push_back(c.name);
+            wrong("output", fmt::format("no output is called {}{}", reader::quote(entry.output),
+                                        reader::did_you_mean(entry.output, names, "outputs")));
+        }
+        meaning.kind = Kind::output;
+        meaning.channel = static_cast<std::size_t>(channel);
+        const Unit unit = all.channels[meaning.channel].unit;
+        const auto factor = factor_of(entry.unit, unit);
+        if (!factor)
+            wrong("unit", fmt::format("{} is no unit of {}; allowed: {}", reader::quote(entry.unit),
+                                      entry.output, allowed_units(unit)));
+        meaning.factor = entry.sign * *factor;
+        meaning.offset = entry.offset;
+        meaning.change = entry.change;
+    }
+    return meaning;
+}
+
+std::string branch_named(std::string_view cell, const compare::Comparison& all, const ColumnMap& map,
+                         const std::string& file, int line, const std::string& column) {
+    const auto own = std::ranges::find(map.branches, cell, &std::pair<std::string, std::string>::first);
+    const std::string name = own == map.branches.end() ? std::string(cell) : own->second;
+    std::vector<std::string> branches;
+    for (const auto& branch : all.branches) branches.push_back(branch.branch);
+    if (std::ranges::find(branches, name) == branches.end())
+        fail_at(file, line,
+                fmt::format("{}: the scene has no branch {}{}", column, reader::quote(name),
+                            reader::did_you_mean(name, branches, "allowed")));
+    return name;
+}
+
+Unit unit_of_branch(const std::string& branch, const compare::Comparison& all) {
+    return std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit;
+}
+
+// ---- A table of outputs.
+
+struct Table {
+    std::vector<Meaning> columns;
+    std::vector<std::vector<double>> values;  // per column
+    std::vector<std::string> branch, unit;    // per point, where a column says it
+    std::vector<int> lines;
+    std::set<std::string, std::less<>> legs;
+};
+
+Table read_table(std::string_view csv, const std::string& file, const Model& model,
+                 const compare::Comparison& all, const ColumnMap& map, std::vector<std::string>& notes) {
+    Table table;
+    std::vector<std::string> passed_over;
+    const auto head = [&](const Cells& cells, int line) {
+        const auto known = known_columns(all);
+        for (const auto cell : cells) {
+            const std::string name(cell);
+            if (std::ranges::find(table.columns, name, &Meaning::name) != table.columns.end())
+                fail_at(file, line, fmt::format("column {} stands there twice", reader::quote(name)));
+            const auto entry = std::ranges::find(map.columns, name, &ColumnMap::Entry::theirs);
+            std::optional<Meaning> meaning;
+            if (entry != map.columns.end())
+                meaning = mapped(*entry, map, all);
+            else if (name == "branch")
+                meaning = Meaning{.kind = Kind::branch, .name = name, .unit = {}};
+            else if (name == "leg")
+                meaning = Meaning{.kind = Kind::leg, .name = name, .unit = {}};
+            else if (name == "unit")
+                meaning = Meaning{.kind = Kind::parameter_unit, .name = name, .unit = {}};
+            else
+                meaning = parameter_of(name);
+            if (!meaning) meaning = output_of(name, all);
+            if (!meaning) {
+                const auto own = name.substr(0, name.find(" ["));
+                const bool of_element = compare::find_channel(compare::element_channels(model), own) >= 0;
+                if (map.file.empty() && !of_element)
+                    fail_at(file, line,
+                            fmt::format("unknown column {}{}", reader::quote(name),
+                                        reader::did_you_mean(name, known, "allowed")));
+                passed_over.push_back(name);
+                meaning = Meaning{.kind = Kind::nothing, .name = name, .unit = {}};
+            }
+            table.columns.push_back(*meaning);
+        }
+        for (const auto& entry : map.columns)
+            if (std::ranges::find(table.columns, entry.theirs, &Meaning::name) == table.columns.end())
+                fail_at(file, line,
+                        fmt::format("no column {}, which {} maps", reader::quote(entry.theirs), map.file));
+        table.values.resize(table.columns.size());
+    };
+    read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
+        table.lines.push_back(line);
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const Meaning& meaning = table.columns[c];
+            switch (meaning.kind) {
+                case Kind::branch:
+                    table.branch.push_back(branch_named(cells[c], all, map, file, line, meaning.name));
+                    break;
+                case Kind::parameter_unit: table.unit.emplace_back(cells[c]); break;
+                case Kind::leg: table.legs.emplace(cells[c]); break;
+                case Kind::nothing: break;
+                case Kind::parameter:
+                case Kind::output:
+                    table.values[c].push_back(
+                        number_or_none(cells[c], file, line, meaning.name) * meaning.factor + meaning.offset);
+                    if (std::isinf(table.values[c].back())) table.values[c].back() = INFINITY;
+                    break;
+            }
+        }
+    });
+    if (table.legs.size() > 1)
+        fail_at(file, 1, fmt::format("leg: {} of them; a candidate is one", table.legs.size()));
+    if (!passed_over.empty())
+        notes.push_back("columns that are not compared: " + reader::listed(passed_over));
+    return table;
+}
+
+bool is_travel(const compare::Channel& channel) {
+    return channel.name == "travel" || channel.name.ends_with(".travel");
+}
+
+compare::Candidate from_table(std::string_view csv, const std::string& file, const Model& model,
+                              const compare::Comparison& all, const ColumnMap& map) {
+    compare::Candidate result;
+    const Table table = read_table(csv, file, model, all, map, result.notes);
+    auto& points = result.points;
+    points.branch = table.branch;
+    const std::size_t n = table.lines.size();
+    std::vector<std::size_t> parameters;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        if (table.columns[c].kind == Kind::parameter) parameters.push_back(c);
+    // Each point by the column that goes by its branch's unit, in that unit.
+    for (const std::size_t c : parameters) {
+        const Meaning& meaning = table.columns[c];
+        if (points.a.empty()) points.a.assign(n, nan);
+        for (std::size_t k = 0; k < n; ++k) {
+            if (std::isnan(table.values[c][k])) continue;
+            if (table.branch.empty() && all.branches.empty()) break;
+            const Unit unit =
+                table.branch.empty() ? all.branches.front().unit : unit_of_branch(table.branch[k], all);
+            const std::string& written_in =
+                meaning.unit.empty() && !table.unit.empty() ? table.unit[k] : meaning.unit;
+            const auto factor = factor_of(written_in, unit);
+            if (!factor)
+                fail_at(file, table.lines[k],
+                        fmt::format("{}: {} is no unit of what branch '{}' goes by; allowed: {}",
+                                    meaning.name, reader::quote(written_in),
+                                    table.branch.empty() ? all.branches.front().branch : table.branch[k],
+                                    allowed_units(unit)));
+            if (!std::isnan(points.a[k]))
+                fail_at(file, table.lines[k],
+                        fmt::format("{}: another column says where this point is", meaning.name));
+            points.a[k] = table.values[c][k] * *factor;
+        }
+    }
+    if (!parameters.empty() && table.branch.empty())
+        for (const auto& branch : all.branches)
+            if (branch.unit != all.branches.front().unit)
+                fail_at(file, 1,
+                        "a column 'branch' has to say where a point belongs: branches go by different units");
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        if (table.columns[c].kind == Kind::output) {
+            const auto& channel = all.channels[table.columns[c].channel];
+            if (std::ranges::find(points.columns, table.columns[c].channel, &compare::PointColumn::channel) !=
+                points.columns.end())
+                fail_at(file, 1, fmt::format("two columns are {}", channel.name));
+            points.columns.push_back({table.columns[c].channel, table.columns[c].change, table.values[c]});
+            if (!points.abscissa && !points.columns.back().change && is_travel(channel))
+                points.abscissa = table.columns[c].channel, points.at = table.values[c];
+        }
+    if (points.a.empty() && !points.abscissa) {
+        std::vector<std::string> places{"parameter", "load_N", "travel_mm"};
+        fail_at(file, 1, "no column says where a point is" + reader::did_you_mean("", places, "allowed"));
+    }
+    if (points.columns.empty())
+        fail_at(file, 1,
+                "no output among the columns; " +
+                    reader::did_you_mean("", known_columns(all), "allowed").substr(2));
+    return result;
+}
+
+// ---- States.
+
+// A body that is a node within a beam: nothing but segments of beams holds it. It need not be said.
+std::vector<bool> nodes_of(const Model& model) {
+    std::vector<bool> beam(model.bodies.size(), false), other(model.bodies.size(), false);
+    const auto mark = [](std::vector<bool>& list, BodyId body) {
+        if (body != ground) list[static_cast<std::size_t>(body)] = true;
+    };
+    for (const auto& elastic : model.elastics)
+        std::visit(
+            [&](const auto& e) {
+                for (const BodyId b : {e.i.body, e.j.body})
+                    mark(elastic.written_as == WrittenAs::beam ? beam : other, b);
+            },
+            elastic.kind);
+    for (const auto& joint : model.joints) mark(other, joint.i), mark(other, joint.j);
+    for (const auto& wheel : model.wheels) mark(other, wheel.body);
+    for (std::size_t b = 0; b < beam.size(); ++b) beam[b] = beam[b] && !other[b];
+    return beam;
+}
+
+struct Bodies {
+    const Scene& scene;
+    const Model& model;
+    std::vector<bool> node;
+    std::set<std::string> passed_over;
+
+    // Position in Model::bodies, or -1 of a body of the scene that is not solved for.
+    int find(const std::string& name, const std::string& file, int line) {
+        const auto found = std::ranges::find(model.bodies, name, &Body::name);
+        if (found != model.bodies.end()) return static_cast<int>(found - model.bodies.begin());
+        std::vector<std::string> names;
+        for (const auto& body : scene.bodies) names.push_back(body.name);
+        if (std::ranges::find(names, name) == names.end() && name != "ground")
+            fail_at(file, line,
+                    fmt::format("bodies: the scene has no body {}{}", reader::quote(name),
+                                reader::did_you_mean(name, names, "bodies")));
+        passed_over.insert(name);
+        return -1;
+    }
+    std::vector<Pose> nowhere() const {
+        Pose pose;
+        pose.r.setConstant(nan);
+        pose.p.coeffs().setConstant(nan);
+        return {model.bodies.size(), pose};
+    }
+    void check_all_said(const compare::CandidateState& state, const std::string& file, int line) const {
+        for (std::size_t b = 0; b < node.size(); ++b)
+            if (!node[b] && std::isnan(state.poses[b].r.x()))
+                fail_at(file, line, fmt::format("bodies: body '{}' is missing", model.bodies[b].name));
+    }
+};
+
+void put(Pose& pose, const Eigen::Vector3d& r, const Eigen::Vector4d& wxyz, const std::string& what,
+         const std::string& file, int line) {
+    pose.r = r;
+    pose.p = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    if (!r.allFinite() || !wxyz.allFinite()) {
+        pose.r.setConstant(INFINITY);
+        pose.p = Eigen::Quaterniond::Identity();
+        return;
+    }
+    if (const double length = pose.p.norm(); !(std::abs(length - 1) <= unit_length))
+        fail_at(file, line,
+                fmt::format("{}: its length is {:.9g}; allowed: a unit quaternion w, x, y, z, to 1e-6", what,
+                            length));
+    pose.p.normalize();
+}
+
+double entry(const json& value, const std::string& what, const std::string& file, int line) {
+    if (value.is_null()) return INFINITY;  // how JSON writes what is no number
+    if (!value.is_number()) fail_at(file, line, fmt::format("{}: expected a number", what));
+    return value.get<double>();
+}
+
+const json& field(const json& object, const char* key, const std::string& what, const std::string& file,
+                  int line) {
+    const auto found = object.find(key);
+    if (found == object.end()) fail_at(file, line, fmt::format("{}: missing", what));
+    return *found;
+}
+
+std::vector<compare::CandidateState> states_of_json(std::string_view text, const std::string& file,
+                                                    Bodies& bodies, const compare::Comparison& all,
+                                                    const ColumnMap& map) {
+    std::vector<compare::CandidateState> states;
+    int line = 0;
+    for (std::string_view rest = text; !rest.empty();) {
+        ++line;
+        const auto end = rest.find('\n');
+        const std::string_view one = rest.substr(0, end);
+        rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
+        if (one.find_first_not_of(" \t\r") == one.npos) continue;
+        if (states.size() == most_measured)
+            fail_at(file, line, fmt::format("more states than {}, the most that are read", most_measured));
+        json object;
+        try {
+            object = parse_json(one);
+        } catch (const JsonError& error) {
+            fail_at(file, line, error.what());
+        }
+        if (!object.is_object()) fail_at(file, line, "expected an object with branch, load and bodies");
+        for (const auto& [key, value] : object.items())
+            if (key != "branch" && key != "load" && key != "bodies")
+                fail_at(file, line,
+                        fmt::format("unknown field {}{}", reader::quote(key),
+                                    reader::did_you_mean(key, {"branch", "load", "bodies"}, "allowed")));
+        const json& branch = field(object, "branch", "branch", file, line);
+        if (!branch.is_string()) fail_at(file, line, "branch: expected a name");
+        compare::CandidateState state;
+        state.branch = branch_named(branch.get<std::string>(), all, map, file, line, "branch");
+        state.load = entry(field(object, "load", "load", file, line), "load", file, line);
+        state.poses = bodies.nowhere();
+        const json& list = field(object, "bodies", "bodies", file, line);
+        if (!list.is_object()) fail_at(file, line, "bodies: expected an object, each body under its name");
+        for (const auto& [name, pose] : list.items()) {
+            const std::string path = "bodies." + reader::shown(name);
+            if (!pose.is_object()) fail_at(file, line, path + ": expected position and orientation");
+            const json &at = field(pose, "position", path + ".position", file, line),
+                       &turned = field(pose, "orientation", path + ".orientation", file, line);
+            if (!at.is_array() || at.size() != 3)
+                fail_at(file, line, path + ".position: expected a list of 3 numbers [m]");
+            if (!turned.is_array() || turned.size() != 4)
+                fail_at(file, line, path + ".orientation: expected a list of 4 numbers, w, x, y, z");
+            Eigen::Vector3d r;
+            Eigen::Vector4d wxyz;
+            for (int k = 0; k < 3; ++k)
+                r[k] = entry(at[static_cast<std::size_t>(k)], path + ".position", file, line);
+            for (int k = 0; k < 4; ++k)
+                wxyz[k] = entry(turned[static_cast<std::size_t>(k)], path + ".orientation", file, line);
+            Pose read;
+            put(read, r, wxyz, path + ".orientation", file, line);
+            if (const int b = bodies.find(name, file, line); b >= 0)
+                state.poses[static_cast<std::size_t>(b)] = read;
+        }
+        bodies.check_all_said(state, file, line);
+        states.push_back(std::move(state));
+    }
+    if (states.empty()) fail_at(file, 0, "no state in it");
+    return states;
+}
+
+std::vector<compare::CandidateState> states_of_table(std::string_view csv, const std::string& file,
+                                                     Bodies& bodies, const compare::Comparison& all,
+                                                     const ColumnMap& map) {
+    static const std::vector<std::string> names{"branch", "load", "body", "x",  "y",
+                                                "z",      "qw",   "qx",   "qy", "qz"};
+    std::vector<std::size_t> place;
+    std::vector<compare::CandidateState> states;
+    std::vector<int> lines;
+    std::map<std::pair<std::string, double>, std::size_t> known;
+    const auto head = [&](const Cells& cells, int line) {
+        for (const auto& name : names) {
+            const auto found = std::ranges::find(cells, name);
+            if (found == cells.end())
+                fail_at(file, line,
+                        fmt::format("no column '{}'; states have {}", name, reader::listed(names)));
+            place.push_back(static_cast<std::size_t>(found - cells.begin()));
+        }
+        if (cells.size() != names.size())
+            fail_at(file, line, "a column too many; states have " + reader::listed(names));
+    };
+    read_sheet(csv, file, most_measured * 10, head, [&](const Cells& cells, int line) {
+        const std::string branch = branch_named(cells[place[0]], all, map, file, line, "branch");
+        const auto number = [&](std::size_t k) {
+            const double value = number_or_none(cells[place[k]], file, line, names[k]);
+            if (std::isnan(value)) fail_at(file, line, names[k] + ": nothing stands there");
+            return value;
+        };
+        const double load = number(1);
+        const auto [at, is_new] = known.try_emplace({branch, load}, states.size());
+        if (is_new) {
+            if (states.size() == most_measured)
+                fail_at(file, line,
+                        fmt::format("more states than {}, the most that are read", most_measured));
+            states.push_back({branch, load, bodies.nowhere()}), lines.push_back(line);
+        }
+        Pose pose;
+        put(pose, {number(3), number(4), number(5)}, {number(6), number(7), number(8), number(9)},
+            "orientation", file, line);
+        const std::string name(cells[place[2]]);
+        if (const int b = bodies.find(name, file, line); b >= 0) {
+            Pose& of = states[at->second].poses[static_cast<std::size_t>(b)];
+            if (!std::isnan(of.r.x()))
+                fail_at(file, line, fmt::format("body '{}' is there already at this load", name));
+            of = pose;
+        }
+    });
+    for (std::size_t k = 0; k < states.size(); ++k) bodies.check_all_said(states[k], file, lines[k]);
+    return states;
+}
+
+bool begins_as_json(std::string_view content) {
+    const auto first = content.find_first_not_of(" \t\r\n");
+    return first != content.npos && content[first] == '{';
+}
+
+}  // namespace
+
+ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
+    ColumnMap map;
+    map.file = file;
+    const reader::Value tree = reader::parse_yaml(yaml, file);
+    std::vector<Number> numbers;
+    const reader::Cursor top{&tree, "", &file, &numbers};
+    top.only_keys({"columns", "branches"});
+    for (const auto& [name, at] : top.require("columns").entries()) {
+        at.only_keys({"output", "unit", "sign", "offset", "change"});
+        ColumnMap::Entry entry{.theirs = name, .output = {}, .unit = {}, .line = at.value->line};
+        entry.output = at.require("output").text("an output of the scene, 'parameter' or 'branch'");
+        if (const auto unit = at.optional("unit")) entry.unit = unit->text("a unit");
+        if (const auto sign = at.optional("sign")) {
+            entry.sign = sign->number();
+            if (entry.sign != 1 && entry.sign != -1) sign->fail("expected 1 or -1");
+        }
+        if (const auto offset = at.optional("offset")) entry.offset = offset->number();
+        if (const auto change = at.optional("change")) entry.change = change->yes_or_no();
+        map.columns.push_back(std::move(entry));
+    }
+    if (const auto branches = top.optional("branches"))
+        for (const auto& [name, at] : branches->entries())
+            map.branches.emplace_back(name, at.text("a branch of the scene"));
+    return map;
+}
+
+bool holds_states(std::string_view content) {
+    if (begins_as_json(content)) return true;
+    bool body = false, qw = false;
+    try {
+        read_sheet(
+            content.substr(0, content.find('\n', content.find_first_not_of(" \t\r\n") == content.npos
+                                                     ? 0
+                                                     : content.find_first_not_of(" \t\r\n"))),
+            "", 0,
+            [&](const Cells& cells, int) {
+                body = std::ranges::find(cells, "body") != cells.end();
+                qw = std::ranges::find(cells, "qw") != cells.end();
+            },
+            [](const Cells&, int) {});
+    } catch (const SheetError&) {
+    }
+    return body && qw;
+}
+
+compare::Candidate read_candidate(std::string_view content, const std::string& file, std::string name,
+                                  const Scene& scene, const Model& model,
+                                  const compare::Comparison& comparison, const ColumnMap& map) {
+    compare::Candidate candidate;
+    if (holds_states(content)) {
+        Bodies bodies{scene, model, nodes_of(model), {}};
+        const auto states = begins_as_json(content) ? states_of_json(content, file, bodies, comparison, map)
+                                                    : states_of_table(content, file, bodies, comparison, map);
+        candidate = compare::candidate_of(model, comparison, name, states);
+        if (!bodies.passed_over.empty())
+            candidate.notes.push_back("bodies that are not solved for, and are passed over: " +
+                                      reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
+    } else {
+        candidate = from_table(content, file, model, comparison, map);
+    }
+    candidate.name = std::move(name);
+    return candidate;
+}
+
+std::string state_line(const Model& model, const std::string& branch, const Equilibrium& state) {
+    json bodies = json::object();
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const auto& [r, p] = state.poses[b];
+        bodies[model.bodies[b].name] = {{"position", {r.x(), r.y(), r.z()}},
+                                        {"orientation", {p.w(), p.x(), p.y(), p.z()}}};
+    }
+    return json{{"branch", branch}, {"load", state.load}, {"bodies", bodies}}.dump() + "\n";
+}
+
+}  // namespace elastocheck::reports

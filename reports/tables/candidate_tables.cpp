@@ -1,0 +1,226 @@
+#include "reports/tables/candidate_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "compare/readings.hpp"
+#include "reports/page/numbers.hpp"
+#include "reports/tables/comparison_tables.hpp"
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::CandidateJudgement;
+using compare::CandidateReading;
+using compare::CandidateWorst;
+using compare::Grade;
+using compare::Unit;
+
+std::string spaced(std::string name) {
+    std::ranges::replace(name, '_', ' ');
+    return name;
+}
+
+std::string tolerance_of(const CandidateJudgement& j) {
+    std::string text;
+    const std::pair<double, const char*> asked[] = {{j.tolerance.mm, "mm"},
+                                                    {j.tolerance.deg, "deg"},
+                                                    {j.tolerance.newton, "N"},
+                                                    {j.tolerance.newton_metre, "N·m"}};
+    std::vector<std::string> parts;
+    for (const auto& [value, unit] : asked)
+        if (std::isfinite(value)) parts.push_back(setting(value, unit));
+    for (std::size_t k = 0; k < parts.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
+    return text + (j.asked ? "" : " (the default)");
+}
+
+std::string worst_of(const CandidateJudgement& j, const compare::Comparison& comparison) {
+    std::string text;
+    for (const CandidateWorst& w : j.worst) {
+        const auto& branch =
+            *std::ranges::find(comparison.branches, w.branch, &compare::BranchComparison::branch);
+        const std::string by =
+            branch.abscissa < 0 ? "" : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
+        const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
+        const std::string size = std::isnan(w.max) ? "a number that is none"
+                                 : w.max < 1e-9    ? "nothing"
+                                                   : quantity(w.max, symbol(w.unit));
+        text += fmt::format(
+            "{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size, spaced(w.channel), w.branch,
+            parameter ? compare::parameter_reading(symbol(branch.unit)) : compare::abscissa_reading(by));
+    }
+    return text;
+}
+
+std::string joined(const std::vector<std::string>& list, std::size_t most) {
+    std::string text;
+    for (std::size_t k = 0; k < list.size() && k < most; ++k) text += (k == 0 ? "" : "; ") + list[k];
+    if (list.size() > most) text += fmt::format("; and {} more", list.size() - most);
+    return text;
+}
+
+void leftover_line(const compare::Leftover& left, std::string& text) {
+    if (left.truth.empty()) {
+        text += fmt::format("  its states are not judged: {}\n", left.why_not);
+        return;
+    }
+    const auto line = [&](const char* who, const std::vector<Residuals>& of) {
+        double force = 0, moment = 0, length = 0, direction = 0, at = left.a.front();
+        for (std::size_t k = 0; k < of.size(); ++k) {
+            if (compare::worse(of[k].force, force) != force) at = left.a[k];
+            force = compare::worse(of[k].force, force), moment = compare::worse(of[k].moment, moment);
+            length = compare::worse(of[k].length, length),
+            direction = compare::worse(of[k].direction, direction);
+        }
+        const auto number = [](double x) {
+            return std::isnan(x) ? std::string("-") : fmt::format("{:.1e}", x);
+        };
+        text += fmt::format(
+            "  its states in the {} leg's equations: force {} N{}, moment {} N·m, constraints {} mm, {}\n",
+            who, number(force),
+            std::isnan(force) ? "" : fmt::format(" (at {:.6g} {})", at, symbol(left.unit)), number(moment),
+            number(1e3 * length), number(direction));
+    };
+    line("equilibrium", left.truth);
+    line(name(left.second), left.by_second);
+    if (!left.why_not.empty()) text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
+}
+
+}  // namespace
+
+std::string sentence(const CandidateJudgement& j, const compare::Comparison& comparison) {
+    const std::string who = fmt::format("the candidate ‘{}’", j.name);
+    const std::string partly =
+        j.not_given.empty() ? "" : fmt::format(" It does not give {}.", joined(j.not_given, 3));
+    const std::string hints = j.said.empty() ? "" : fmt::format(" {}.", joined(j.said, 4));
+    switch (j.verdict) {
+        case Grade::not_judged:
+            return fmt::format(
+                "Not judged: {}{}.{}", j.reasons.front(),
+                j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "",
+                hints);
+        case Grade::pass:
+            return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}", who,
+                               tolerance_of(j),
+                               j.not_given.empty() ? " everywhere" : " where it says something",
+                               worst_of(j, comparison), partly);
+        case Grade::fail:
+            return fmt::format("Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}",
+                               who, worst_of(j, comparison), tolerance_of(j), hints, partly);
+    }
+    return {};
+}
+
+compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
+                                     const compare::Comparison& comparison) {
+    compare::Table table{
+        "candidate_trade",
+        {{"steps"},
+         {"error", "mm", "largest of the main outputs at equal load or parameter"},
+         {"angle error", "deg", "likewise"},
+         {"verdict", "", "by the tolerance", true},
+         {"time", "s", "of the whole program"},
+         {"CPU time", "s", "of the whole program"},
+         {"time over the leg's", "", "the equilibrium leg at as many points, within this program"},
+         {"why", "", "it could not be judged", true}},
+        {}};
+    for (const auto& run : runs) {
+        compare::Accuracy worst{NAN, NAN};
+        for (const auto& branch : run.judgement.branches)
+            for (std::size_t c = 0; c < branch.equal_parameter.columns.size(); ++c) {
+                const auto& d = branch.equal_parameter.columns[c];
+                const auto& channel = comparison.channels[run.judgement.columns[c].channel];
+                if (!channel.main || d.compared == 0) continue;
+                double& side = channel.unit == Unit::deg ? worst.deg : worst.mm;
+                side = std::isnan(side) ? d.max : compare::worse(d.max, side);
+            }
+        table.rows.push_back({static_cast<double>(run.steps), worst.mm, worst.deg,
+                              std::string(compare::name(run.judgement.verdict)), run.seconds, run.cpu,
+                              run.seconds / run.leg_seconds,
+                              run.judgement.reasons.empty() ? std::string() : run.judgement.reasons.front()});
+    }
+    return table;
+}
+
+std::string candidate_trade_text(const compare::Table& table) {
+    return text(table, {{"steps"},
+                        {"error", Digits::size},
+                        {"angle error", Digits::size},
+                        {"verdict"},
+                        {"time", Digits::three},
+                        {"CPU time", Digits::three},
+                        {"time over the leg's", Digits::three},
+                        {"why"}});
+}
+
+std::string candidate_text(const CandidateJudgement& j, const compare::Comparison& comparison) {
+    std::string text =
+        fmt::format("candidate '{}', read against the equilibrium leg at its own points\n", j.name);
+    const auto out = std::back_inserter(text);
+    for (const auto& branch : j.branches) {
+        fmt::format_to(out, "\nbranch '{}': {} points", branch.branch, branch.points);
+        if (!std::isnan(branch.from))
+            fmt::format_to(out, " from {:.6g} to {:.6g} {}", branch.from, branch.to, symbol(branch.unit));
+        fmt::format_to(out, "\n\n");
+        const compare::Channel* by =
+            branch.abscissa < 0 ? nullptr : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
+        const CandidateReading &load = branch.equal_parameter, &travel = branch.equal_abscissa;
+        const std::string by_load = compare::parameter_reading(symbol(branch.unit)),
+                          by_travel = compare::abscissa_reading(by == nullptr ? "" : by->name);
+        if (!load.columns.empty() || !travel.columns.empty()) {
+            fmt::format_to(out, "  {:<30}{:>11}   {:<36}   {}\n", "the candidate's", "", by_load, by_travel);
+            fmt::format_to(out, "  {:<30}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}\n", "deviation",
+                           "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
+                           fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share");
+            int hidden = 0;
+            for (std::size_t c = 0; c < j.columns.size(); ++c) {
+                const auto& channel = comparison.channels[j.columns[c].channel];
+                const auto cells = [&](const CandidateReading& reading) {
+                    if (reading.columns.empty() || reading.columns[c].compared == 0)
+                        return fmt::format("{:>9}{:27}", "-", "");
+                    return deviation_cells(reading.columns[c]);
+                };
+                const auto& some = load.columns.empty() ? travel : load;
+                if (some.columns[c].compared == 0 &&
+                    (travel.columns.empty() || travel.columns[c].compared == 0))
+                    continue;
+                const bool small = some.columns[c].max < 1e-6;
+                if (!j.judged[c] && !channel.main && small) {
+                    ++hidden;
+                    continue;
+                }
+                fmt::format_to(
+                    out, "  {:<30}{:>11.5g}   {}   {}\n",
+                    fmt::format("{} [{}]{}", channel.name, symbol(channel.unit), j.judged[c] ? "" : " *"),
+                    some.columns[c].range, cells(load), cells(travel));
+            }
+            text = text.substr(0, text.find_last_not_of(" \n") + 1) + "\n";
+            if (std::ranges::find(j.judged, false) != j.judged.end())
+                fmt::format_to(out, "  * not judged: no main output, or no tolerance in its unit{}\n",
+                               hidden > 0 ? fmt::format("; {} more are off by less than 1e-6", hidden) : "");
+        }
+        for (const auto& [reading, how] : {std::pair{&load, &by_load}, {&travel, &by_travel}}) {
+            if (!reading->not_compared.empty())
+                fmt::format_to(out, "  {}: not compared, {}\n", *how, reading->not_compared);
+            if (reading->outside > 0)
+                fmt::format_to(out, "  {}: {} points lie where the reference does not come\n", *how,
+                               reading->outside);
+        }
+        for (const auto& left : j.leftovers)
+            if (left.branch == branch.branch) leftover_line(left, text);
+    }
+    fmt::format_to(out, "\n");
+    for (const auto& missing : j.not_given) fmt::format_to(out, "  not given: {}\n", missing);
+    for (const auto& note : j.notes) fmt::format_to(out, "  note: {}\n", note);
+    for (const auto& hint : j.said) fmt::format_to(out, "  {}\n", hint);
+    for (const auto& reason : j.reasons) fmt::format_to(out, "  could not judge: {}\n", reason);
+    fmt::format_to(out, "{} numbers compared.\n\n", j.compared);
+    return text;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,28 @@
+// What is said of a candidate: on the terminal, and the sentence that is the same everywhere.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/candidate.hpp"
+#include "compare/table.hpp"
+
+namespace elastocheck::reports {
+
+std::string sentence(const compare::CandidateJudgement& judgement, const compare::Comparison& comparison);
+
+// What its accuracy costs: one run of its command.
+struct CandidateRun {
+    int steps = 0;
+    double seconds = 0, cpu = 0;  // of the whole program
+    double leg_seconds = 0;       // of the equilibrium leg at as many points, within this process
+    compare::CandidateJudgement judgement;
+};
+compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
+                                     const compare::Comparison& comparison);
+std::string candidate_trade_text(const compare::Table& table);
+
+std::string candidate_text(const compare::CandidateJudgement& judgement,
+                           const compare::Comparison& comparison);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,391 @@
+// A candidate is judged as the recursion is, each fault that a person could make is named, and nothing passes by saying
+// nothing.
+#include "compare/candidate.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "models/compile.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Kind = Explanation::Kind;
+
+struct Solved {
+    Model model = compile(support::scene("chrono_mcpherson"));
+    Comparison comparison;
+    Solved() {
+        Options options;
+        options.recursion.steps = 40;
+        options.prove = false;
+        comparison = compare(model, options);
+    }
+    std::size_t channel(const char* name) const {
+        return static_cast<std::size_t>(find_channel(comparison.channels, name));
+    }
+};
+const Solved& solved() {
+    static const Solved once;
+    return once;
+}
+
+// What a leg found, as a table of the main outputs and travel.
+Candidate table_of(Leg leg) {
+    const auto& all = solved().comparison;
+    Candidate candidate;
+    candidate.name = "mysolver";
+    for (std::size_t c = 0; c < all.channels.size(); ++c)
+        if (all.channels[c].main || all.channels[c].name == "travel")
+            candidate.points.columns.push_back({c, false, {}});
+    for (const auto& branch : all.branches) {
+        const Curve& curve = branch.runs[static_cast<std::size_t>(leg)].curve;
+        for (std::size_t k = 0; k < curve.a.size(); ++k) {
+            candidate.points.branch.push_back(branch.branch);
+            candidate.points.a.push_back(curve.a[k]);
+            for (auto& column : candidate.points.columns)
+                column.values.push_back(curve.values[k][column.channel]);
+        }
+    }
+    return candidate;
+}
+
+std::vector<double>& values(Candidate& candidate, const char* name) {
+    return std::ranges::find(candidate.points.columns, solved().channel(name), &PointColumn::channel)->values;
+}
+
+CandidateJudgement judged(const Candidate& candidate) {
+    return judge_candidate(solved().model, solved().comparison, candidate);
+}
+
+std::string texts(const CandidateJudgement& judgement) {
+    std::string text = name(judgement.verdict);
+    for (const auto* list : {&judgement.reasons, &judgement.said, &judgement.not_given})
+        for (const auto& one : *list) text += "; " + one;
+    return text;
+}
+
+// Of one column, and of this kind.
+const Explanation* explained(const CandidateJudgement& judgement, const char* name, Kind kind) {
+    for (const auto& one : judgement.explanations)
+        if (one.kind == kind && judgement.columns[one.column].channel == solved().channel(name)) return &one;
+    return nullptr;
+}
+
+TEST(Candidate, ThatIsTheReferencePassesAndNoNumberOfItIsOff) {
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
+        const auto judgement = judged(table_of(leg));
+        EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
+        EXPECT_TRUE(judgement.said.empty() && judgement.not_given.empty()) << texts(judgement);
+        ASSERT_EQ(judgement.branches.size(), 2u);
+        for (const auto& branch : judgement.branches)
+            for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
+                for (const auto& d : branch.reading(kind).columns) {
+                    EXPECT_GE(d.compared, 40);
+                    EXPECT_LE(d.max, 1e-8);
+                }
+    }
+}
+
+TEST(Candidate, ThatIsTheRecursionGetsItsNumbersDigitForDigit) {
+    const auto judgement = judged(table_of(Leg::recursive));
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    int compared = 0;
+    for (std::size_t b = 0; b < judgement.branches.size(); ++b) {
+        const auto& ours = solved().comparison.branches[b].deviation;
+        const auto& theirs = judgement.branches[b];
+        for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
+            const auto& expected = ours.equal_parameter.channels[judgement.columns[c].channel];
+            const auto& got = theirs.equal_parameter.columns[c];
+            EXPECT_EQ(got.signed_max, expected.signed_max);
+            EXPECT_EQ(got.at, expected.at);
+            EXPECT_EQ(got.rms, expected.rms);
+            EXPECT_EQ(got.range, expected.range);
+            EXPECT_EQ(got.compared, expected.compared);
+            compared += got.compared;
+            // At equal travel nothing is interpolated here, and something is there; and the last point that both reach is
+            // one of the recursion's here, one of the reference's there, half a step apart.
+            if (judgement.columns[c].channel == solved().channel("toe")) {
+                const double there = ours.equal_abscissa.channels[judgement.columns[c].channel].signed_max;
+                EXPECT_NEAR(theirs.equal_abscissa.columns[c].signed_max, there, 0.05 * std::abs(there));
+            }
+        }
+    }
+    EXPECT_GT(compared, 400);
+}
+
+TEST(Candidate, WithATurnedSignIsToldSo) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    for (double& v : values(candidate, "toe")) v = -v;
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    const auto* found = explained(judgement, "toe", Kind::sign);
+    ASSERT_NE(found, nullptr) << texts(judgement);
+    EXPECT_LE(found->left, 1e-8);
+    ASSERT_EQ(judgement.said.size(), 1u);
+    EXPECT_TRUE(judgement.said[0].starts_with("toe agrees to ")) << judgement.said[0];
+    EXPECT_TRUE(judgement.said[0].ends_with(" deg with its sign turned")) << judgement.said[0];
+}
+
+TEST(Candidate, InAnotherUnitIsToldWhich) {
+    const struct {
+        const char *name, *word;
+        double factor;
+    } cases[] = {{"toe", "radians for degrees", std::numbers::pi / 180},
+                 {"camber", "minutes of arc for degrees", 60},
+                 {"wheel_centre_y", "metres for millimetres, or the like", 1e-3},
+                 {"wheel_centre_z", "inches for millimetres", 1 / 25.4}};
+    for (const auto& [name, word, factor] : cases)
+        for (const double sign : {1., -1.}) {
+            Candidate candidate = table_of(Leg::equilibrium);
+            for (double& v : values(candidate, name)) v *= sign * factor;
+            const auto judgement = judged(candidate);
+            EXPECT_EQ(judgement.verdict, Grade::fail);
+            const auto* found = explained(judgement, name, Kind::factor);
+            ASSERT_NE(found, nullptr) << name << texts(judgement);
+            EXPECT_EQ(found->unit_word, word);
+            EXPECT_NEAR(found->factor, sign * factor, 1e-9 * std::abs(factor));
+        }
+}
+
+TEST(Candidate, CountedFromElsewhereIsToldByHowMuch) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    for (double& v : values(candidate, "camber")) v += 0.5;
+    for (double& v : values(candidate, "wheel_centre_y")) v = 12 - v;
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    const auto* offset = explained(judgement, "camber", Kind::offset);
+    ASSERT_NE(offset, nullptr) << texts(judgement);
+    EXPECT_NEAR(offset->offset, 0.5, 1e-9);
+    const auto* both = explained(judgement, "wheel_centre_y", Kind::sign_and_offset);
+    ASSERT_NE(both, nullptr) << texts(judgement);
+    EXPECT_NEAR(both->offset, 12, 1e-8);
+}
+
+TEST(Candidate, WithTwoColumnsChangedOverIsToldWhich) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    std::swap(values(candidate, "toe"), values(candidate, "camber"));
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    ASSERT_EQ(judgement.said.size(), 1u) << texts(judgement);
+    EXPECT_TRUE(judgement.said[0].starts_with("toe and camber are changed over")) << judgement.said[0];
+}
+
+TEST(Candidate, OffByAThousandthFailsAndTheThousandthIsTold) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    auto& z = values(candidate, "wheel_centre_z");
+    const double drawn = evaluate(solved().model, solved().comparison.channels,
+                                  design_state(solved().model))[solved().channel("wheel_centre_z")];
+    for (double& v : z) v = drawn + 1.001 * (v - drawn);
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    const auto* found = explained(judgement, "wheel_centre_z", Kind::factor);
+    ASSERT_NE(found, nullptr) << texts(judgement);
+    EXPECT_NEAR(found->factor, 1.001, 1e-6);
+    EXPECT_TRUE(judgement.said[0].starts_with("wheel_centre_z is 0.1 % too large throughout"))
+        << judgement.said[0];
+}
+
+TEST(Candidate, WrongFromTheMiddleOfABranchOnIsToldFromWhere) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    auto& toe = values(candidate, "toe");
+    double last_right = 0;
+    for (std::size_t k = 0; k < toe.size(); ++k) {
+        if (candidate.points.branch[k] != "jounce") continue;
+        if (candidate.points.a[k] > 1600)
+            toe[k] += 1e-5 * (candidate.points.a[k] - 1400);
+        else
+            last_right = candidate.points.a[k];
+    }
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    const auto* found = explained(judgement, "toe", Kind::from_there_on);
+    ASSERT_NE(found, nullptr) << texts(judgement);
+    EXPECT_EQ(found->branch, "jounce");
+    EXPECT_EQ(found->at, last_right);
+}
+
+TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    auto& toe = values(candidate, "toe");
+    for (std::size_t k = 0; k < toe.size(); ++k) toe[k] += 0.02 * std::pow(candidate.points.a[k] / 3000, 2);
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::fail);
+    EXPECT_TRUE(judgement.said.empty()) << texts(judgement);
+}
+
+TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
+    for (const char* name : {"toe", "wheel_centre_x", "travel"}) {
+        Candidate candidate = table_of(Leg::equilibrium);
+        values(candidate, name)[7] = INFINITY;  // as a reader hands over what is said and is no number
+        const auto judgement = judged(candidate);
+        EXPECT_EQ(judgement.verdict, Grade::not_judged) << name << texts(judgement);
+    }
+    Candidate candidate = table_of(Leg::equilibrium);
+    candidate.points.a[7] = INFINITY;
+    EXPECT_EQ(judged(candidate).verdict, Grade::not_judged);
+}
+
+TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndWhatIsMissingIsSaid) {
+    Candidate all = table_of(Leg::equilibrium), part;
+    part.name = all.name;
+    for (const auto& column : all.points.columns) part.points.columns.push_back({column.channel, false, {}});
+    for (std::size_t k = 0; k < all.points.a.size(); ++k) {
+        if (all.points.branch[k] != "jounce" || all.points.a[k] > 1500) continue;
+        part.points.branch.push_back(all.points.branch[k]);
+        part.points.a.push_back(all.points.a[k]);
+        for (std::size_t c = 0; c < part.points.columns.size(); ++c)
+            part.points.columns[c].values.push_back(all.points.columns[c].values[k]);
+    }
+    auto judgement = judged(part);
+    EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
+    EXPECT_EQ(judgement.not_given,
+              (std::vector<std::string>{"branch 'jounce' from 1500 to 3000 N", "branch 'rebound'"}));
+    part.complete = true;  // who was asked for all of it has failed
+    judgement = judged(part);
+    EXPECT_EQ(judgement.verdict, Grade::not_judged);
+    EXPECT_EQ(judgement.reasons.size(), 2u) << texts(judgement);
+}
+
+TEST(Candidate, InWhichNothingMovesIsNotJudged) {
+    Candidate candidate = table_of(Leg::equilibrium);
+    const double all_over[] = {1, 2, 3, 4, 5, 6};
+    std::size_t c = 0;
+    for (auto& column : candidate.points.columns) {
+        std::ranges::fill(column.values, all_over[c++ % 6]);
+    }
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::not_judged);
+    EXPECT_NE(texts(judgement).find("nothing moves in it"), std::string::npos) << texts(judgement);
+    // One output alone that stands still is one that is wrong.
+    Candidate one = table_of(Leg::equilibrium);
+    std::ranges::fill(values(one, "toe"), values(one, "toe").front());
+    const auto still = judged(one);
+    EXPECT_EQ(still.verdict, Grade::fail);
+    EXPECT_NE(explained(still, "toe", Kind::still), nullptr) << texts(still);
+}
+
+TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
+    Candidate nowhere = table_of(Leg::equilibrium);
+    for (double& a : nowhere.points.a) a += 1e6;
+    for (double& t : values(nowhere, "travel")) t += 1e6;
+    EXPECT_EQ(judged(nowhere).verdict, Grade::not_judged);
+    Candidate empty = table_of(Leg::equilibrium);
+    for (auto& column : empty.points.columns) std::ranges::fill(column.values, std::nan(""));
+    EXPECT_EQ(judged(empty).verdict, Grade::not_judged);
+    // Numbers for which nobody gave a tolerance.
+    EXPECT_EQ(judge_candidate(solved().model, solved().comparison, table_of(Leg::equilibrium),
+                              parse_tolerance("1N", Asks::forces_too))
+                  .verdict,
+              Grade::not_judged);
+}
+
+TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
+    // Every third point, and others between them that the recursion never visits; the reference is solved there.
+    Candidate candidate;
+    candidate.name = "mysolver";
+    const auto toe = solved().channel("toe"), travel = solved().channel("travel");
+    candidate.points.columns = {{toe, false, {}}, {travel, false, {}}};
+    const Way way = ways_of(solved().model, solved().model.branches[0], 7).front();
+    const auto path = walk(way, {.leg = Leg::energy});
+    for (const auto& point : path.points) {
+        const auto row = evaluate(solved().model, solved().comparison.channels, point);
+        candidate.points.branch.push_back("jounce");
+        candidate.points.a.push_back(point.load);
+        candidate.points.columns[0].values.push_back(row[toe]);
+        candidate.points.columns[1].values.push_back(row[travel]);
+    }
+    const auto judgement = judged(candidate);
+    EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
+    for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+        EXPECT_EQ(judgement.branches[0].reading(kind).columns[0].compared, 8);
+        EXPECT_LE(judgement.branches[0].reading(kind).columns[0].max, 1e-9);
+    }
+    candidate.points.a.clear();  // over travel alone
+    candidate.points.abscissa = travel, candidate.points.at = candidate.points.columns[1].values;
+    const auto over_travel = judged(candidate);
+    EXPECT_EQ(over_travel.verdict, Grade::pass) << texts(over_travel);
+    EXPECT_FALSE(over_travel.branches[0].equal_parameter.not_compared.empty());
+}
+
+// ---- States and solvers.
+
+TEST(Candidate, AsAFunctionIsALeg) {
+    const auto& all = solved().comparison;
+    const auto run = [&](Leg leg) {
+        const CandidateSolver solver = [&](const Model& model, const Branch& branch,
+                                           std::span<const double>) {
+            return walk(Way{branch.name, model, branch}, {.leg = leg});
+        };
+        return judged(candidate_of(solved().model, all, "mine", solver));
+    };
+    const auto exact = run(Leg::energy), off = run(Leg::recursive);
+    EXPECT_EQ(exact.verdict, Grade::pass) << texts(exact);
+    EXPECT_EQ(off.verdict, Grade::fail) << texts(off);
+    ASSERT_EQ(exact.leftovers.size(), 2u);
+    for (std::size_t b = 0; b < 2; ++b) {
+        const Bounds& bounds = all.branches[b].bounds;
+        double by_energy = 0, length = 0;
+        for (std::size_t k = 0; k < exact.leftovers[b].truth.size(); ++k) {
+            EXPECT_LE(exact.leftovers[b].truth[k].force, bounds.residual_force);
+            EXPECT_LE(exact.leftovers[b].truth[k].moment, bounds.residual_moment);
+            EXPECT_LE(1e3 * exact.leftovers[b].truth[k].length, bounds.residual_length);
+            EXPECT_LE(exact.leftovers[b].by_second[k].force, bounds.residual_force);
+        }
+        // The energy leg never asks for reactions: what it says of the recursion it says of a candidate.
+        for (std::size_t k = 0; k < off.leftovers[b].truth.size(); ++k) {
+            by_energy = std::max(by_energy, off.leftovers[b].by_second[k].force);
+            length = std::max(length, off.leftovers[b].truth[k].length);
+        }
+        const auto& judged_then = all.branches[b].runs[0].judged;
+        EXPECT_NEAR(by_energy, judged_then[2].force, 1e-6 * by_energy);
+        EXPECT_NEAR(length, judged_then[1].length, 1e-12);
+    }
+}
+
+TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
+    const auto& all = solved().comparison;
+    const Way way = ways_of(solved().model, solved().model.branches[0], 4).front();
+    const auto path = walk(way, {.leg = Leg::equilibrium});
+    std::vector<CandidateState> states;
+    for (const auto& point : path.points) states.push_back({"jounce", point.load, point.poses});
+    const auto at_rest = candidate_of(solved().model, all, "mine", states);
+    for (auto& pose : states.back().poses)
+        pose.r += Eigen::Vector3d(0, 0, 1e-4);  // all bodies by 0.1 mm: bushings and springs resist
+    const auto moved = candidate_of(solved().model, all, "mine", states);
+    ASSERT_EQ(moved.leftovers.size(), 1u);
+    EXPECT_LE(at_rest.leftovers[0].truth.back().force, 1e-6);
+    EXPECT_GE(moved.leftovers[0].truth.back().force, 1);
+    EXPECT_GE(moved.leftovers[0].by_second.back().force, 1);
+    EXPECT_EQ(moved.leftovers[0].truth.front().force, at_rest.leftovers[0].truth.front().force);
+}
+
+TEST(Candidate, WhoseSolverGivesUpIsNotJudged) {
+    const CandidateSolver nothing = [](const Model&, const Branch&, std::span<const double>) {
+        return EquilibriumPath{Outcome::iteration_limit, "gave up", {}, {}};
+    };
+    const auto judgement = judged(candidate_of(solved().model, solved().comparison, "mine", nothing));
+    EXPECT_EQ(judgement.verdict, Grade::not_judged) << texts(judgement);
+    const CandidateSolver no_numbers = [](const Model& model, const Branch& branch, std::span<const double>) {
+        auto path = walk(Way{branch.name, model, branch}, {.leg = Leg::equilibrium});
+        path.points.back().poses.front().r.y() = std::nan("");
+        return path;
+    };
+    const auto nan = judged(candidate_of(solved().model, solved().comparison, "mine", no_numbers));
+    EXPECT_EQ(nan.verdict, Grade::not_judged) << texts(nan);
+}
+
+TEST(Candidate, TolerancesHaveForcesWhereTheseAreJudged) {
+    const Tolerance all = parse_tolerance("0.01mm,0.001deg,1N,2Nm", Asks::forces_too);
+    EXPECT_EQ(all.newton, 1);
+    EXPECT_EQ(all.newton_metre, 2);
+    EXPECT_THROW((void)parse_tolerance("0.01mm,1N"), std::invalid_argument);
+    EXPECT_THROW((void)parse_tolerance("1N,2N", Asks::forces_too), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace elastocheck::compare

@@ -1,0 +1,360 @@
+// Another solver's results, as files and as a command: read, run, judged; what cannot be judged never passes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "reports/files/child.hpp"
+#include "tests/reports/command.hpp"
+
+namespace elastocheck {
+namespace {
+
+using json = nlohmann::ordered_json;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+
+const std::string strut = scenes + "/mcpherson.yaml";
+
+// What `solve` writes of the strut, as a file of that name.
+std::string solved(const Folder& folder, const std::string& name, const std::string& how) {
+    const std::string file = (folder.path / name).string();
+    const Said said = elastocheck_says(fmt::format("solve {} {} {}", strut, how, file));
+    EXPECT_EQ(said.code, 0) << said.err;
+    return file;
+}
+
+Said judge(const std::string& how) { return elastocheck_says("judge " + strut + " " + how); }
+
+TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
+    const Folder folder;
+    const std::string curves = solved(folder, "curves.csv", "--steps 10 --method energy -o"),
+                      states = solved(folder, "states.jsonl", "--steps 10 --method energy --states");
+    for (const auto& file : {curves, states}) {
+        const Said said = judge("--steps 10 --candidate " + file);
+        EXPECT_EQ(said.code, 0) << said.out << said.err;
+        EXPECT_TRUE(contains(said.out, "Pass: the candidate ")) << said.out;
+        EXPECT_EQ(contains(said.out, "its states in the equilibrium leg's equations: force "), file == states)
+            << said.out;
+    }
+    // With forces, which the curves have and the states come to.
+    for (const auto& file : {curves, states}) {
+        const Said said = judge("--steps 10 --tolerance 1e-6mm,1e-6deg,1e-4N,1e-4Nm --candidate " + file);
+        EXPECT_EQ(said.code, 0) << said.out << said.err;
+    }
+}
+
+TEST(CandidateCommand, ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {
+    const Said said = judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
+                            " solve {scene} --steps {steps} -o {output}'");
+    EXPECT_EQ(said.code, 1) << said.err;
+    const json scene = json::parse(said.out)["scenes"][0];
+    int same = 0;
+    for (std::size_t b = 0; b < scene["branches"].size(); ++b) {
+        const auto& ours = scene["branches"][b]["deviation"]["at_equal_parameter"]["channels"];
+        const auto& theirs = scene["candidates"][0]["branches"][b]["at_equal_parameter"]["channels"];
+        for (const auto& [name, d] : theirs.items()) {
+            if (!ours.contains(name)) continue;
+            EXPECT_EQ(d["signed_max"], ours[name]["signed_max"]) << name;
+            EXPECT_EQ(d["rms"], ours[name]["rms"]) << name;
+            EXPECT_EQ(d["at"], ours[name]["at"]) << name;
+            ++same;
+        }
+    }
+    EXPECT_GT(same, 40);
+}
+
+TEST(CandidateCommand, ACommandThatDoesNotDoWhatItShouldCouldNotBeJudged) {
+    const struct {
+        const char *command, *said;
+    } cases[] = {
+        {"sh -c \"echo no licence >&2; exit 7\" {output}", "ended with exit code 7"},
+        {"sh -c \"kill -SEGV $$\" {output}", "was killed by signal 11"},
+        {"sleep 30 {output}", "could"},
+        {"true {output}", "wrote no output file"},
+        {"touch {output}", "wrote nothing"},
+        {"cp /proc/self/environ {output}", ""},
+        {"sh -c \"echo 1,2,3 > $0\" {output}", "unknown column '1'"},
+        {"sh -c \"printf 'branch,load_N,toe_deg\\\\njounce,10,0\\\\n' > $0\" {output}", "it does not give"},
+        {"no-such-program-anywhere {output}", "could not be run"}};
+    for (const auto& [command, expected] : cases) {
+        const std::string line = command;
+        const Said said =
+            judge(fmt::format("--steps 5 --candidate-timeout 0.5 --candidate-command '{}'", [&] {
+                std::string quoted;
+                for (const char c : line) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+                return quoted;
+            }()));
+        EXPECT_EQ(said.code, 3) << command << "\n" << said.out << said.err;
+        EXPECT_TRUE(contains(said.out, "Not judged: ")) << command << "\n" << said.out;
+        if (line.starts_with("sleep"))
+            EXPECT_TRUE(contains(said.out, "took longer than 0.5 s and was killed") ||
+                        contains(said.out, "ended with exit code"))
+                << said.out;
+        else
+            EXPECT_TRUE(contains(said.out, expected)) << command << "\n" << said.out;
+        if (line.find("licence") != line.npos) {
+            EXPECT_TRUE(contains(said.err, "no licence")) << said.err;
+        }
+    }
+}
+
+TEST(CandidateCommand, WhatCannotBeRightIsRefusedBeforeTheWork) {
+    const struct {
+        const char *how, *what;
+    } cases[] = {{"", "nobody to judge"},
+                 {"--candidate-command 'true {scene}'", "no {output} in it"},
+                 {"--candidate-command 'true \"{output}'", "a quote \" does not close"},
+                 {"--candidate-command 'true {output}' --set springs.K1_coil.rate=28e3", "not with --set"},
+                 {"--candidate-command 'true {output}' --tolerance 1kg", "is not a unit"},
+                 {"--candidate nowhere.csv", "nowhere.csv"}};
+    for (const auto& [how, what] : cases) {
+        const Said said = judge(how);
+        EXPECT_EQ(said.code, 2) << how << said.out;
+        EXPECT_TRUE(contains(said.err, what)) << how << "\n" << said.err;
+    }
+}
+
+TEST(CandidateCommand, WordsOfACommandAreParted) {
+    using reports::words_of;
+    using Words = std::vector<std::string>;
+    EXPECT_EQ(words_of("  ./a  b\tc "), (Words{"./a", "b", "c"}));
+    EXPECT_EQ(words_of(R"('a b' "c d" e\ f "g\"h" 'i\j' '' k'l'm)"),
+              (Words{"a b", "c d", "e f", "g\"h", "i\\j", "", "klm"}));
+    EXPECT_THROW((void)words_of("'a"), std::invalid_argument);
+    EXPECT_THROW((void)words_of("a\\"), std::invalid_argument);
+}
+
+TEST(CandidateCommand, NothingOfAProgramThatIsKilledGoesOn) {
+    const Folder folder;
+    const std::string mark = (folder.path / "mark").string();
+    const auto ended = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & sleep 30"}, 0.3);
+    EXPECT_EQ(ended.how, reports::Ended::How::too_long);
+    const auto leaves = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & exit 0"}, 30);
+    EXPECT_TRUE(leaves.well());
+    EXPECT_LT(leaves.seconds, 2);
+    EXPECT_EQ(support::says("sleep 3").code, 0);
+    EXPECT_FALSE(std::filesystem::exists(mark));
+}
+
+// ---- Tables that are written otherwise.
+
+std::string rows(const std::string& csv, const std::vector<std::string>& columns, const std::string& head,
+                 const std::function<std::string(const std::string&, double)>& written) {
+    const auto cells = cells_of(csv);
+    std::vector<std::size_t> at;
+    for (const auto& column : columns)
+        at.push_back(static_cast<std::size_t>(std::ranges::find(cells[0], column) - cells[0].begin()));
+    std::string text = head + "\n";
+    for (std::size_t r = 1; r < cells.size(); ++r) {
+        for (std::size_t c = 0; c < at.size(); ++c) {
+            const std::string& cell = cells[r].at(at[c]);
+            text +=
+                (c == 0 ? "" : ",") + (columns[c] == "branch" ? cell : written(columns[c], std::stod(cell)));
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
+    const Folder folder;
+    const std::string csv = text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium -o"));
+    const std::string theirs =
+        folder.write("theirs.csv",
+                     rows(csv,
+                          {"branch", "parameter", "toe [deg]", "camber [deg]", "wheel_centre_z [mm]",
+                           "wheel_centre_y [mm]"},
+                          "case,Fz [kN],TOE,CAMBER,HEIGHT,WHATEVER", [](const std::string& column, double v) {
+                              if (column == "parameter") v *= 1e-3;
+                              if (column == "toe [deg]") v *= -std::acos(-1.) / 180;
+                              if (column == "wheel_centre_z [mm]") v = (v + 26) / 1e3;
+                              return fmt::format("{:.17g}", v);
+                          }));
+    const std::string map = folder.write("map.yaml", R"(columns:
+  case: {output: branch}
+  Fz [kN]: {output: parameter, unit: kN}
+  TOE: {output: toe, unit: rad, sign: -1}
+  CAMBER: {output: camber}
+  HEIGHT: {output: wheel_centre_z, unit: m, offset: -26}
+)");
+    const Said said = judge("--steps 10 --candidate " + theirs + " --map " + map);
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    EXPECT_TRUE(contains(said.out, "columns that are not compared: WHATEVER")) << said.out;
+    // Without the sign it is told.
+    std::string wrong = text_of(map);
+    wrong.replace(wrong.find(", sign: -1"), 10, "");
+    const Said turned =
+        judge("--steps 10 --candidate " + theirs + " --map " + folder.write("wrong.yaml", wrong));
+    EXPECT_EQ(turned.code, 1);
+    EXPECT_TRUE(contains(turned.out, "with its sign turned")) << turned.out;
+    const struct {
+        const char *text, *what;
+    } cases[] = {{"columns:\n  TOE: {output: toes}\n",
+                  "map.yaml:2: columns.TOE.output: no output is called 'toes', did you mean 'toe'?"},
+                 {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
+                 {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
+                 {"columns:\n  GONE: {output: toe}\n", "no column 'GONE', which"},
+                 {"rows: {}\n", "rows"}};
+    for (const auto& [text, what] : cases) {
+        const Said refused =
+            judge("--steps 10 --candidate " + theirs + " --map " + folder.write("map.yaml", text));
+        EXPECT_EQ(refused.code, 2) << text;
+        EXPECT_TRUE(contains(refused.err, what)) << refused.err;
+    }
+}
+
+TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
+    const Folder folder;
+    const std::string state = R"("bodies": {"arm": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}}})";
+    const struct {
+        const char* name;
+        std::string text, what;
+    } cases[] = {
+        {"a.csv", "load_N,toes_deg\n1,2\n", "a.csv:1: unknown column 'toes_deg', did you mean"},
+        {"a.csv", "toe_deg\n1\n", "a.csv:1: no column says where a point is"},
+        {"a.csv", "branch,load_N,toe_deg\njounce,1,2\nbounce,1,2\n",
+         "a.csv:3: branch: the scene has no branch 'bounce'"},
+        {"a.csv", "branch,load_N,toe_deg\njounce,1,x\n", "a.csv:2: toe_deg: 'x' is not a number"},
+        {"a.csv", "branch,load_mm,toe_deg\njounce,1,1\n",
+         "a.csv:2: load_mm: 'mm' is no unit of what branch 'jounce' goes by"},
+        {"a.csv", "branch,load_N,toe_deg,toe [deg]\njounce,1,1,1\n", "two columns are toe"},
+        {"a.csv", "", "a.csv: empty"},
+        {"a.jsonl", R"({"branch": "jounce", "load": 1, )" + state + "\n",
+         "a.jsonl:1: bodies: body 'wheel' is missing"},
+        {"a.jsonl", R"({"branch": "jounce", "load": 1)", "a.jsonl:1: "},
+        {"a.jsonl", R"({"branch": "jounce", "bodies": {}})", "a.jsonl:1: load: missing"},
+        {"a.jsonl",
+         R"({"branch": "jounce", "load": 1, "bodies": {"amr": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}}})",
+         "the scene has no body 'amr', did you mean 'arm'"},
+        {"a.jsonl",
+         R"({"branch": "jounce", "load": 1, "bodies": {"arm": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0.01]}}})",
+         "a.jsonl:1: bodies.arm.orientation: its length is 1.00005"},
+        {"a.csv", "branch,load,body,x,y,z,qw,qx,qy,qz\njounce,1,arm,0,0,0,1,0,0,0.01\n",
+         "a.csv:2: orientation: its length"},
+        {"a.csv",
+         "branch,load,body,x,y,z,qw,qx,qy,qz\njounce,1,arm,0,0,0,1,0,0,0\njounce,1,arm,0,0,0,1,0,0,0\n",
+         "a.csv:3: body 'arm' is there already"}};
+    for (const auto& [name, text, what] : cases) {
+        const Said said = judge("--steps 5 --candidate " + folder.write(name, text));
+        EXPECT_EQ(said.code, 2) << text << said.out;
+        EXPECT_TRUE(contains(said.err, what)) << text << "\n" << said.err;
+    }
+}
+
+TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
+    const Folder folder;
+    std::string csv =
+        text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium --channels toe,camber -o"));
+    const Said whole = judge("--steps 10 --candidate " + folder.write("whole.csv", csv));
+    EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
+    const auto line = csv.find("\njounce", csv.size() / 3);
+    const std::string part = csv.substr(0, line + 1);
+    const Said partly = judge("--steps 10 --candidate " + folder.write("part.csv", part));
+    EXPECT_EQ(partly.code, 0) << partly.out;
+    EXPECT_TRUE(contains(partly.out, "It does not give branch 'jounce' from ")) << partly.out;
+    EXPECT_TRUE(contains(partly.out, "branch 'rebound'")) << partly.out;
+    auto nan = part;
+    nan.replace(nan.rfind(',') + 1, nan.size(), "nan\n");
+    const Said no_number = judge("--steps 10 --candidate " + folder.write("nan.csv", nan));
+    EXPECT_EQ(no_number.code, 3) << no_number.out;
+    EXPECT_TRUE(contains(no_number.out, "is no number at")) << no_number.out;
+}
+
+// The same poses in the other format, in another order of rows.
+TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
+    const Folder folder;
+    const std::string lines = solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
+    std::vector<std::string> rows;
+    for (const auto& line : parts_of(text_of(lines), '\n')) {
+        const json state = json::parse(line);
+        for (const auto& [body, pose] : state["bodies"].items()) {
+            std::string row = fmt::format("{},{:.17g},{}", state["branch"].get<std::string>(),
+                                          state["load"].get<double>(), body);
+            for (const auto& x : pose["position"]) row += fmt::format(",{:.17g}", x.get<double>());
+            for (const auto& x : pose["orientation"]) row += fmt::format(",{:.17g}", x.get<double>());
+            rows.push_back(row);
+        }
+    }
+    std::string csv = "branch,load,body,x,y,z,qw,qx,qy,qz\n";
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) csv += *row + "\n";
+    const std::string table = folder.write("states.csv", csv);
+    const auto of = [&](const std::string& file) {
+        const Said said = judge("--steps 4 --json --candidate " + file);
+        EXPECT_EQ(said.code, 0) << said.err;
+        return json::parse(said.out)["scenes"][0]["candidates"][0];
+    };
+    const json a = of(lines), b = of(table);
+    for (const char* reading : {"at_equal_parameter", "at_equal_abscissa"})
+        EXPECT_EQ(a["branches"][0][reading]["channels"]["toe"]["compared"],
+                  b["branches"][0][reading]["channels"]["toe"]["compared"]);
+    EXPECT_EQ(a["numbers"], b["numbers"]);
+    EXPECT_EQ(a["states"][0]["equilibrium"]["force_N"].size(), 5u);
+}
+
+// ---- In the other commands.
+
+TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const Said said = elastocheck_says(
+        fmt::format("converge {} --steps 40,80,160,320,640 -o {} --candidate-command '" ELASTOCHECK_COMMAND
+                    " solve {{scene}} --steps {{steps}} -o {{output}}'",
+                    strut, out));
+    EXPECT_EQ(said.code, 0) << said.err;
+    const auto ours = cells_of(text_of(out + "/convergence.csv")),
+               theirs = cells_of(text_of(out + "/candidate_convergence.csv"));
+    const auto column = [&](const char* name) {
+        return static_cast<std::size_t>(
+            std::ranges::find_if(ours[0], [&](const auto& c) { return c.starts_with(name); }) -
+            ours[0].begin());
+    };
+    const auto output = column("output"), order = column("order"), gap = column("gap");
+    ASSERT_EQ(ours.size(), theirs.size());
+    int converging = 0;
+    for (std::size_t r = 1; r < ours.size(); ++r) {
+        EXPECT_EQ(ours[r][output], theirs[r][output]);
+        if (ours[r][order].empty()) continue;
+        EXPECT_NEAR(std::stod(theirs[r][order]), std::stod(ours[r][order]), 0.02);
+        EXPECT_NEAR(std::stod(theirs[r][gap]), std::stod(ours[r][gap]),
+                    1e-3 * std::abs(std::stod(ours[r][gap])) + 1e-7);
+        ++converging;
+    }
+    EXPECT_GT(converging, 5);
+    const Said few =
+        elastocheck_says("converge " + strut + " --candidate 75=" + solved(folder, "a.csv", "--steps 75 -o"));
+    EXPECT_EQ(few.code, 3);
+    EXPECT_TRUE(contains(few.out, "at least three numbers of steps")) << few.out;
+}
+
+TEST(CandidateCommand, CompareShowsItBesideTheLegs) {
+    const Folder folder;
+    const Said said = elastocheck_says(fmt::format("compare {} --steps 10 --candidate {}", strut,
+                                                   solved(folder, "mine.csv", "--steps 10 -o")));
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.out, "Fail: the candidate ‘mine’")) << said.out;
+}
+
+TEST(CandidateCommand, ThePageShowsItsVerdictFirst) {
+    const Folder folder;
+    const std::string out = (folder.path / "page").string();
+    const Said said = elastocheck_says(
+        fmt::format("report {}/pinned_bar.yaml -o {} --candidate-command '" ELASTOCHECK_COMMAND
+                    " solve {{scene}} --steps {{steps}} -o {{output}}'",
+                    scenes, out));
+    EXPECT_EQ(said.code, 1) << said.err;
+    const std::string page = text_of(out + "/report.md");
+    const auto verdict = page.find("Fail: the candidate ‘elastocheck’"),
+               suspension = page.find("the linear recursion as published");
+    ASSERT_NE(verdict, page.npos) << page.substr(0, 2000);
+    EXPECT_LT(verdict, suspension);
+    const json result = json::parse(text_of(out + "/result.json"));
+    EXPECT_EQ(result["scenes"][0]["candidates"][0]["verdict"], "fail");
+    EXPECT_EQ(elastocheck_says(fmt::format("report --from {0}/result.json -o {0}2", out)).code, 1);
+}
+
+}  // namespace
+}  // namespace elastocheck
