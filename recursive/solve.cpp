@@ -26,8 +26,19 @@ std::string in_unit(ParameterUnit unit, double a) {
     return {};
 }
 
-std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method& method, Outcome outcome,
-                  double stopped) {
+// Of joints that say a thing twice and contradict each other as drawn, which: "'upper', 'lower'"; empty where none is known.
+std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
+    std::string names;
+    for (const auto& redundancy : diagnosis.redundant)
+        if (redundancy.contradicts)
+            for (const auto& [joint, share] : redundancy.shares)
+                names += fmt::format("{}'{}'", names.empty() ? " " : ", ",
+                                     model.joints[static_cast<std::size_t>(joint)].name);
+    return names;
+}
+
+std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch, const Method& method,
+                  Outcome outcome, double stopped) {
     std::string detail = std::isnan(stopped) ? std::string("while what is held at the start settles")
                                              : "at " + in_unit(branch.unit, stopped);
     switch (outcome) {
@@ -43,8 +54,9 @@ std::string words(const Diagnosis& diagnosis, const Branch& branch, const Method
             if (!std::isnan(stopped))
                 detail += ": joints that say a thing twice contradict each other";
             else
-                detail = fmt::format("the joints cannot be closed; as drawn they are open by |Φ| = {:.3g}",
-                                     diagnosis.constraint_error);
+                detail = fmt::format(
+                    "the joints{} cannot be closed; as drawn they are open by up to {:.3g} mm, or mrad",
+                    in_contradiction(model, diagnosis), 1e3 * diagnosis.constraint_error);
             break;
         case Outcome::limit_point:
             detail += ": a limit point, past it no equilibrium continues the branch";
@@ -115,8 +127,9 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
         stopped = event->load;
     }
     if (path.outcome != Outcome::converged)
-        path.detail = fmt::format("branch '{}': {}", branch.name,
-                                  words(analysis.diagnosis, branch, options.method, path.outcome, stopped));
+        path.detail =
+            fmt::format("branch '{}': {}", branch.name,
+                        words(model, analysis.diagnosis, branch, options.method, path.outcome, stopped));
     if (path.outcome == Outcome::diverged && linear) {
         const auto limit = stability_limit(model, branch, options.method, analysis);
         path.detail += limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)

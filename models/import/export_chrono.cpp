@@ -123,15 +123,10 @@ class Writer {
         for (const Joint& joint : scene_.joints)
             std::visit(
                 [&](const auto& kind) {
-                    if constexpr (requires {
-                                      kind.i.body;
-                                      kind.j.body;
-                                  }) {
-                        if (kind.i.body != id && kind.j.body != id) return;
-                        uses += joint.only_where_driven ? 0 : 1;
-                        if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, Fixed>)
-                            carrier = kind.i.body == id ? kind.j.body : kind.i.body;
-                    }
+                    if (kind.i.body != id && kind.j.body != id) return;
+                    uses += joint.only_where_driven ? 0 : 1;
+                    if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, Fixed>)
+                        carrier = kind.i.body == id ? kind.j.body : kind.i.body;
                 },
                 joint.kind);
         for (const Elastic& elastic : scene_.elastics)

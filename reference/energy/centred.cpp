@@ -1,5 +1,7 @@
 #include "reference/energy/centred.hpp"
 
+#include "models/overloaded.hpp"
+
 namespace elastocheck::reference::energy {
 
 using Eigen::Vector3d;
@@ -16,10 +18,14 @@ Model about(const Model& model, const Vector3d& c) {
     const auto move = [&](auto& at) {
         if (at.body == ground) at.s_local -= c;
     };
-    const auto move_both = [&](auto& kind) {
-        if constexpr (requires { kind.i.s_local; }) move(kind.i), move(kind.j);
-    };
-    for (Constraint& constraint : here.constraints) std::visit(move_both, constraint.kind);
+    const auto move_both = [&](auto& kind) { move(kind.i), move(kind.j); };
+    // Directions are where they are, wherever the origin is.
+    for (Constraint& constraint : here.constraints)
+        std::visit(overloaded{[&](CoincidentPoints& kind) { move_both(kind); },
+                              [&](PointInPlane& kind) { move_both(kind); },
+                              [&](DistanceBetween& kind) { move_both(kind); },
+                              [](PerpendicularDirections&) {}, [](DirectionAtAngle&) {}},
+                   constraint.kind);
     for (Elastic& elastic : here.elastics) std::visit(move_both, elastic.kind);
     for (ModelJoint& joint : here.joints) move(joint.at);
     return here;
