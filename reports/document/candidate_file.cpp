@@ -534,7 +534,17 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     std::vector<Number> numbers;
     const reader::Cursor top{&tree, "", &file, &numbers};
     top.only_keys({"columns", "branches"});
-    for (const auto& [name, at] : top.require("columns").entries()) {
+    // The names are another tool's, with brackets and all.
+    const auto entries = [](const reader::Cursor& of) {
+        if (of.value->kind != reader::Value::Kind::map)
+            of.fail("expected a map of their names, found " + of.found());
+        std::vector<std::pair<std::string, reader::Cursor>> list;
+        for (std::size_t k = 0; k < of.value->items.size(); ++k)
+            list.emplace_back(of.value->keys[k],
+                              of.at(of.value->items[k], of.path + "." + reader::shown(of.value->keys[k])));
+        return list;
+    };
+    for (const auto& [name, at] : entries(top.require("columns"))) {
         at.only_keys({"output", "unit", "sign", "offset", "change"});
         ColumnMap::Entry entry{.theirs = name, .output = {}, .unit = {}, .line = at.value->line};
         entry.output = at.require("output").text("an output of the scene, 'parameter' or 'branch'");
@@ -548,7 +558,7 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
         map.columns.push_back(std::move(entry));
     }
     if (const auto branches = top.optional("branches"))
-        for (const auto& [name, at] : branches->entries())
+        for (const auto& [name, at] : entries(*branches))
             map.branches.emplace_back(name, at.text("a branch of the scene"));
     return map;
 }

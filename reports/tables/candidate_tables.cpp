@@ -105,6 +105,10 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "",
                 hints);
         case Grade::pass:
+            if (std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max < 1e-9; }))
+                return fmt::format(
+                    "Pass: {} is the full solution{}, within the arithmetic; the tolerance is {}.{}", who,
+                    j.not_given.empty() ? "" : " where it says something", tolerance_of(j), partly);
             return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}", who,
                                tolerance_of(j),
                                j.not_given.empty() ? " everywhere" : " where it says something",

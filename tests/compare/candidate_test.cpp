@@ -210,12 +210,15 @@ TEST(Candidate, WrongFromTheMiddleOfABranchOnIsToldFromWhere) {
 }
 
 TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
-    Candidate candidate = table_of(Leg::equilibrium);
-    auto& toe = values(candidate, "toe");
-    for (std::size_t k = 0; k < toe.size(); ++k) toe[k] += 0.02 * std::pow(candidate.points.a[k] / 3000, 2);
-    const auto judgement = judged(candidate);
-    EXPECT_EQ(judgement.verdict, Grade::fail);
-    EXPECT_TRUE(judgement.said.empty()) << texts(judgement);
+    for (const double power : {1.5, 2., 3., 4., 5., 6.}) {
+        Candidate candidate = table_of(Leg::equilibrium);
+        auto& toe = values(candidate, "toe");
+        for (std::size_t k = 0; k < toe.size(); ++k)
+            toe[k] += 0.02 * std::pow(std::abs(candidate.points.a[k]) / 3000, power);
+        const auto judgement = judged(candidate);
+        EXPECT_EQ(judgement.verdict, Grade::fail);
+        EXPECT_TRUE(judgement.said.empty()) << power << texts(judgement);
+    }
 }
 
 TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
