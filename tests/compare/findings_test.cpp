@@ -144,8 +144,8 @@ TEST(Findings, TheGapIsTheLimitOfTheDeviation) {
 // ---- Measured points
 
 // Points of the equilibrium leg, off by `off`, at a few places of one branch.
-Measured taken(std::size_t branch, double off, bool by_travel, bool named) {
-    Measured measured;
+Points taken(std::size_t branch, double off, bool by_travel, bool named) {
+    Points measured;
     const Curve& truth = compared().branches[branch].runs[1].curve;
     measured.columns.push_back({channel("toe"), false, {}});
     for (const std::size_t k : {30u, 120u, 240u}) {
@@ -175,14 +175,14 @@ TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
 }
 
 TEST(Measured, TheLargestMissKeepsItsSign) {
-    Measured measured = taken(0, 0.25, false, true);
+    Points measured = taken(0, 0.25, false, true);
     measured.columns[0].values[0] += 1;
     const auto found = compare_measured(mcpherson(), compared(), measured);
     EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, -0.75, 1e-6);
 }
 
 TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
-    Measured measured = taken(0, 0, true, true);
+    Points measured = taken(0, 0, true, true);
     for (auto& name : measured.branch) name = "rebound";  // which does not reach them
     const auto found = compare_measured(mcpherson(), compared(), measured);
     EXPECT_EQ(found.compared, 0);
@@ -212,7 +212,7 @@ TEST(Measured, AChangeCountsFromTheDesignPosition) {
     const auto c = static_cast<std::size_t>(find_channel(comparison.channels, "wheel_centre_y"));
     const auto& truth = comparison.branches[0].runs[1].curve;
     const double drawn = evaluate(model, comparison.channels, design_state(model))[c];
-    Measured measured;
+    Points measured;
     measured.a = {truth.a[10]};
     measured.columns.push_back({c, true, {truth.values[10][c] - drawn}});
     const auto found = compare_measured(model, comparison, measured);
