@@ -169,7 +169,8 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
     for (const auto& branch : j.branches) {
         fmt::format_to(out, "\nbranch '{}': {} points", branch.branch, branch.points);
         if (!std::isnan(branch.from))
-            fmt::format_to(out, " from {:.6g} to {:.6g} {}", branch.from, branch.to, symbol(branch.unit));
+            fmt::format_to(out, " from {:.6g} to {:.6g} {}", branch.from + 0.0, branch.to + 0.0,
+                           symbol(branch.unit));
         fmt::format_to(out, "\n\n");
         const compare::Channel* by =
             branch.abscissa < 0 ? nullptr : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
