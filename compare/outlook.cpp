@@ -65,31 +65,49 @@ std::optional<ErrorBound> promised(const recursive::Method& method, double lengt
 }
 
 std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise, ParameterUnit unit) {
-    const Equilibrium* worst = nullptr;
-    double share = 1;
-    int beyond = 0, unbounded = 0;
-    for (const auto& point : points) {
-        const double over = std::max(point.bound.length / promise.length, point.bound.angle / promise.angle);
-        if (over <= 1) continue;
-        if (!std::isfinite(over)) {
-            ++unbounded;
-            continue;
-        }
-        ++beyond;
-        if (over > share) share = over, worst = &point;
+    Accounts accounts;
+    for (const auto& point : points) add(accounts, point, promise);
+    return unkept(accounts, promise, unit);
+}
+
+void add(Accounts& accounts, const Equilibrium& point, const std::optional<ErrorBound>& promise) {
+    if (accounts.last.size() == 3) accounts.last.erase(accounts.last.begin());
+    Equilibrium& kept = accounts.last.emplace_back();
+    kept.load = point.load;
+    kept.bound = point.bound;
+    kept.stiffness_left = point.stiffness_left;
+    if (!announced(accounts.last))
+        accounts.announced_from = std::nullopt;
+    else if (!accounts.announced_from)
+        accounts.announced_from = point.load;
+
+    ++accounts.points;
+    if (!promise) return;
+    const double over = std::max(point.bound.length / promise->length, point.bound.angle / promise->angle);
+    if (over <= 1) return;
+    if (!std::isfinite(over)) {
+        ++accounts.unbounded;
+        return;
     }
+    ++accounts.beyond;
+    if (over > accounts.share)
+        accounts.share = over, accounts.worst_bound = point.bound, accounts.worst_load = point.load;
+}
+
+std::string unkept(const Accounts& accounts, const ErrorBound& promise, ParameterUnit unit) {
     const auto angle = [](double radian) { return in_unit(Unit::deg) * radian; };
     std::string text;
-    if (worst != nullptr)
+    if (accounts.beyond > 0)
         text = fmt::format(
             "promises {:.2g} mm and {:.2g} deg, which {} of {} points do not keep by their own account: "
             "within {:.2g} mm "
             "and {:.2g} deg at {:.5g} {}",
-            1e3 * promise.length, angle(promise.angle), beyond, points.size(), 1e3 * worst->bound.length,
-            angle(worst->bound.angle), in_unit(unit_of(unit)) * worst->load, symbol(unit_of(unit)));
-    if (unbounded > 0)
+            1e3 * promise.length, angle(promise.angle), accounts.beyond, accounts.points,
+            1e3 * accounts.worst_bound.length, angle(accounts.worst_bound.angle),
+            in_unit(unit_of(unit)) * accounts.worst_load, symbol(unit_of(unit)));
+    if (accounts.unbounded > 0)
         text += fmt::format("{}of {} of {} points no account can be given: nothing is promised of them",
-                            text.empty() ? "" : "; ", unbounded, points.size());
+                            text.empty() ? "" : "; ", accounts.unbounded, accounts.points);
     return text;
 }
 

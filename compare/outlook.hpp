@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "models/equilibrium_path.hpp"
 #include "models/scene.hpp"
@@ -30,5 +31,17 @@ std::optional<ErrorBound> promised(const recursive::Method& method, double lengt
 
 // Where the bounds of the points do not hold what is promised, in words; empty where all do.
 std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise, ParameterUnit unit);
+
+// The same of points that come one after the other, however many: what is said of them, and the last three.
+struct Accounts {
+    int points = 0, beyond = 0, unbounded = 0;
+    double share = 1;  // of the promise, the most that one has
+    ErrorBound worst_bound = {};
+    double worst_load = 0;
+    std::vector<Equilibrium> last = {};  // without poses
+    std::optional<double> announced_from = {};
+};
+void add(Accounts& accounts, const Equilibrium& point, const std::optional<ErrorBound>& promise);
+std::string unkept(const Accounts& accounts, const ErrorBound& promise, ParameterUnit unit);
 
 }  // namespace elastocheck::compare

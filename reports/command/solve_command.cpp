@@ -62,28 +62,23 @@ std::vector<Channel> asked_for(const Model& model, const std::vector<std::string
 }
 
 // What the points of one way have said of themselves.
-using Account = std::vector<Equilibrium>;
-
 // Ways come one after the other, each from its start.
-void add_account(const Equilibrium& state, std::vector<Account>& ways) {
+void add_account(const Equilibrium& state, const std::optional<ErrorBound>& promise,
+                 std::vector<compare::Accounts>& ways) {
     if (ways.empty() || state.load == 0) ways.emplace_back();
-    Equilibrium& point = ways.back().emplace_back();
-    point.load = state.load;
-    point.bound = state.bound;
-    point.stiffness_left = state.stiffness_left;
+    add(ways.back(), state, promise);
 }
 
 // One line each: what the method promises and does not keep, and where the stiffness will be gone.
 void tell_account(const std::string& who, const Branch& branch, const std::optional<ErrorBound>& promise,
-                  const std::vector<Account>& ways) {
+                  const std::vector<compare::Accounts>& ways) {
     const auto unit = compare::unit_of(branch.unit);
-    for (const Account& points : ways) {
-        if (const auto text = promise ? compare::unkept(points, *promise, branch.unit) : std::string();
-            !text.empty())
+    for (const auto& points : ways) {
+        if (const auto text = promise ? unkept(points, *promise, branch.unit) : std::string(); !text.empty())
             complain("{}: {}: {}\n", who, branch.name, text);
-        if (const auto from = compare::announced_from(points))
+        if (const auto from = points.announced_from)
             complain("{}: {}: {}, announced from {:.5g} {} on\n", who, branch.name,
-                     compare::outlook(points, branch.unit), in_unit(unit) * *from, symbol(unit));
+                     compare::outlook(points.last, branch.unit), in_unit(unit) * *from, symbol(unit));
     }
 }
 
@@ -140,7 +135,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     compare::Gait gait = request.gait;
     gait.account = account || promise;
     for (const auto& branch : model.branches) {
-        std::vector<Account> accounts;
+        std::vector<compare::Accounts> accounts;
         if (csv) progress(branch.name);
         const auto ways = compare::ways_of(model, branch, how.steps);
         compare::Analyses analyses;
@@ -149,7 +144,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         const EquilibriumPath path = compare::walk(
             ways, gait,
             [&](const Equilibrium& state) {
-                if (gait.account) add_account(state, accounts);
+                if (gait.account) add_account(state, promise, accounts);
                 if (states) states->add(state_line(model, branch.name, state));
                 return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },

@@ -76,9 +76,15 @@ TEST(Writers, OfOneFolderAtOnceLeaveItWholeAndNothingBesideIt) {
     int mixed = 0, seen = 0;
     const int failed = failures(writers + 1, [&](int writer) {
         if (writer == writers) {  // the one who reads
-            for (int k = 0; k < 4000; ++k) {
+            // It may begin long before the first writer does.
+            for (int k = 0, early = 0; k < 4000 && early < 200'000;) {
                 const int open = ::open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-                if (open < 0) continue;
+                if (open < 0) {
+                    ++early;
+                    ::usleep(50);
+                    continue;
+                }
+                ++k;
                 const std::string first = of_file(open, "first"), second = of_file(open, "second");
                 ::close(open);
                 // Of a folder that was replaced meanwhile the files are going, one after the other.

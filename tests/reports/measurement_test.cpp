@@ -139,7 +139,7 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
           Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n", "kc.csv:1: column 'toe_deg' stands there twice"},
           Case{"travel_mm,toe_deg\n1,2\n3\n", "kc.csv:3: 1 cells, but 2 columns are named in the first line"},
           Case{"travel_mm,toe_deg\n1,nan\n", "kc.csv:2: toe_deg: 'nan' is not a number"},
-          Case{"travel_mm,toe_deg\n1,\"2,5\"\n", "kc.csv:2: 3 cells"},
+          Case{"travel_mm,toe_deg\n1,\"2,5\"\n", "kc.csv:2: toe_deg: '2,5' is not a number"},
           Case{"branch,travel_mm,toe_deg\njonce,1,2\n",
                "kc.csv:2: branch: the scene has no 'jonce', did you mean 'jounce'?"}})
         EXPECT_TRUE(refusal(csv).starts_with(why)) << refusal(csv) << "\nexpected: " << why;
