@@ -32,11 +32,12 @@ struct Answers {
     Motions steering;  // jacked: the steering joint driven by 1 m or 1 rad; empty where none stands
     std::vector<std::array<Motions, causes>> held;  // per wheel and cause, jacked: per N, per N·m
     std::vector<std::array<Motions, causes>> free;  // likewise, free; empty where `why_not_free` says why
-    bool tied = false;  // the wheels move only as one: `jacked` has one jack, under the first wheel; that motion is
-                        // the first of `travel`, and the others are none
-    std::string why_not;                            // there is none of the first three
-    std::string why_not_free;                       // there is none of the last
-    bool nothing_resists = false;                   // why not: a wheel is free to move, which is no failure
+    bool tied =
+        false;  // the wheels move only as one: `jacked` has one jack, under the first wheel; that motion is
+                // the first of `travel`, and the others are none
+    std::string why_not;           // there is none of the first three
+    std::string why_not_free;      // there is none of the last
+    bool nothing_resists = false;  // why not: a wheel is free to move, which is no failure
 };
 
 // The joint that steers: the first, other than a jack, that some branch drives. -1 where there is none.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <random>
 #include <regex>
@@ -53,7 +54,8 @@ wheels:
 std::vector<std::string> sound_texts() {
     std::vector<std::string> texts{bench_scene, axle_scene, laws_scene(every_law), car_scene};
     for (const char* name : {"arch_driven", "pendulum"})
-        texts.push_back(support::text_of(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml"));
+        texts.push_back(
+            support::text_of(std::filesystem::path(ELASTOCHECK_SCENES) / (std::string(name) + ".yaml")));
     return texts;
 }
 

@@ -291,7 +291,8 @@ const std::vector<Mistake> mistakes{
     {"TwoRates", "rates: [1, 2, 2], rot", "rates: [1, 2], rot",
      "25: bushings.mount.rates: expected a list of 3 rates, found a list of 2"},
     {"OneRate", "rates: [1, 2, 2], rot", "rates: 2, rot",
-     "25: bushings.mount.rates: expected a list of 3 rates, or the name of a property file (.bus), found '2'"},
+     "25: bushings.mount.rates: expected a list of 3 rates, or the name of a property file (.bus), found "
+     "'2'"},
     {"NegativeRateOfBushing", "rates: [1, 2, 2], rot", "rates: [1, 2, -2], rot",
      "25: bushings.mount.rates: negative rate '-2'; allowed: zero or more"},
     {"NegativeRotationalRate", "rotational_rates: [3, 4, 4]", "rotational_rates: [-3, 4, 4]",
