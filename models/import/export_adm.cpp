@@ -369,15 +369,18 @@ class Writer {
 
 }  // namespace
 
+void require_whole(const Exported& exported, const Scene& scene, bool allow_missing) {
+    if (exported.notes.missing.empty() || allow_missing) return;
+    std::string message;
+    for (const auto& [place, what] : exported.notes.missing)
+        message += fmt::format("{}: {}: {}\n", scene.source, place.what, what);
+    throw SceneError(message + "--allow-missing exports the rest, and says so in it");
+}
+
 Exported export_adm(const Scene& scene, bool allow_missing) {
     Exported result;
     Writer(scene, result).whole();
-    if (!result.notes.missing.empty() && !allow_missing) {
-        std::string message;
-        for (const auto& [place, what] : result.notes.missing)
-            message += fmt::format("{}: {}: {}\n", scene.source, place.what, what);
-        throw SceneError(message + "--allow-missing exports the rest, and says so in it");
-    }
+    require_whole(result, scene, allow_missing);
     return result;
 }
 

@@ -297,12 +297,7 @@ class Writer {
 Exported export_chrono(const Scene& scene, bool allow_missing) {
     Exported result;
     Writer(scene, result).whole();
-    if (!result.notes.missing.empty() && !allow_missing) {
-        std::string message;
-        for (const auto& [place, what] : result.notes.missing)
-            message += fmt::format("{}: {}: {}\n", scene.source, place.what, what);
-        throw SceneError(message + "--allow-missing exports the rest, and says so in it");
-    }
+    require_whole(result, scene, allow_missing);
     return result;
 }
 

@@ -161,6 +161,30 @@ wheels:
     }
 }
 
+// About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each figure is per its own metre.
+TEST(Characteristics, OfAnAxleThatMovesAsOneEachWheelHasItsOwnTravel) {
+    const Model model = model_of(R"(
+points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4],
+         beside: [0, -2, 0]}
+bodies: {axle: {origin: mid}}
+joints: {swing: {type: revolute, bodies: [axle, ground], at: beside, axis: x}}
+springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
+branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
+wheels:
+  left: {body: axle, centre: l, contact_patch: pl, spin_axis: y, side: left}
+  right: {body: axle, centre: r, contact_patch: pr, spin_axis: -y, side: right}
+)");
+    for (const Leg leg : all_legs) {
+        SCOPED_TRACE(name(leg));
+        const Read is(model, leg);
+        EXPECT_TRUE(is.answers.tied);
+        EXPECT_NEAR(is["left.bump_camber"], -deg / 10 / 2.8, 1e-9);
+        EXPECT_NEAR(is["right.bump_camber"], deg / 10 / 1.2, 1e-9);
+        EXPECT_NEAR(is["left.track_gradient"], 100 * 0.3 / 2.8, 1e-9);
+        EXPECT_NEAR(is["right.track_gradient"], -100 * 0.3 / 1.2, 1e-9);
+    }
+}
+
 // The patch goes back by (0.1 + 0.3)/0.5 of what it rises, the centre by 0.1/0.5: the pivot is ahead and above.
 TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};

@@ -31,9 +31,11 @@ shift $((OPTIND - 1))
 faults=$here/faults.txt
 tree=$work/tree
 build=$work/build
+kept=$work/kept_of_copy
 if [ "$root_is_mutated" ]; then
     tree=$root
     build=$root/build/release
+    kept=$work/kept_of_checkout  # never what a run on the copy has left: that may be older than the checkout
 fi
 unset CI GITHUB_ACTIONS  # the copy's baselines are not committed anywhere
 
@@ -67,18 +69,18 @@ replace() {
 files() { field "$1" file && field "$1" also-file; }
 # The sound files are kept, so that the tree may be worked on meanwhile.
 apply() {
-    rm -rf "$work/kept"
-    mkdir -p "$work/kept"
+    rm -rf "$kept"
+    mkdir -p "$kept"
     for file in $(files "$1" | sort -u); do
-        mkdir -p "$(dirname "$work/kept/$file")" && cp -p "$tree/$file" "$work/kept/$file"
+        mkdir -p "$(dirname "$kept/$file")" && cp -p "$tree/$file" "$kept/$file"
     done
     replace "$1" '' || return 1
     [ -z "$(field "$1" also-file)" ] || replace "$1" also-
 }
 # Newer than what was built from the fault.
 revert() {
-    for file in $(files "$1" | sort -u); do cp "$work/kept/$file" "$tree/$file"; done
-    rm -rf "$work/kept"
+    for file in $(files "$1" | sort -u); do cp "$kept/$file" "$tree/$file"; done
+    rm -rf "$kept"
 }
 
 # The alarms one by one, as "suite" lines of what is run, in the order in which they are asked.
@@ -129,10 +131,10 @@ done
 if [ "$root_is_mutated" ]; then
     # put_back: what a fault, of this run or of one that was killed, has left in the checkout.
     put_back() {
-        [ ! -d "$work/kept" ] || (cd "$work/kept" && find . -type f) | while read -r file; do
-            cp "$work/kept/$file" "$root/$file"
+        [ ! -d "$kept" ] || (cd "$kept" && find . -type f) | while read -r file; do
+            cp "$kept/$file" "$root/$file"
         done
-        rm -rf "$work/kept"
+        rm -rf "$kept"
     }
     put_back
     trap put_back EXIT

@@ -23,6 +23,20 @@ const Marker& Conversion::marker(const Arguments& at, std::string_view name) con
     return marker(at, id);
 }
 
+bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
+                    const Arguments& at) {
+    for (const Marker* m : {&I, &J})
+        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
+    for (const Marker* m : {&I, &J})
+        if (c.is_flexible(*m)) {
+            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
+            return false;
+        }
+    if (I.part != J.part) return true;
+    c.draft.notes.leave_out("as both ends are on one part", s.place());
+    return false;
+}
+
 std::string Conversion::name(Names& names, const Statement& statement) const {
     if (!statement.name.empty()) return names.take(statement.name);
     std::string word = statement.keyword;

@@ -66,6 +66,9 @@ struct Conversion {
     Value function(const std::string& text) { return function(text, 0); }
 };
 
+// Whether it is worth converting: on parts that are there, and on two of them; else it is noted why not.
+bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Arguments& at);
+
 void read_splines(Conversion& c);
 void convert_joints(Conversion& c);  // JOINT, JPRIM, GCON, COUPLER, MOTION
 void convert_forces(Conversion& c);  // BUSHING, FIELD, BEAM, SPRINGDAMPER, SFORCE, VFORCE, VTORQUE, GFORCE

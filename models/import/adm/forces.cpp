@@ -114,20 +114,6 @@ struct Element {
     }
 };
 
-bool ends_are_there(Conversion& c, const Statement& s, const Arguments& at, const Marker& I,
-                    const Marker& J) {
-    for (const Marker* m : {&I, &J})
-        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
-    for (const Marker* m : {&I, &J})
-        if (c.is_flexible(*m)) {
-            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
-            return false;
-        }
-    if (I.part != J.part) return true;
-    c.draft.notes.leave_out("as both ends are on one part", s.place());
-    return false;
-}
-
 void no_damping(Conversion& c, const Statement& s, const Arguments& at,
                 std::initializer_list<const char*> names) {
     for (const char* name : names)
@@ -188,7 +174,7 @@ void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written
 void convert_bushing(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, bushing_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
-    if (!ends_are_there(c, s, at, I, J)) return;
+    if (!is_between_two(c, s, I, J, at)) return;
     const Units& units = c.geometry.units;
     Matrix6 K = Matrix6::Zero();
     K.diagonal().head<3>() = vector(at.numbers("K", 3, 3));
@@ -215,7 +201,7 @@ void convert_field(Conversion& c, const Statement& s) {
     if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
         return c.draft.notes.miss(s.place(),
                                   fmt::format("FORMULATION={}, whose law is not known here", formulated));
-    if (!ends_are_there(c, s, at, I, J)) return;
+    if (!is_between_two(c, s, I, J, at)) return;
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
     if (k.empty()) at.fail("KMATRIX is missing");
@@ -246,7 +232,7 @@ void convert_beam(Conversion& c, const Statement& s) {
         (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
         return c.draft.notes.miss(s.place(),
                                   "a beam with another formulation than LINEAR, whose law is not known here");
-    if (!ends_are_there(c, s, at, I, J)) return;
+    if (!is_between_two(c, s, I, J, at)) return;
     const auto positive = [&](const char* name) {
         const double x = at.number(name, 0);
         if (!(x > 0))
@@ -486,7 +472,7 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
-    if (!ends_are_there(c, s, at, I, J)) return;
+    if (!is_between_two(c, s, I, J, at)) return;
     c.draft.notes.count("SPRINGDAMPER");
     const double k = at.number(rotates ? "KT" : "K", 0);
     const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
@@ -566,7 +552,7 @@ void convert_sforce(Conversion& c, const Statement& s) {
             put_load(c, s, I, z, Vector3d::Zero(), follows);
         return;
     }
-    if (!ends_are_there(c, s, at, I, J)) return;
+    if (!is_between_two(c, s, I, J, at)) return;
     // Of this pair of markers, whichever is named first: DM is the same both ways, AZ turns its sign.
     Value own;
     own.constant = value.constant;

@@ -109,21 +109,6 @@ struct JointConversion {
     }
 };
 
-// Whether it is worth converting: on parts that are there, and on two of them.
-bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
-                    const Arguments& at) {
-    for (const Marker* m : {&I, &J})
-        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
-    for (const Marker* m : {&I, &J})
-        if (c.is_flexible(*m)) {
-            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
-            return false;
-        }
-    if (I.part != J.part) return true;
-    c.draft.notes.leave_out("as both ends are on one part", s.place());
-    return false;
-}
-
 void convert_joint(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, joint_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
