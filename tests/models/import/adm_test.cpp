@@ -468,7 +468,7 @@ MARKER/3, PART = 1, FLOATING
     }
 }
 
-// A BEAM that stands straight bends by F L³/3EI + F L/(G A/s).
+// The end of a straight BEAM goes down by F L³/3EI + F L/(G A/s) and turns by F L²/2EI, in each plane the way it bends.
 TEST(Adm, ABeamBendsAsTimoshenkoSays) {
     const std::string text = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
@@ -479,9 +479,18 @@ MARKER/2, PART = 1
 BEAM/1, I=1, J=2, LENGTH=2, AREA=1E-3, IXX=3E-8, IYY=4E-7, IZZ=5E-7, EMODULUS=2E11, GMODULUS=8E10, ASY=1.2, ASZ=1.5
 ACCGRAV/, KGRAV = -10
 )";
-    const Scene scene = parse_scene(scene_of(text), "scene");
-    const double expected = -0.1 * (8 / (3 * 2e11 * 4e-7) + 2 * 1.5 / (8e10 * 1e-3));
-    EXPECT_NEAR(at_rest(scene, compare::Leg::equilibrium).poses.at(0).r.z() / expected, 1, 1e-6);
+    struct Plane {
+        const char* gravity;
+        int down, about;
+        double I, shear, turn;  // of the end, positive about the axis, where it goes down
+    };
+    for (const auto& [gravity, down, about, I, shear, turn] :
+         {Plane{"KGRAV", 2, 1, 4e-7, 1.5, +1}, Plane{"JGRAV", 1, 2, 5e-7, 1.2, -1}}) {
+        const Scene scene = parse_scene(scene_of(replaced(text, "KGRAV", gravity)), "scene");
+        const Pose end = at_rest(scene, compare::Leg::equilibrium).poses.at(0);
+        EXPECT_NEAR(end.r[down] / (-0.1 * (8 / (3 * 2e11 * I) + 2 * shear / (8e10 * 1e-3))), 1, 1e-6);
+        EXPECT_NEAR(2 * end.p.vec()[about] / (turn * 0.1 * 4 / (2 * 2e11 * I)), 1, 1e-5) << gravity;
+    }
 }
 
 TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
