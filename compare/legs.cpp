@@ -38,6 +38,7 @@ EquilibriumPath recursion(const Way& way, recursive::Options options, int refine
                           const Visit& visit) {
     options.record = way.branch.steps;
     options.steps = way.branch.steps * refine;
+    options.account_every = every;
     return recursive::solve(way.model, way.branch, options, [&, k = 0](const Equilibrium& state) mutable {
         if (is_asked_for(way.branch, k++, every)) visit(state);
     });

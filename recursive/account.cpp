@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "recursive/settle.hpp"
 #include "recursive/stiffness.hpp"
-#include "recursive/walk.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -36,6 +36,7 @@ struct Accountant {
     int orientation = 0;  // of the first point
     double first_stiffness = 0;
     Softest<Real> softest = {};
+    bool begun = false;
     std::optional<Node<Real>> last_found = {};  // on the branch
     Real noise = 0;                             // of the forces as they are evaluated, as |W⁻¹ f|
 
@@ -82,10 +83,10 @@ struct Accountant {
         return worst;
     }
 
-    // From q to the equilibrium near, and how far that was.
-    ErrorBound bound(State<Real>& q) {
+    // From q to the equilibrium near, and how far that was; λ found first by so many solves for it alone.
+    ErrorBound bound(State<Real>& q, int solves) {
         const ErrorBound none;
-        for (int k = 0; k < multipliers; ++k) {
+        for (int k = 0; k < solves; ++k) {
             if (correct(q) != Outcome::converged) return none;
             lambda += s.x.tail(s.m());
         }
@@ -159,33 +160,66 @@ struct Accountant {
         lambda = here.lambda;
         return true;
     }
-    // Where Newton's method does not lead from the point to the equilibrium, the branch does: then the distance.
-    ErrorBound bound_by_branch(const Equilibrium& point, State<Real>& q) {
-        if (!last_found || turns_back || !follow(static_cast<Real>(point.load), q)) return {};
-        go_to(s, {1, static_cast<Real>(point.load)});
-        ErrorBound sum = bound(q);
-        const State<Real> from = state_of<Real>(point.poses);
+    // How far apart two configurations are, `without` some bodies.
+    static ErrorBound distance(const State<Real>& from, const State<Real>& to,
+                               const std::vector<bool>& without) {
         Real length = 0, angle = 0;
-        for (BodyId b = 0; b < q.bodies(); ++b) {
-            length = std::max(length, (q[b].r - from[b].r).norm());
-            const Eigen::Quaternion<Real> turn = q[b].p * from[b].p.conjugate();
+        for (BodyId b = 0; b < to.bodies(); ++b) {
+            if (!without.empty() && without[static_cast<std::size_t>(b)]) continue;
+            length = std::max(length, (to[b].r - from[b].r).norm());
+            const Eigen::Quaternion<Real> turn = to[b].p * from[b].p.conjugate();
             angle = std::max(angle, 2 * std::atan2(turn.vec().norm(), std::abs(turn.w())));
         }
-        sum.length += static_cast<double>(length);
-        sum.angle += static_cast<double>(angle);
-        return sum;
+        return {static_cast<double>(length), static_cast<double>(angle)};
+    }
+    // The bodies that an idle mode moves.
+    std::vector<bool> idle_bodies() const {
+        std::vector<bool> idle(static_cast<std::size_t>(s.n() / 6));
+        const Held<Real>& held = s.system.held;
+        for (int e = 0; held.idle > 0 && e < held.end(held.idle - 1); ++e) {
+            const auto at = static_cast<std::size_t>(e);
+            if (std::abs(held.value[at]) > Real(1e-6))
+                idle[static_cast<std::size_t>(held.row[at] / 6)] = true;
+        }
+        return idle;
+    }
+    // Where the branch begins.
+    void begin() {
+        begun = true;
+        if (turns_back || settle(s) != Outcome::converged) return;
+        lambda = s.lambda;
+        last_found = Node<Real>{s.q, lambda, {}, {}, 0, 0};
+        differentiate(s, going(), *last_found);
     }
 
-    void operator()(Equilibrium& point) {
-        const auto a = static_cast<Real>(point.load);
-        go_to(s, {1, a});
-        State<Real> q = state_of<Real>(point.poses);
-        point.bound = bound(q);
-        if (!std::isfinite(point.bound.length)) {
-            q = state_of<Real>(point.poses);
-            point.bound = bound_by_branch(point, q);
-            go_to(s, {1, a});
+    // q is where the branch leads, nearly; then that equilibrium.
+    ErrorBound bound_on_branch(const Equilibrium& point, State<Real>& q) {
+        const State<Real> from = state_of<Real>(point.poses);
+        if (s.system.held.idle > 0) {
+            // Of what is idle nothing is said, and from here it is elsewhere: it counts from the point, if that leads to
+            // what the branch does.
+            State<Real> near = from;
+            const ErrorBound bound_near = bound(near, 0), apart = distance(q, near, idle_bodies());
+            if (std::isfinite(bound_near.length) &&
+                apart.length <= static_cast<double>(going().length_tolerance) &&
+                apart.angle <= static_cast<double>(going().angle_tolerance)) {
+                q = near;
+                return bound_near;
+            }
         }
+        const ErrorBound left = bound(q, 0), off = distance(from, q, {});
+        return {off.length + left.length, off.angle + left.angle};
+    }
+
+    // Of the equilibrium that the branch leads to: the one that Newton's method finds near the point may be another. Where
+    // it is not known where the branch leads, that one.
+    void operator()(Equilibrium& point) {
+        if (!begun) begin();
+        const auto a = static_cast<Real>(point.load);
+        State<Real> q = state_of<Real>(point.poses);
+        const bool led = last_found && !turns_back && follow(a, q);
+        go_to(s, {1, a});
+        point.bound = led ? bound_on_branch(point, q) : bound(q, multipliers);
         if (std::isfinite(point.bound.length)) {
             point.stiffness_left = stiffness_left();
             last_found = Node<Real>{q, lambda, {}, {}, a, 0};

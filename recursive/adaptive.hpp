@@ -25,6 +25,10 @@
 
 namespace elastocheck::recursive {
 
+// What takes more steps than these, believed or not, goes on for too long to be waited for: near a singular point each may
+// be a ten-millionth of the way.
+inline constexpr int most_steps = 20'000;
+
 // The cubic between two nodes at the share t of the way, rotations as vectors π from the first node:
 // π(0) = 0, π'(0) = ω, π(h) = log(A⁺Aᵀ), π'(h) = J(π)⁻¹ ω⁺.
 template <class Real>
@@ -109,10 +113,11 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         const LeastStiffness least = least_stiffness(s, softest);
         return least.of_energy && least.value < 0;
     };
-    const bool begins_stable = !unstable();
+    if (const Outcome outcome = judge_start(s); outcome != Outcome::converged) return outcome;
     keep(node.q, node.lambda, 0);
 
-    while (reached <= last) {
+    for (int steps = 0; reached <= last; ++steps) {
+        if (steps == most_steps) return Outcome::iteration_limit;
         next.p = std::abs(end - node.p) < std::abs(h) * Real(1.1) ? end : node.p + h;
         Meeting<Real> met;
         Trial<Real> trial = step_to_knot(s, going, node, curvature, lambda_curvature, next, q, met,
@@ -129,7 +134,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         Real error = std::numeric_limits<Real>::infinity();
         if (trial.verdict == Verdict::believed) {
             const Real log_next = log_determinant(s.system.lu);
-            if (begins_stable && unstable()) trial.verdict = Verdict::turned_over;
+            if (unstable()) trial.verdict = Verdict::turned_over;
             if (contradict_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
             between(node, next, Real(0.5), q, lambda);
             trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);

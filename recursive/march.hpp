@@ -128,7 +128,8 @@ struct March {
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
     int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
     Real missed = 0;  // what qⁿ may be from equilibrium: what W Δqⁿ⁻¹ differed from the one before it by [m]
-    int swings = 0;  // steps in a row that reversed the one before and were larger
+    bool begins_unstable = false;  // what has settled
+    int swings = 0;                // steps in a row that reversed the one before and were larger
 
     std::vector<std::vector<Moved>> moved;  // of every idle mode
     // The elastic elements among these, and those of them that push even where K knows of nothing.

@@ -2,6 +2,7 @@
 // loads, what the drivers start at, joints that are not closed as drawn.
 #pragma once
 
+#include "recursive/inertia.hpp"
 #include "recursive/steps.hpp"
 #include "recursive/walk.hpp"
 
@@ -144,6 +145,14 @@ Outcome settle_truly(March<Real>& s) {
 template <class Real>
 Outcome settle(March<Real>& s) {
     return settled(s, settle_truly(s), Real(0));
+}
+
+// What has settled, whose matrix is in the system. Settling from a drawing that is far from rest may lead to an unstable
+// equilibrium, and so may a drawing that is at rest.
+template <class Real>
+Outcome judge_start(March<Real>& s) {
+    s.begins_unstable = is_unstable(s);
+    return s.begins_unstable ? Outcome::singular : Outcome::converged;
 }
 
 }  // namespace elastocheck::recursive

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "recursive/account.hpp"
+#include "recursive/adaptive.hpp"
 #include "recursive/delay.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/sweep.hpp"
@@ -38,9 +39,11 @@ std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
 }
 
 std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch, const Method& method,
-                  Outcome outcome, double stopped) {
-    std::string detail = std::isnan(stopped) ? std::string("while what is held at the start settles")
-                                             : "at " + in_unit(branch.unit, stopped);
+                  Outcome outcome, const Stop& stop) {
+    if (stop.begins_unstable)
+        return fmt::format("the equilibrium that settles at {} is unstable", in_unit(branch.unit, 0));
+    std::string detail = std::isnan(stop.at) ? std::string("while what is held at the start settles")
+                                             : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
             detail += ": the load pushes what nothing resists: " + idle_modes(diagnosis);
@@ -51,7 +54,7 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                 detail += ", or what was idle or redundant at the design position no longer is";
             break;
         case Outcome::inconsistent_constraints:
-            if (!std::isnan(stopped))
+            if (!std::isnan(stop.at))
                 detail += ": joints that say a thing twice contradict each other";
             else
                 detail = fmt::format(
@@ -72,8 +75,11 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                     : ": what a step misses is more than half of it; take more steps";
             break;
         case Outcome::converged:
-        case Outcome::not_finite:
         case Outcome::iteration_limit:
+            detail += fmt::format(": {} steps were not enough, nearly singular as it is or by this tolerance",
+                                  most_steps);
+            break;
+        case Outcome::not_finite:
         case Outcome::branch_lost:
         case Outcome::not_conservative:      // of the energy
         case Outcome::too_large:             // likewise
@@ -83,11 +89,11 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
 }
 
 EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit, double& stopped) {
+                      const Analysis& analysis, const Visit& visit, Stop& stop) {
     switch (precision) {
-        case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stopped);
-        case Precision::twofold: return sweep<double>(model, branch, options, analysis, visit, stopped);
-        case Precision::extended: return sweep<long double>(model, branch, options, analysis, visit, stopped);
+        case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stop);
+        case Precision::twofold: return sweep<double>(model, branch, options, analysis, visit, stop);
+        case Precision::extended: return sweep<long double>(model, branch, options, analysis, visit, stop);
     }
     return {};
 }
@@ -114,22 +120,22 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     const Visit until = [&](const Equilibrium& point) {
         if (!is_past(point.load)) visit(point);
     };
-    double stopped = 0;
+    Stop stop;
     EquilibriumPath path =
-        sweep(options.precision, model, branch, options, analysis, visit && event ? until : visit, stopped);
+        sweep(options.precision, model, branch, options, analysis, visit && event ? until : visit, stop);
     // What a method with the consistent tangent has noticed by itself has a name, too.
     const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
-    if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stopped))
+    if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stop.at))
         event = find_event(model, branch, analysis);
-    if (path.outcome == Outcome::converged ? event.has_value() : !std::isnan(stopped) && is_past(stopped)) {
+    if (path.outcome == Outcome::converged ? event.has_value() : !std::isnan(stop.at) && is_past(stop.at)) {
         std::erase_if(path.points, [&](const Equilibrium& point) { return is_past(point.load); });
         path.outcome = event->outcome;
-        stopped = event->load;
+        stop = {event->load, event->begins_unstable};
     }
     if (path.outcome != Outcome::converged)
         path.detail =
             fmt::format("branch '{}': {}", branch.name,
-                        words(model, analysis.diagnosis, branch, options.method, path.outcome, stopped));
+                        words(model, analysis.diagnosis, branch, options.method, path.outcome, stop));
     if (path.outcome == Outcome::diverged && linear) {
         const auto limit = stability_limit(model, branch, options.method, analysis);
         path.detail += limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
@@ -148,9 +154,12 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
     const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);
     EquilibriumPath path;
     std::vector<Equilibrium> points;
-    path = found(model, branch, options, analysis, [&](const Equilibrium& found) {
+    const int steps = options.steps > 0 ? options.steps : branch.steps,
+              last = options.record > 0 ? options.record : steps;
+    path = found(model, branch, options, analysis, [&, k = 0](const Equilibrium& found) mutable {
         Equilibrium point = found;
-        give_account(point);
+        if (k % options.account_every == 0 || k == last) give_account(point);
+        ++k;
         if (visit)
             visit(point);
         else

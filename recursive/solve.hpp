@@ -16,8 +16,8 @@ struct Options {
     int steps = 0;       // equal increments of the parameter over the branch; 0: as many as the branch says
     int record = 0;      // equal increments between recorded points, a divisor of steps; 0: every step
     Precision precision = Precision::twofold;
-    bool account =
-        false;  // every point carries its bound, and the stiffness that is left there (account.hpp)
+    bool account = false;   // points carry their bound, and the stiffness that is left there (account.hpp):
+    int account_every = 1;  // of those that are recorded each such, and the last
 };
 
 // Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them.

@@ -8,11 +8,18 @@
 
 namespace elastocheck::recursive {
 
-// The recorded points as far as the sweep comes, unless somebody visits them; where it does not converge, `stopped` is the parameter (NaN
-// while settling) and the words for it are the caller's.
+// Where a sweep did not converge: the parameter, NaN while settling; and whether that is because what has settled there is
+// no stable equilibrium.
+struct Stop {
+    double at = std::numeric_limits<double>::quiet_NaN();
+    bool begins_unstable = false;
+};
+
+// The recorded points as far as the sweep comes, unless somebody visits them; where it does not converge, `stop` says
+// where, and the words for it are the caller's.
 template <class Real>
 EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit, double& stopped) {
+                      const Analysis& analysis, const Visit& visit, Stop& stop) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
     March<Real> s(model, branch, analysis);
@@ -22,9 +29,10 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
         path.outcome = outcome;
         recording.finish();
         path.counts = s.counts;
-        stopped = a;
+        stop = {a, outcome == Outcome::singular && s.begins_unstable};
         return path;
     };
+    double stopped = 0;
     const auto equal_steps = [&](const auto& method, const auto& where_lambda_acts) -> Outcome {
         const auto keep = [&](double a) {
             recording.keep(s.model, s.inputs, s.q, where_lambda_acts, s.lambda, a);
@@ -70,10 +78,10 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
 }
 
 extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Analysis&,
-                                             const Visit&, double&);
+                                             const Visit&, Stop&);
 extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
-                                              const Visit&, double&);
+                                              const Visit&, Stop&);
 extern template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&,
-                                                   const Analysis&, const Visit&, double&);
+                                                   const Analysis&, const Visit&, Stop&);
 
 }  // namespace elastocheck::recursive

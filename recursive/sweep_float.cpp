@@ -3,6 +3,6 @@
 namespace elastocheck::recursive {
 
 template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&, const Analysis&,
-                                      const Visit&, double&);
+                                      const Visit&, Stop&);
 
 }  // namespace elastocheck::recursive

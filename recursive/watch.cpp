@@ -24,9 +24,13 @@ bool starts_as_drawn(const Branch& branch) {
 
 // To the equilibrium at a = 0, whose factors are then in the system.
 Outcome settles(March<double>& s, const Branch& branch, const Analysis& analysis) {
-    if (!analysis.at_rest || !starts_as_drawn(branch) || !s.curves.empty()) return settle(s);
-    go_to(s, {1, 0});
-    return judge(s, s.q, analysis.pivot_ratio);
+    const auto settled = [&] {
+        if (!analysis.at_rest || !starts_as_drawn(branch) || !s.curves.empty()) return settle(s);
+        go_to(s, {1, 0});
+        return judge(s, s.q, analysis.pivot_ratio);
+    };
+    const Outcome outcome = settled();
+    return outcome == Outcome::converged ? judge_start(s) : outcome;
 }
 
 // Whether an element has turned over on the way: a spring that points the other way has gone through a length of nothing,
@@ -86,17 +90,17 @@ bool comes_through(March<double>& s, double to) {
     }
     Softest<double> softest;
     const LeastStiffness least = least_stiffness(s, softest);
-    return !(least.of_energy && least.value < 0);
+    return !(least.of_energy && least.value < 0) && !is_unstable(s);
 }
 
 }  // namespace
 
 std::optional<Event> find_event(const Model& model, const Branch& branch, const Analysis& analysis) {
-    double stopped = 0;
+    Stop stop;
     const Options options{.method = find_method("adaptive").value(), .steps = 1};
-    const EquilibriumPath path = sweep<double>(model, branch, options, analysis, {}, stopped);
-    if (!ends(path.outcome) || std::isnan(stopped)) return std::nullopt;
-    return Event{path.outcome, stopped};
+    const EquilibriumPath path = sweep<double>(model, branch, options, analysis, {}, stop);
+    if (!ends(path.outcome) || std::isnan(stop.at)) return std::nullopt;
+    return Event{path.outcome, stop.at};
 }
 
 std::optional<Event> watch(const Model& model, const Branch& branch, const Analysis& analysis) {
@@ -104,7 +108,7 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     March<double> s(model, branch, analysis);
     s.consistent = true;
     if (const Outcome o = settles(s, branch, analysis); ends(o))
-        return Event{o, std::numeric_limits<double>::quiet_NaN()};
+        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.begins_unstable};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method says so itself
     if (comes_through(s, branch.to)) return std::nullopt;

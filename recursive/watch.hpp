@@ -17,7 +17,8 @@ namespace elastocheck::recursive {
 // Where the branch ends: limit_point, dividing_point, singular or branch_lost, at this value of its parameter.
 struct Event {
     Outcome outcome = Outcome::singular;
-    double load = 0;  // NaN: while what is held at its start settles
+    double load = 0;               // NaN: while what is held at its start settles
+    bool begins_unstable = false;  // what settles there
 };
 
 // Looked for with all care; none where `adaptive` comes through, or fails for another reason.

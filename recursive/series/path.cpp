@@ -403,6 +403,7 @@ Outcome walk(Walk& w) {
             if (w.e.drive == Drive::rate && !w.by_arc()) {
                 const LeastStiffness least = least_stiffness(s, w.softest);
                 w.stable = least.of_energy && least.value > 0;
+                if (const Outcome o = judge_start(s); o != Outcome::converged) return o;
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
@@ -426,6 +427,7 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string at = settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
                                    : fmt::format("{}: at {:.6g}", branch, w.at());
+    if (w.s.begins_unstable) return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
     switch (outcome) {
         case Outcome::limit_point:
             return settles ? fmt::format(

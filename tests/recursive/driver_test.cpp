@@ -1,4 +1,5 @@
 // Branches that drive more than loads: exact geometry, closed forms, and two routes to one state.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -310,6 +311,43 @@ TEST(Found, AdaptiveEndsAtTheLimitPointOfTheArch) {
         ASSERT_FALSE(path.points.empty());
         EXPECT_GT(path.points.back().load, -211.6);
         EXPECT_LT(path.points.back().load, -208);
+    }
+}
+
+// Bars upright on ball joints under a dead weight, one beyond its buckling load in both planes at once, so that the sign of
+// the determinant is that of a stable one; and others that are much softer and stable, which are what inverse iteration sees.
+std::string upright_bars(double weight) {
+    std::string points, bodies, joints, bushings, loads;
+    for (int k = 0; k < 6; ++k) {
+        const double rate = k == 0 ? 1000 : 1e-3 * (k + 1);
+        points += fmt::format("  foot{0}: [{0}, 0, 0]\n  head{0}: [{0}, 0, 0.5]\n", k);
+        bodies += fmt::format("  bar{0}: {{origin: foot{0}}}\n", k);
+        joints += fmt::format("  foot{0}: {{type: spherical, bodies: [bar{0}, ground], at: foot{0}}}\n", k);
+        bushings += fmt::format(
+            "  b{0}: {{bodies: [bar{0}, ground], at: foot{0}, rates: [0, 0, 0], rotational_rates: [{1}, {1}, "
+            "{1}]}}\n",
+            k, rate);
+    }
+    return "elastocheck: 1\nname: upright bars\nunits: {length: m, angle: rad, force: N}\npoints:\n" +
+           points + "bodies:\n" + bodies + "joints:\n" + joints + "bushings:\n" + bushings +
+           fmt::format("static_loads: {{weight: {{on: bar0, at: head0, force: [0, 0, {}]}}}}\n", -weight) +
+           "loads: {push: {on: bar1, at: head1, force: [1, 0, 0]}}\n"
+           "branches: {push: {load: push, to: 1e-3, steps: 4}}\n"
+           "probes: {head0: {on: bar0, at: head0}, head1: {on: bar1, at: head1}}\n";
+}
+
+TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
+    for (const auto& [weight, unstable] : {std::pair{1900., false}, {2100., true}}) {
+        const Model model = compile(parse_scene(upright_bars(weight), "bars.yaml"));
+        const Branch& branch = model.branches[0];
+        for (const Method& method : methods) {
+            const auto path = solve(model, branch, {.method = method});
+            EXPECT_EQ(path.outcome, unstable ? Outcome::singular : Outcome::converged)
+                << method.name << ": " << path.detail;
+            EXPECT_EQ(path.points.empty(), unstable) << method.name;
+            EXPECT_EQ(path.detail.find("the equilibrium that settles at 0") != std::string::npos, unstable)
+                << method.name << ": " << path.detail;
+        }
     }
 }
 

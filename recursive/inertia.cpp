@@ -1,0 +1,38 @@
+#include "recursive/inertia.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+
+namespace elastocheck::recursive {
+
+bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorXd& weight,
+                 const std::vector<int>& held) {
+    using Sparse = Eigen::SparseMatrix<double>;
+    constexpr double round_off = 1e-13;  // of the stiffest entry
+    constexpr double symmetric = 1e-6;  // |K - Kᵀ| over |K|; where an energy is, Newton's method is as near
+    constexpr double strengths[] = {1e3, 1e6,
+                                    1e9};  // ρ over the stiffest: too weak a one lets what the joints forbid
+                                           // be negative, too strong a one drowns K in round-off
+    const Eigen::Index n = weight.size(), m = saddle.rows() - n;
+    const auto scale = weight.cwiseInverse().asDiagonal();
+    const Sparse K = scale * Sparse(saddle.topLeftCorner(n, n)) * scale, K_T = K.transpose();
+    const double stiffest = K.nonZeros() > 0 ? K.coeffs().abs().maxCoeff() : 0;
+    if (!(stiffest > 0) || !K.coeffs().allFinite() || Sparse(K - K_T).norm() > symmetric * K.norm())
+        return false;
+    Sparse Phi = Sparse(saddle.bottomLeftCorner(m, n)) * scale, Phi_T = Phi.transpose();
+    for (Eigen::Index row = 0; row < m; ++row)
+        if (const double size = Phi_T.col(row).norm(); size > 0) Phi_T.col(row) /= size;
+    const Sparse forbidden = Phi_T * Sparse(Phi_T.transpose());
+    std::vector<Eigen::Triplet<double>> diagonal;
+    for (int k = 0; k < n; ++k) diagonal.emplace_back(k, k, round_off * stiffest);
+    for (const int k : held) diagonal.emplace_back(k, k, stiffest);
+    Sparse held_too(n, n);
+    held_too.setFromTriplets(diagonal.begin(), diagonal.end());
+    const Sparse S = (K + K_T) / 2 + held_too;
+    return std::ranges::all_of(strengths, [&](double rho) {
+        const Eigen::SimplicialLDLT<Sparse> factors(Sparse(S + rho * stiffest * forbidden));
+        return factors.info() == Eigen::Success && (factors.vectorD().array() < 0).any();
+    });
+}
+
+}  // namespace elastocheck::recursive
