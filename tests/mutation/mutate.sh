@@ -124,6 +124,8 @@ ring() {
 
 # shellcheck disable=SC2046 # lists of words
 if [ $# -eq 0 ]; then set -- $(names); fi
+twice=$(names | sort | uniq -d)
+[ -z "$twice" ] || { echo "mutate: stands twice in faults.txt:" $twice >&2; exit 2; }
 for fault in "$@"; do
     [ -n "$(field "$fault" file)" ] || { echo "mutate: no fault '$fault' in faults.txt" >&2; exit 2; }
 done
