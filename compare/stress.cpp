@@ -41,8 +41,7 @@ struct Stand {
     std::vector<Quaterniond> turns;  // of its body, since it was drawn
 };
 
-std::vector<Place> places_of(const Model& model) {
-    const auto diagnosis = recursive::diagnose(model);
+std::vector<Place> places_of(const Model& model, const recursive::Diagnosis& diagnosis) {
     std::vector<bool> idle(model.bodies.size());
     for (const auto& mode : diagnosis.idle)
         for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
@@ -116,6 +115,7 @@ struct Known {
     ErrorBound within;
     bool of_bodies = false;  // whether that is of the bodies, or of the places
     bool stable = false;     // shown to be: of what is proved alone
+    bool idle = false;       // whether something was held for the proof, as nothing resists it
 
     double length(const Place& place) const { return of_bodies ? of_place(within, place) : within.length; }
     double length(const std::vector<Place>& places) const {  // of all of them
@@ -129,6 +129,7 @@ struct WayRun {
     std::string name;
     std::size_t points = 0;  // asked for
     std::vector<Place> places;
+    bool anything_idle = false;  // which then is in no place
     double size = 1, reach = 1;  // L; the largest coordinate [m]
     std::vector<Found> found;    // per solver
     std::vector<Known> known;    // per point
@@ -233,12 +234,15 @@ Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Eq
         if (point >= path.size()) continue;
         const auto certificate =
             reference::certificate::certify(way.model, way.branch, path[point], tolerance);
-        if (certificate.answer == reference::certificate::Answer::proved)
+        // What is held though something resists it, weakly, is where the state has it, not where it is in equilibrium.
+        const bool weakly_resisted = certificate.held > 0 && !run.anything_idle;
+        if (certificate.answer == reference::certificate::Answer::proved && !weakly_resisted)
             return {Knowledge::proved,
                     stand(way.model, run.places, path[point]),
                     {certificate.error.length, certificate.error.angle},
                     true,
-                    certificate.stable};
+                    certificate.stable,
+                    certificate.held > 0};
     }
     return {};
 }
@@ -246,6 +250,7 @@ Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Eq
 // How far a state is off at least: by so much, where so much was claimed. All of it kept: 0 and 0.
 struct Breach {
     ErrorBound least{0, 0}, claimed{0, 0};
+    std::string where;
     bool any() const { return !(least.length <= 0 && least.angle <= 0); }
 };
 
@@ -261,7 +266,7 @@ Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const K
                          where.turns[k].angularDistance(known.where.turns[k]) - known.within.angle - digits;
         if (length <= claim.length(place) && angle <= claim.bound.angle) continue;
         if (!(length <= worst.least.length) || !worst.any())
-            worst = {{length, angle}, {claim.length(place), claim.bound.angle}};
+            worst = {{length, angle}, {claim.length(place), claim.bound.angle}, place.name};
     }
     return worst;
 }
@@ -269,7 +274,9 @@ Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const K
 WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver>& solvers) {
     WayRun run;
     run.name = way.name;
-    run.places = places_of(way.model);
+    const auto diagnosis = recursive::diagnose(way.model);
+    run.places = places_of(way.model, diagnosis);
+    run.anything_idle = !diagnosis.idle.empty();
     const int every = std::max(1, (way.branch.steps + 1) / 2);  // the start, about the middle, the end
     run.points = asked_for({way}, every).size();
     std::vector<std::vector<Equilibrium>> states(solvers.size());
@@ -383,10 +390,12 @@ bool says_that_it_ends(Outcome outcome) {
     return false;
 }
 
-// A stable equilibrium at every point.
+// A stable equilibrium at every point. What is idle at one and held by its load at the next has swung there at once: equilibria,
+// and no branch.
 bool all_proved(const WayRun& run) {
-    return std::ranges::all_of(
-        run.known, [](const Known& known) { return known.how == Knowledge::proved && known.stable; });
+    return std::ranges::all_of(run.known, [&](const Known& known) {
+        return known.how == Knowledge::proved && known.stable && known.idle == run.known.front().idle;
+    });
 }
 
 // Where both references say that the branch ends, and no state past that is proved; empty where one does not.
@@ -441,10 +450,10 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         worst = std::max(worst, d.length + known.length(run.places));
         if (const Breach broken = breach(run, claim_here, found.stands[k], known); broken.any()) {
             (found.elsewhere[k] ? elsewhere : breaks) = true;
-            cell.why =
-                fmt::format("off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} rad",
-                            1e3 * broken.least.length, std::max(0.0, broken.least.angle),
-                            1e3 * broken.claimed.length, broken.claimed.angle);
+            cell.why = fmt::format(
+                "{} is off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} rad",
+                broken.where, 1e3 * std::max(0.0, broken.least.length), std::max(0.0, broken.least.angle),
+                1e3 * broken.claimed.length, broken.claimed.angle);
         }
     }
     if (cell.knowledge != Knowledge::none) {
