@@ -2,8 +2,8 @@
 //
 // On a piece of every curve the system is smooth, and smooth is what Newton's method and the checks between two
 // points are made for: a stop that closes within a step would let Newton's method swing between open and closed,
-// and the chord between the points say nothing. So the branch is walked piece by piece. A piece goes on as a
-// polynomial past its knots, where an equilibrium of it is none of the system; the step is then shortened to the
+// and the chord between the points say nothing. So the branch is walked piece by piece. A piece goes on
+// past its knots, straight, where an equilibrium of it is none of the system; the step is then shortened to the
 // knot, and from there the walk goes on with the next piece.
 //
 // A deformation is at a knot when it is within `at_knot` of it, over L or over 1 rad.

@@ -15,7 +15,8 @@ template <class T>
 using Vec6 = Eigen::Matrix<T, 6, 1>;
 
 // Which piece of its curve each deformation of an element is on (a spring has the first only), or `by_itself`:
-// the piece that x lies on. A piece that is named is a polynomial that goes on past its knots.
+// the piece that x lies on. A piece that is named goes on past its knots as its tangent there: as a polynomial, a short
+// steep one falls within a hair's breadth before the knot that it rises from.
 inline constexpr int by_itself = -1;
 using ElementPieces = std::array<int, 6>;
 inline constexpr ElementPieces all_by_themselves = {by_itself, by_itself, by_itself,
@@ -35,8 +36,16 @@ T gradient(const ScalarLaw& law, const T& x, int piece = by_itself) {
                                  [&](const Curve& u) {
                                      const int k = piece == by_itself ? piece_at(u, x) : piece;
                                      const auto& c = u.pieces[static_cast<std::size_t>(k)];
-                                     const T h = x - u.knots[static_cast<std::size_t>(std::max(k - 1, 0))];
-                                     return T(c[0] + h * (c[1] + h * (c[2] + h * c[3])));
+                                     const auto knot = [&](int n) {
+                                         return u.knots[static_cast<std::size_t>(n)];
+                                     };
+                                     const bool before = k > 0 && x < knot(k - 1),
+                                                past = k < static_cast<int>(u.knots.size()) && x > knot(k);
+                                     const T on = before ? T(knot(k - 1)) : past ? T(knot(k)) : x;
+                                     const T h = on - knot(std::max(k - 1, 0));
+                                     const T f = c[0] + h * (c[1] + h * (c[2] + h * c[3]));
+                                     if (!before && !past) return f;
+                                     return T(f + (c[1] + h * (2. * c[2] + h * (3. * c[3]))) * (x - on));
                                  }},
                       law);
 }
