@@ -67,20 +67,28 @@ void clean(MatrixXd& columns) {
 
 // δz of δr, δπ and δR: a quaternion turns by ½ (0, δπ) p.
 MatrixXd tangent(const System& system, const VectorXd& z) {
-    MatrixXd T = MatrixXd::Zero(system.n(), 6 * system.bodies + system.rows);
+    const int others = system.rows + system.corners();
+    MatrixXd T = MatrixXd::Zero(system.n(), 6 * system.bodies + others);
     for (int b = 0; b < system.bodies; ++b) {
         const int row = system.pose(b), col = 6 * b;
         T.block<3, 3>(row, col).setIdentity();
         const double w = z[row + 3] / 2, x = z[row + 4] / 2, y = z[row + 5] / 2, u = z[row + 6] / 2;
         T.block<4, 3>(row + 3, col + 3) << -x, -y, -u, w, u, -y, -u, w, x, y, -x, w;
     }
-    T.bottomRightCorner(system.rows, system.rows).setIdentity();
+    T.bottomRightCorner(others, others).setIdentity();
     return T;
 }
 
 }  // namespace
 
 MatrixXd square(const std::vector<double>& J, Index n) { return Eigen::Map<const RowMajor>(J.data(), n, n); }
+
+MatrixXd middle(const std::vector<Interval>& J, Index n) {
+    MatrixXd of(n, n);
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) of(i, j) = mid(J[static_cast<std::size_t>(i * n + j)]);
+    return of;
+}
 
 std::vector<double> doubles(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 std::vector<Interval> thin(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
@@ -91,10 +99,10 @@ std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
 }
 
 Border border_at(const System& system, const VectorXd& z, double a, double nothing) {
-    const Index nb = 6 * system.bodies, m = system.rows, n = system.n();
+    const Index nb = 6 * system.bodies, m = system.rows, all = nb + m + system.corners(), n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
     const MatrixXd T = tangent(system, z);
-    const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(nb + m) * T;
+    const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(all) * T;
     if (!J.allFinite() || J.size() == 0) return border;
     // Of a matrix with a pivot that is nothing the estimate of its condition is nothing, too.
     const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
@@ -102,13 +110,13 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
         return border;
 
     // yᵀ Φ = 0: the rows y say the same, and reactions y are in balance.
-    MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.bottomLeftCorner(m, nb), nothing).left : MatrixXd(m, 0);
+    MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.block(nb, 0, m, nb), nothing).left : MatrixXd(m, 0);
     clean(y);
     const Index k = y.cols();
-    MatrixXd bordered = MatrixXd::Zero(nb + m + k, nb + m + k);
-    bordered.topLeftCorner(nb + m, nb + m) = J;
-    bordered.block(nb, nb + m, m, k) = y;
-    bordered.block(nb + m, nb, k, m) = y.transpose();
+    MatrixXd bordered = MatrixXd::Zero(all + k, all + k);
+    bordered.topLeftCorner(all, all) = J;
+    bordered.block(nb, all, m, k) = y;
+    bordered.block(all, nb, k, m) = y.transpose();
 
     // Motions that meet no stiffness, and what must not push them. Only their own part: how the poses go, what acts on bodies.
     NullSpaces idle = null_spaces(bordered, nothing);

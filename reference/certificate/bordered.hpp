@@ -49,6 +49,7 @@ template <class S>
 Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a);
 
 Eigen::MatrixXd square(const std::vector<double>& J, Eigen::Index n);
+Eigen::MatrixXd middle(const std::vector<Interval>& J, Eigen::Index n);
 std::vector<double> doubles(const Eigen::VectorXd& x);
 std::vector<Interval> box(const Eigen::VectorXd& middle, const Eigen::VectorXd& radius);
 std::vector<Interval> thin(const Eigen::VectorXd& x);

@@ -15,9 +15,16 @@
 // tubes and within both, holds one zero: it is that of both.
 //
 // Over a knot of a curve F has no second derivative. Pieces close in on it, until one that is short enough takes its slopes
-// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix. Each of its entries ranges by itself, so this
-// contracts only where the slope does not jump by much more than what is there: beyond that the branch is open at the knot.
+// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix M ± R. At a corner, where the slope itself
+// jumps, R is one entry, ½ Δk, as the law is set apart (system.hpp). With c ≥ 0 the compliance that the law meets there, so that
+// x answers a force by -c without the law, and Y the inverse of M, half way between both slopes,
+//
+//   ρ(|Y| R) = ½ Δk c / (1 + k c + ½ Δk c) < 1
+//
+// however stiff the stop is: the piece contracts. r is then (I - |Y| R)⁻¹ of what is to be covered.
 #include <fmt/format.h>
+
+#include <Eigen/LU>
 
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
@@ -97,10 +104,16 @@ struct Walk {
     const Interpolant& states;
     Border border;
 
+    // Between states; corners as the poses there make them.
+    Predicted guess(double a) const {
+        Predicted of = at(states, a);
+        set_corners(system, of.z, a);
+        return of;
+    }
     Problem problem(const VectorXd& z_g) const { return {system, border, z_g, false, {}, {}}; }
 
     Node node(double a) const {
-        const Predicted guess = at(states, a);
+        const Predicted guess = this->guess(a);
         const Problem here = problem(guess.z);
         VectorXd y = VectorXd::Zero(here.size());
         y.head(here.n()) = guess.z;
@@ -224,10 +237,7 @@ RestAlong rest_along(const std::vector<MatrixXd>& Y, const std::vector<std::vect
         of.M.push_back(c.M);
         of.R.push_back(c.R);
         of.gamma = std::max(of.gamma, c.gamma);
-        MatrixXd middle(n, n);
-        for (Index i = 0; i < n; ++i)
-            for (Index j = 0; j < n; ++j) middle(i, j) = mid(part[static_cast<std::size_t>(i * n + j)]);
-        M.push_back(std::move(middle));
+        M.push_back(middle(part, n));
     }
     of.gamma *= 2;  // a coefficient is a sum of at most two products
     of.Y = MatrixXd::Zero(n, n);
@@ -251,12 +261,12 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
+constexpr double least = 1e-20;
+
 // r with |Y F| + rest(r) < r, from the fixed point of that; empty where there is none.
 template <class Rest>
 VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
-    constexpr double least = 1e-20;
-    constexpr int most =
-        200;  // over the knot of a stop r is its stiffness over the spring's times what it is elsewhere
+    constexpr int most = 30;
     VectorXd r = first.cwiseMax(least) * 1.01;
     for (int k = 0; k < most; ++k) {
         const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
@@ -267,16 +277,35 @@ VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
     return {};
 }
 
+// The same by solving for the fixed point: over a corner r is many times |Y F|.
+VectorXd tube(const VectorXd& first, const Contraction& rest) {
+    const Index n = first.size();
+    const VectorXd covered = first.cwiseMax(least) * 1.05;
+    const MatrixXd A = MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
+    const VectorXd r = Eigen::PartialPivLU<MatrixXd>(A).solve(covered);
+    return all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r : VectorXd();
+}
+
 // The box at a joint; the gauge there is the joint's own place.
 void enclose(const Walk& walk, Node& node) {
     if (node.box.size() > 0) return;
     const Problem problem = walk.problem(node.y.head(walk.system.n()));
     const Interval a = node.a;
-    const VectorXd first = step(node.Y, evaluate(problem, thin(node.y), a, Slopes::no).E);
-    if (!first.allFinite()) return;
-    const VectorXd room = (3 * first).cwiseMax(1e-19);
-    const Contraction rest = contraction(node.Y, evaluate(problem, box(node.y, room), a, Slopes::yes).J);
-    if (rest.finite) node.box = tube(first, rest, room);
+    const auto E = evaluate(problem, thin(node.y), a, Slopes::no).E;
+    MatrixXd Y = node.Y;
+    VectorXd room = (3 * step(Y, E)).cwiseMax(1e-19);
+    for (int trial = 0; trial < 4 && node.box.size() == 0 && room.allFinite(); ++trial) {
+        const auto J = evaluate(problem, box(node.y, room), a, Slopes::yes).J;
+        const Contraction rest = contraction(Y, J);
+        if (!rest.finite) return;
+        VectorXd r = tube(step(Y, E), rest);
+        if (r.size() == 0)
+            Y = inverse(middle(J, Y.rows()));  // on a corner, where that at ỹ is of one side
+        else if ((r.array() <= room.array()).all())
+            node.box = std::move(r);
+        else
+            room = 2 * r;
+    }
 }
 
 // Proves a piece, or leaves its tube empty.
@@ -301,13 +330,20 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
     for (const auto& part : J)
         for (const Interval& entry : part)
             if (!bounded(entry)) return false;
-    std::vector<double> J1;
-    for (const Interval& entry : J[1]) J1.push_back(mid(entry));
-    const std::vector<MatrixXd> Y{Y0, -Y0 * square(J1, problem.size()) * Y0};
+    const std::vector<MatrixXd> Y{Y0, -Y0 * middle(J[1], problem.size()) * Y0};
     const RestAlong rest = rest_along(Y, J);
     if (!rest.finite) return false;
     piece.r = tube(step(Y, F, n).cwiseMax(joint), rest, room);
     return piece.r.size() > 0 && within(walk.system, piece.r, tolerance);
+}
+
+// Whether its path leads over a corner.
+bool over_a_corner(const System& system, const Piece& piece) {
+    for (std::size_t k = 0; k < system.apart.size(); ++k)
+        if (over_a_knot(std::get<Curve>(law_of(system, system.apart[k])),
+                        expanded<0>(powers(piece, system.deformation(k)), Interval(-1, 1)).c[0]))
+            return true;
+    return false;
 }
 
 // The same over a knot.
@@ -322,21 +358,21 @@ bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, cons
         return evaluate(problem, y, parameter<1>(piece, Interval(-1, 1)).c[0], Slopes::yes).J;
     };
     VectorXd room = joint;
-    for (int trial = 0; trial < 5; ++trial) {
+    for (int trial = 0; trial < 4; ++trial) {
         const auto J = slopes(room);
-        std::vector<double> middle;
-        for (const Interval& entry : J) middle.push_back(mid(entry));
-        const MatrixXd Y = inverse(square(middle, problem.size()));
+        const MatrixXd Y = inverse(middle(J, problem.size()));
         if (!Y.allFinite()) return false;
         const VectorXd first = step({Y}, F, problem.n()).cwiseMax(joint);
         if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
-        if (trial > 0) {
-            piece.r = tube(first, rest, room);
-            if (piece.r.size() > 0) return within(walk.system, piece.r, tolerance);
+        const VectorXd r = tube(first, rest);
+        if (r.size() == 0 || !within(walk.system, r, tolerance)) return false;
+        if ((r.array() <= room.array()).all()) {
+            piece.r = r;
+            return true;
         }
-        room = (20 * first).cwiseMax(room * 4);
+        room = (2 * r).cwiseMax(room);
     }
     return false;
 }
@@ -388,7 +424,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     if (states.size() < 2) return open("a way between states needs two of them");
     if (!arithmetic_is_as_proved())
         return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
-    const System system = make_system(model, branch);
+    const System system = make_system(model, branch, Corners::apart);
     std::vector<StateAt> at;
     for (const auto& state : states) at.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;
@@ -426,25 +462,24 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
                 return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad", tube.to,
                                         redundant_joints(system, walk.border), pushed.gap));
             return open(fmt::format(
-                "no piece is proved past {:.12g}: the branch turns back or divides, a law ends, or a "
-                "stop closes that is much stiffer than what it meets",
-                tube.to));
+                "no piece is proved past {:.12g}: the branch turns back or divides, or a law ends", tube.to));
         }
         to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
         middle_node = walk.node(tube.to / 2 + a1 / 2);
         Piece piece;
-        bool proved = false;
+        bool proved = false, over_knot = false;
         Held of_piece;
         // The boxes at both ends, within the tube.
         const auto joined = [&] { return all_less(from.box, piece.r) && all_less(to.box, piece.r); };
         const auto attempt = [&](const VectorXd& joint) {
             if (to.found && middle_node.found) {
                 piece = quintic(from, middle_node, to);
-                proved = prove(walk, piece, middle_node.Y, joint, tolerance);
+                proved = !over_a_corner(system, piece) && prove(walk, piece, middle_node.Y, joint, tolerance);
             }
+            over_knot = false;
             if (!proved && to.found && std::abs(h) < bridge * std::abs(way)) {
                 piece = straight(from, to);
-                proved = prove_over_knot(walk, piece, joint, tolerance);
+                proved = over_knot = prove_over_knot(walk, piece, joint, tolerance);
             }
         };
         attempt(none);
@@ -480,6 +515,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         tube.to = a1;
         from = to;
         h *= 1.6;
+        if (over_knot && std::abs(h) < std::abs(first_share * way)) h = first_share * way;  // it is behind
         if (std::abs(h) > std::abs(way)) h = way;
     }
     const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&

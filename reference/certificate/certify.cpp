@@ -100,9 +100,7 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
     for (int trial = 0; trial < trials && !found.proved; ++trial) {
         found.J = evaluate(problem, box(at.y, found.r), Interval(a), Slopes::yes).J;
         if (trial > 0) {
-            std::vector<double> middle;
-            for (const Interval& entry : found.J) middle.push_back(mid(entry));
-            at.Y = inverse(square(middle, problem.size()));
+            at.Y = inverse(middle(found.J, problem.size()));
             first = step(at.Y, F);
             if (!first.allFinite()) return found;
         }

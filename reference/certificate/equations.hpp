@@ -54,15 +54,20 @@ T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i
     return sqrt(squared(position(j, spring.j.s_local) - position(i, spring.i.s_local))) - free_length;
 }
 
-// δℓ = n · (δp_j - δp_i), n from i to j: the ends are pulled together with f.
-template <class T>
-OnBoth<T> acting(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j) {
+// δℓ = n · (δp_j - δp_i), n from i to j: the ends are pulled together with f, of ℓ - ℓ₀.
+template <class T, class ForceOf>
+OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j,
+                  const ForceOf& f) {
     using std::sqrt;
     const Vec<T> p_i = position(i, spring.i.s_local), D = position(j, spring.j.s_local) - p_i;
     const T length = sqrt(squared(D));
-    const Vec<T> F = D * (force(spring.law, T(length - free_length)) / length);
+    const Vec<T> F = D * (f(T(length - free_length)) / length);
     const Vec<T> none = constant<T>(Eigen::Vector3d::Zero());
     return opposed(F, none, p_i, i, j);
+}
+template <class T>
+OnBoth<T> acting(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j) {
+    return pulling(spring, free_length, i, j, [&](const T& x) { return force(spring.law, x); });
 }
 
 // Of a bushing. Where it does not care how its markers are turned against each other (`rotational` is false) their
@@ -98,8 +103,8 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
 }
 
 template <class T>
-std::array<T, 6> deformation(const Bushing& bushing, bool rotational, const Frame<T>& i, const Frame<T>& j) {
-    std::array<T, 6> e = measured(bushing, rotational, i, j).e;
+std::array<T, 6> deformation(const Bushing& bushing, const Measured<T>& m) {
+    std::array<T, 6> e = m.e;
     for (std::size_t k = 0; k < 6; ++k) e[k] = e[k] - Base<T>(bushing.undeformed[static_cast<int>(k)]);
     return e;
 }
@@ -118,14 +123,9 @@ std::array<T, 6> deformation(const Bushing& bushing, bool rotational, const Fram
 // Not conjugate: A_i g, or A_f g, which are one where the frame is on i. Without the moment of the offset, F acts on i at
 // p_i and nobody has D × F.
 template <class T>
-OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& preload, bool rotational, const Frame<T>& i,
-                 const Frame<T>& j) {
+OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& u, const Measured<T>& m, bool rotational,
+                 const Frame<T>& i, const Frame<T>& j) {
     const Formulation& formulation = bushing.formulation;
-    const Measured<T> m = measured(bushing, rotational, i, j);
-    std::array<T, 6> u = m.e;
-    for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] - Base<T>(bushing.undeformed[static_cast<int>(k)]);
-    u = force(bushing.law, u);
-    for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + preload[k];
     const Vec<T> F = turned(m.A_f, Vec<T>{{u[0], u[1], u[2]}});
     Vec<T> M = constant<T>(Eigen::Vector3d::Zero());
     if (rotational) {

@@ -120,6 +120,7 @@ struct Assembly {
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
+                if (std::is_same_v<std::decay_t<decltype(kind)>, AxialSpring> && path.apart[0]) return;
                 const OnBoth<T> on = acting_at(kind, path, i, j);
                 add(slots, slots.i, on.i);
                 add(slots, slots.j, on.j);
@@ -134,9 +135,65 @@ struct Assembly {
     template <class T>
     OnBoth<T> acting_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
                         const Frame<T>& j) {
-        std::array<T, 6> preload;
-        for (std::size_t k = 0; k < 6; ++k) preload[k] = path.preload[k].at(parameter<T>());
-        return acting(bushing, preload, path.rotational, i, j);
+        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        std::array<T, 6> u = force(bushing.law, deformation(bushing, m), path.apart);
+        for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
+        return acting(bushing, u, m, path.rotational, i, j);
+    }
+
+    // What a law set apart sees, and what a force of one does there.
+    template <class T>
+    struct OfOne {
+        T x;
+        OnBoth<T> on;
+    };
+    template <class T>
+    OfOne<T> of_one(const AxialSpring& spring, const ElementPath& path, std::size_t, const Frame<T>& i,
+                    const Frame<T>& j) {
+        OfOne<T> of;
+        of.on = pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+            of.x = x;
+            return constant<T>(1.);
+        });
+        return of;
+    }
+    template <class T>
+    OfOne<T> of_one(const Bushing& bushing, const ElementPath& path, std::size_t axis, const Frame<T>& i,
+                    const Frame<T>& j) {
+        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        std::array<T, 6> u;
+        u.fill(constant<T>(0.));
+        u[axis] = constant<T>(1.);
+        return {deformation(bushing, m)[axis], acting(bushing, u, m, path.rotational, i, j)};
+    }
+    template <class T>
+    void corner(std::size_t c) {
+        const Apart& of = system.apart[c];
+        const ScalarLaw& law = law_of(system, of);
+        const int to = system.corner(c), x_at = system.deformation(c), f_at = x_at + 1;
+        const S &x = z[static_cast<std::size_t>(x_at)], &f = z[static_cast<std::size_t>(f_at)];
+        std::visit(
+            [&](const auto& kind) {
+                const Slots slots{kind.i.body, kind.j.body};
+                const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
+                const OfOne<T> one = of_one(kind, system.elements[of.element], of.axis, i, j);
+                add(slots, to, T(one.x - x));
+                add_times(slots, slots.i, one.on.i, f, f_at);
+                add_times(slots, slots.j, one.on.j, f, f_at);
+            },
+            system.model->elastics[of.element].kind);
+        if constexpr (std::is_same_v<T, S>) {
+            add({}, to + 1, f - force(law, x));
+        } else {
+            Dual<S, 1> at;
+            at.v = x;
+            at.d[0] = constant<S>(1.);
+            at = force(law, at);
+            add({}, to + 1, f - at.v);
+            add_slope(to, x_at, constant<S>(-1.));
+            add_slope(to + 1, x_at, -at.d[0]);
+            add_slope(to + 1, f_at, constant<S>(1.));
+        }
     }
 
     template <class T>
@@ -196,6 +253,9 @@ Values<S> assembled(const System& system, const std::vector<S>& z, const S& a, S
     };
     for (std::size_t e = 0; e < model.elastics.size(); ++e)
         two(model.elastics[e].kind) ? sum.template element<Two>(e) : sum.template element<One>(e);
+    for (std::size_t c = 0; c < system.apart.size(); ++c)
+        two(model.elastics[system.apart[c].element].kind) ? sum.template corner<Two>(c)
+                                                          : sum.template corner<One>(c);
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
         two(model.constraints[c].kind) ? sum.template constraint<Two>(c) : sum.template constraint<One>(c);
     for (const LoadPath& load : system.loads)

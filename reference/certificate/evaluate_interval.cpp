@@ -15,18 +15,18 @@ std::vector<std::array<Interval, 6>> deformations(const System& system, const st
     const Assembly<Interval> at{system, z, a, {}};
     std::vector<std::array<Interval, 6>> all;
     for (std::size_t e = 0; e < system.elements.size(); ++e)
-        all.push_back(std::visit(overloaded{[&](const AxialSpring& spring) {
-                                                return std::array<Interval, 6>{
-                                                    deformation(spring, system.elements[e].free_length.at(a),
-                                                                at.frame<Interval>(spring.i.body, 0),
-                                                                at.frame<Interval>(spring.j.body, 0))};
-                                            },
-                                            [&](const Bushing& bushing) {
-                                                return deformation(bushing, system.elements[e].rotational,
-                                                                   at.frame<Interval>(bushing.i.body, 0),
-                                                                   at.frame<Interval>(bushing.j.body, 0));
-                                            }},
-                                 system.model->elastics[e].kind));
+        all.push_back(std::visit(
+            overloaded{[&](const AxialSpring& spring) {
+                           return std::array<Interval, 6>{deformation(
+                               spring, system.elements[e].free_length.at(a),
+                               at.frame<Interval>(spring.i.body, 0), at.frame<Interval>(spring.j.body, 0))};
+                       },
+                       [&](const Bushing& bushing) {
+                           return deformation(bushing, measured(bushing, system.elements[e].rotational,
+                                                                at.frame<Interval>(bushing.i.body, 0),
+                                                                at.frame<Interval>(bushing.j.body, 0)));
+                       }},
+            system.model->elastics[e].kind));
     return all;
 }
 

@@ -15,6 +15,9 @@ void expand(const Curve& curve, double x, int count, double* f);
 // Whether x reaches over a knot.
 bool over_a_knot(const Curve& curve, const Interval& x);
 
+// Whether slopes jump at a knot, by more than rounding: a stop that closes.
+bool has_corner(const ScalarLaw& law);
+
 template <class T>
 T force(const ScalarLaw& law, const T& x) {
     if (const auto* rate = std::get_if<LinearRate>(&law)) return x * Base<T>(rate->k);
@@ -33,9 +36,9 @@ inline bool is_zero(const ScalarLaw& law) {
     return rate != nullptr && rate->k == 0;
 }
 
-// ∂u/∂e of e = (d, θ)
+// ∂u/∂e of e = (d, θ), without the axes that are set apart
 template <class T>
-std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e) {
+std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e, const std::array<bool, 6>& apart) {
     std::array<T, 6> f;
     f.fill(constant<T>(0.));
     if (const auto* linear = std::get_if<LinearStiffness>(&law)) {
@@ -49,7 +52,7 @@ std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e) {
     }
     const auto& axis = std::get<PerAxis>(law).axis;
     for (std::size_t k = 0; k < 6; ++k)
-        if (!is_zero(axis[k])) f[k] = force(axis[k], e[k]);
+        if (!is_zero(axis[k]) && !apart[k]) f[k] = force(axis[k], e[k]);
     return f;
 }
 

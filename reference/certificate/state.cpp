@@ -97,6 +97,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
             at.z[7 * system.bodies + rows[k]] = R[static_cast<Index>(k)];
         at.from_wrench.push_back(P);
     }
+    set_corners(system, at.z, state.load);
     return at;
 }
 
@@ -107,6 +108,8 @@ StateAt state_at(const System& system, const Equilibrium& state) {
 //   R - R₀ = P w - R₀ + E R     so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
 //
 // and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments count over L, as in w.
+//
+// Corners set apart: what their deformation is over the box of poses, and the law over that.
 VectorXd radii(const StateAt& at, const Near& near) {
     const System& system = at.system;
     VectorXd r = VectorXd::Zero(system.n());
@@ -167,6 +170,15 @@ VectorXd radii(const StateAt& at, const Near& near) {
                                        : std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < q; ++i)
             r[7 * system.bodies + rows[i]] = moment[i] ? (Interval(within) * length).hi : within;
+    }
+    if (system.apart.empty()) return r;
+    const auto x = deformations(system, poses, Interval(at.state.load));
+    for (std::size_t k = 0; k < system.apart.size(); ++k) {
+        const Apart& corner = system.apart[k];
+        const Interval& over = x[corner.element][corner.axis];
+        const Index to = system.deformation(k);
+        r[to] = mag(over - Interval(at.z[to]));
+        r[to + 1] = mag(force(law_of(system, corner), over) - Interval(at.z[to + 1]));
     }
     return r;
 }

@@ -113,6 +113,20 @@ void set_formulations(System& system) {
     }
 }
 
+template <class Visit>
+void for_corners(const Model& model, const Visit& visit) {
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        std::visit(overloaded{[&](const AxialSpring& spring) {
+                                  if (has_corner(spring.law)) visit(Apart{e, 0});
+                              },
+                              [&](const Bushing& bushing) {
+                                  const auto* law = std::get_if<PerAxis>(&bushing.law);
+                                  for (std::size_t k = 0; law != nullptr && k < 6; ++k)
+                                      if (has_corner(law->axis[k])) visit(Apart{e, k});
+                              }},
+                   model.elastics[e].kind);
+}
+
 // Where everything is counted from, and how large the model is. Neither changes what is proved.
 void set_size(System& system) {
     std::vector<Vector3d> points;
@@ -137,7 +151,32 @@ void set_size(System& system) {
 
 }  // namespace
 
-System make_system(const Model& model, const Branch& branch) {
+bool has_corners(const Model& model) {
+    bool any = false;
+    for_corners(model, [&](const Apart&) { any = true; });
+    return any;
+}
+
+const ScalarLaw& law_of(const System& system, const Apart& corner) {
+    return std::visit(overloaded{[](const AxialSpring& spring) -> const ScalarLaw& { return spring.law; },
+                                 [&](const Bushing& bushing) -> const ScalarLaw& {
+                                     return std::get<PerAxis>(bushing.law).axis[corner.axis];
+                                 }},
+                      system.model->elastics[corner.element].kind);
+}
+
+void set_corners(const System& system, Eigen::VectorXd& z, double a) {
+    if (system.apart.empty()) return;
+    const auto x = deformations(system, {z.data(), z.data() + z.size()}, Interval(a));
+    for (std::size_t k = 0; k < system.apart.size(); ++k) {
+        const Apart& corner = system.apart[k];
+        const double at = mid(x[corner.element][corner.axis]);
+        z[system.deformation(k)] = at;
+        z[system.deformation(k) + 1] = force(law_of(system, corner), at);
+    }
+}
+
+System make_system(const Model& model, const Branch& branch, Corners corners) {
     if (!stands_on(model, branch))
         throw std::invalid_argument("branch '" + branch.name +
                                     "' wants one way from 0, and the model as it stands there (on_branch)");
@@ -148,6 +187,11 @@ System make_system(const Model& model, const Branch& branch) {
     set_paths(system);
     set_formulations(system);
     set_size(system);
+    if (corners == Corners::apart)
+        for_corners(model, [&](const Apart& corner) {
+            system.apart.push_back(corner);
+            system.elements[corner.element].apart[corner.axis] = true;
+        });
     return system;
 }
 

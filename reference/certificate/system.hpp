@@ -2,7 +2,13 @@
 //
 //   z  per body   r - c [m], the quaternion (w, x, y, z) [-]         E  per body  Σ forces [N], Σ moments about its origin [N·m]
 //      per row    its reaction R [N, N·m]                               per row   Φ [m, -]
+//      per corner deformation x, force f                                per corner x(r, p; a) - x, f - ∂u/∂x
 //                                                                       per body  |p|² - 1
+//
+// A corner is a law whose slope jumps. Set apart, it does what f does, and its slope stands in one place of ∂E/∂z: over the
+// corner that is an interval, and the rest of the matrix is numbers. Within its element an interval would stand in each of the
+// twelve rows and fourteen columns and range in each by itself, which no stop that is much stiffer than what it meets gets
+// through. Nothing else changes: x and f are what (r, p) make them.
 //
 // c is a place near the model, a double, from which everything is counted: where the ground's frame sits does not matter.
 // All that a driver may move stands as start + rate·a in intervals: what is stored enters as it is stored, and no product is
@@ -30,6 +36,11 @@ struct ElementPath {
     Affine free_length;             // of a spring [m]
     std::array<Affine, 6> preload;  // of a bushing [N, N·m]
     bool rotational = false;        // whether a bushing cares how its markers are turned against each other
+    std::array<bool, 6> apart{};    // laws that are set apart; of a spring the first
+};
+// A law with a corner, set apart: its deformation and its force are unknowns of their own.
+struct Apart {
+    std::size_t element = 0, axis = 0;
 };
 struct LoadPath {
     LoadKind kind;
@@ -43,20 +54,29 @@ struct System {
     std::vector<int> first_row;         // per Model::constraints
     std::vector<ElementPath> elements;  // per Model::elastics
     std::vector<LoadPath> loads;        // static and driven
+    std::vector<Apart> apart;           // corners that are unknowns
     Eigen::Vector3d c = {0, 0, 0};      // [m]
     double length = 1;                  // size of the model, for what has to be made comparable [m]
     int bodies = 0, rows = 0;           // nb, m
     bool conservative = true;           // no follower, no formulation without energy
-    int n() const { return 7 * bodies + rows; }
+    int corners() const { return 2 * static_cast<int>(apart.size()); }
+    int n() const { return 7 * bodies + rows + corners(); }
     int pose(BodyId body) const { return 7 * body; }
     int reaction(std::size_t constraint) const { return 7 * bodies + first_row[constraint]; }
     int balance(BodyId body) const { return 6 * body; }
     int closure(std::size_t constraint) const { return 6 * bodies + first_row[constraint]; }
-    int norm(BodyId body) const { return 6 * bodies + rows + body; }
+    int deformation(std::size_t corner) const { return 7 * bodies + rows + 2 * static_cast<int>(corner); }
+    int corner(std::size_t corner) const { return 6 * bodies + rows + 2 * static_cast<int>(corner); }
+    int norm(BodyId body) const { return 6 * bodies + rows + corners() + body; }
 };
 
 // Throws std::invalid_argument where the model does not stand on the branch, or a driver moves what is not there.
-System make_system(const Model& model, const Branch& branch);
+enum class Corners { in_place, apart };
+System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
+bool has_corners(const Model& model);
+const ScalarLaw& law_of(const System& system, const Apart& corner);
+// x and f of corners as the poses of z make them.
+void set_corners(const System& system, Eigen::VectorXd& z, double a);
 
 // E, and where asked for ∂E/∂z by rows [n × n] and ∂E/∂a.
 template <class S>
