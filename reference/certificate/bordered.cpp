@@ -248,10 +248,11 @@ MatrixXd inverse(const MatrixXd& J) {
     return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
 }
 
-// Newton's method until its steps are rounding. The last two steps share an inverse.
+// Newton's method until its steps are rounding. The last two steps share an inverse, unless they come out as large as the one
+// before: then a knot lies between, and the inverse is of its other side.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
-    constexpr int most = 12;
-    constexpr double close = 1e-7;  // of the model's size: steps from here on need no new inverse
+    constexpr int most = 14, last = 2;
+    constexpr double close = 1e-7, rounding = 1e-13;  // of the model's size
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
         double size = 0;
@@ -262,19 +263,19 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         }
         return size;
     };
-    for (int step = 0; step < most && !at.settled; ++step) {
-        const Values<double> of = evaluate(problem, doubles(at.y), a, Slopes::yes);
-        at.Y = inverse(square(of.J, problem.size()));
-        VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
-        if (!dy.allFinite()) return at;
-        at.y += dy;
-        at.settled = size_of(dy) < close;
-    }
-    for (int step = 0; step < 2; ++step) {
-        const Values<double> of = evaluate(problem, doubles(at.y), a, Slopes::no);
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0, shared = 0; step < most && shared < last; ++step) {
+        const bool share = at.settled;
+        const Values<double> of = evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
+        if (!share) at.Y = inverse(square(of.J, problem.size()));
         const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
+        at.settled = false;
         if (!dy.allFinite()) return at;
         at.y += dy;
+        const double size = size_of(dy);
+        at.settled = share ? size < before / 4 || size < rounding : size < close;
+        shared = share && at.settled ? shared + 1 : 0;
+        before = size;
     }
     return at;
 }

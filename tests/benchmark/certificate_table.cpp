@@ -67,6 +67,7 @@ void table(const std::string& file, int count) {
                 model.name, way.name, points.proved, points.of, 1e3 * points.error.length, points.error.angle,
                 points.error.force, 1e3 * points.unique, 1e3 * points.proof / points.of,
                 points.proof / points.leg, name(tube.answer), tube.pieces, 1e3 * tube.width.length, seconds);
+            if (tube.answer != Answer::proved) fmt::print("    {}\n", tube.detail);
         }
 }
 
