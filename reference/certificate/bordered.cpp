@@ -249,9 +249,9 @@ MatrixXd inverse(const MatrixXd& J) {
 }
 
 // Newton's method until its steps are rounding. The last two steps share an inverse, unless they come out as large as the one
-// before: then a knot lies between, and the inverse is of its other side.
+// before: then a knot may lie between, and the inverse be of its other side. Near a limit point that is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
-    constexpr int most = 14, last = 2;
+    constexpr int most = 12, last = 2, most_anew = 3;
     constexpr double close = 1e-7, rounding = 1e-13;  // of the model's size
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
@@ -264,17 +264,19 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         return size;
     };
     double before = std::numeric_limits<double>::infinity();
-    for (int step = 0, shared = 0; step < most && shared < last; ++step) {
-        const bool share = at.settled;
+    bool share = false;
+    for (int step = 0, shared = 0, anew = 0; shared < last && (at.settled || step < most); ++step) {
         const Values<double> of = evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
         if (!share) at.Y = inverse(square(of.J, problem.size()));
         const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
-        at.settled = false;
-        if (!dy.allFinite()) return at;
+        if (!dy.allFinite()) return {at.y, at.Y, false};
         at.y += dy;
         const double size = size_of(dy);
-        at.settled = share ? size < before / 4 || size < rounding : size < close;
-        shared = share && at.settled ? shared + 1 : 0;
+        at.settled = at.settled || size < close;
+        shared += share ? 1 : 0;
+        const bool other_side = share && !(size < before / 4 || size < rounding) && anew < most_anew;
+        share = at.settled && !other_side;
+        if (other_side) shared = 0, ++anew;
         before = size;
     }
     return at;
