@@ -121,83 +121,79 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
 
 // ---- A large box without another
 
-// Poses within t L and t, reactions as far as the poses make them, of a box that contracts: the largest t found.
-struct Alone {
-    double t = 0;
-    VectorXd r;
-};
-Alone alone(const Problem& problem, const Approximate& at, double a) {
+// Let y* be the zero in the small box [y*], and y another whose poses p are in [p] ∋ p*, with whatever reactions. Reactions and
+// μ enter straight, so
+//
+//   0 = F(y) - F(y*) = S (y - y*),    S ∈ F'([p], R*):  in the columns of poses with the reactions of [y*] alone
+//
+// and y is y* where I - Y S shrinks something: |I - Y S| v < v for some v > 0.
+//
+// The least of max (|I - Y S| v / v) that power iterations find.
+double shrinks(const Contraction& rest, VectorXd v) {
+    constexpr int iterations = 12;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; rest.finite && k < iterations; ++k) {
+        const VectorXd w = rest(v);
+        if (!w.allFinite()) break;
+        least = std::min(least, (w.array() / v.array()).maxCoeff() * (1 + 1e-14));
+        if (least < 0.9 && k > 2) break;
+        v = w.cwiseMax(1e-9 * v);
+    }
+    return least;
+}
+
+// Origins within t L and quaternions within t of ỹ: the largest t found.
+double alone(const Problem& problem, const Approximate& at, double a, const VectorXd& small) {
     const System& system = problem.system;
-    const int poses = 7 * system.bodies, n = problem.size();
-    constexpr int trials = 10, fits = 3;
-    constexpr double largest = 0.05, enough = 0.35, most = 0.9, hopeless = 20;
-    double t = 2e-3, failed = std::numeric_limits<double>::infinity();
-    Alone best;
-    const double load = std::max(1e-6, at.y.segment(poses, system.rows).size() > 0
-                                           ? at.y.segment(poses, system.rows).cwiseAbs().maxCoeff()
-                                           : 0.);
+    constexpr int trials = 8;
+    constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
+    double t = 2e-3, best = 0, failed = std::numeric_limits<double>::infinity();
     for (int trial = 0; trial < trials; ++trial) {
-        VectorXd r(n);
+        VectorXd r = small;
         for (int b = 0; b < system.bodies; ++b) {
-            r.segment<3>(7 * b).setConstant(t * system.length);
-            r.segment<4>(7 * b + 3).setConstant(t);
+            r.segment<3>(system.pose(b)).setConstant(t * system.length);
+            r.segment<4>(system.pose(b) + 3).setConstant(t);
         }
-        r.tail(n - poses).setConstant(t * load);
-        // Passed is what passes over the very box that its slopes were taken over.
-        double ratio = std::numeric_limits<double>::infinity();
-        for (int fit = 0; fit < fits; ++fit) {
-            const Contraction rest =
-                contraction(at.Y, evaluate(problem, box(at.y, r), Interval(a), Slopes::yes).J);
-            if (!rest.finite) break;
-            const auto over = [&](const VectorXd& radius) {
-                return (rest(radius).array() / radius.array()).maxCoeff();
-            };
-            ratio = over(r);
-            if (ratio < most || fit + 1 == fits) break;
-            // Reactions and μ enter straight: what the poses make of them is room enough.
-            VectorXd grown = r;
-            for (int k = 0; k < 3; ++k)
-                grown.tail(n - poses) = grown.tail(n - poses).cwiseMax(1.5 * rest(grown).tail(n - poses));
-            ratio = std::max(most, over(grown));
-            if (!(ratio < hopeless)) break;
-            r = std::move(grown);
+        r = r.cwiseMax(small);  // p* ∈ [p]
+        std::vector<Interval> y = box(at.y, r);
+        if (!system.apart.empty()) {
+            const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
+            for (std::size_t k = 0; k < system.apart.size(); ++k)
+                y[static_cast<std::size_t>(system.deformation(k))] =
+                    x[system.apart[k].element][system.apart[k].axis];
         }
-        if (ratio < most) {
-            if (t > best.t) best = {t, r};
-            if (ratio > enough || t >= largest || t * 2 >= failed) break;
-            t = std::min({largest, t * std::min(8., 0.7 / std::max(ratio, 1e-3)), failed / 1.5});
+        const double by =
+            shrinks(contraction(at.Y, evaluate(problem, y, Interval(a), Slopes::yes).J), std::move(r));
+        if (by < 1) {
+            best = std::max(best, t);
+            t = std::min({largest, t * aim / std::max(by, 1e-3), 0.7 * failed});
+            if (by > enough || t < 1.3 * best) break;
         } else {
+            // In proportion to t; not where a corner lies in the box, which it has to become clear of.
+            const double shorter = !std::isfinite(by)      ? 0.05
+                                   : std::isfinite(failed) ? corner
+                                                           : std::clamp(aim / by, 0.01, aim);
             failed = std::min(failed, t);
-            t *= std::isfinite(ratio) ? std::clamp(0.6 / ratio, 0.02, 0.7) : 0.1;
-            if (best.t >= t || t < 1e-12) break;
+            t *= shorter;
+            if (t <= best || t < 1e-13) break;
         }
     }
     return best;
 }
 
-// The largest of ball and angle around the state, and of its wrenches, that the box about ỹ holds.
-Extent held_by(const StateAt& at, const Approximate& found, const Alone& alone) {
+// What of that is around the state.
+Extent unique_around(const StateAt& at, const Approximate& found, double t) {
     const System& system = at.system;
-    const Index n = system.n();
-    if (alone.r.size() == 0) return {0, 0, 0, 0};
-    const VectorXd room = alone.r.head(n) - (found.y.head(n) - at.z).cwiseAbs();
-    Extent unique{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), 0, 0};
+    Extent unique;
+    if (t == 0) return {0, 0, 0, 0};
+    const VectorXd off = (found.y.head(system.n()) - at.z).cwiseAbs();
     for (int b = 0; b < system.bodies; ++b) {
-        unique.length = std::min(unique.length, 0.999 * room.segment<3>(system.pose(b)).minCoeff());
-        unique.angle = std::min(unique.angle, 0.999 * 2 * room.segment<4>(system.pose(b) + 3).minCoeff());
+        const double length = t * system.length - off.segment<3>(system.pose(b)).maxCoeff(),
+                     half = t - off.segment<4>(system.pose(b) + 3).maxCoeff();
+        unique.length = std::min(unique.length, std::max(0., 0.999 * length));
+        unique.angle = std::min(unique.angle, std::max(0., 0.999 * 2 * half));
     }
-    // Reactions: as much of a wrench as their room has, by halves.
-    double force = std::numeric_limits<double>::infinity();
-    if (system.rows == 0) return {unique.length, unique.angle, force, force};
-    force = room.tail(system.rows).cwiseAbs().maxCoeff();
-    for (int halving = 0; halving < 60; ++halving, force /= 2) {
-        const Near near{unique.length, unique.angle, force, force * system.length};
-        if ((radii(at, near).tail(system.rows).array() <= room.tail(system.rows).array()).all())
-            return {unique.length, unique.angle, force, near.moment};
-        // With the poses' own share nothing may be left: then poses give way.
-        if (halving % 8 == 7) unique.length /= 4, unique.angle /= 4;
-    }
-    return {0, 0, 0, 0};
+    return unique;
 }
 
 // ---- None within tolerance
@@ -319,11 +315,7 @@ std::string theorem(const Problem& problem, const Certificate& certificate) {
     return words;
 }
 
-}  // namespace
-
-Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
-                    const Tolerance& tolerance) {
-    const System system = make_system(model, branch);
+Certificate certify(const System& system, const Equilibrium& state, const Tolerance& tolerance) {
     const StateAt at = state_at(system, state);
     Certificate certificate;
     certificate.unique = {0, 0, 0, 0};
@@ -355,7 +347,7 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
             const bool balanced = certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
-                certificate.unique = held_by(at, found, alone(problem, found, state.load));
+                certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 say(certificate.detail, theorem(problem, certificate));
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
@@ -391,6 +383,17 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
         "the tolerance, and none could not be shown",
         1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
         certificate.error.force, certificate.error.moment));
+}
+
+}  // namespace
+
+Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
+                    const Tolerance& tolerance) {
+    Certificate certificate = certify(make_system(model, branch), state, tolerance);
+    // On the corner of a stiff stop its slopes range too freely where they stand.
+    if (certificate.answer == Answer::open && has_corners(model))
+        certificate = certify(make_system(model, branch, Corners::apart), state, tolerance);
+    return certificate;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -3,6 +3,9 @@
 //   H = -½ (A_qq + A_qqᵀ),    H + ρ (Φ_qᵀ Φ_q + g gᵀ) positive definite for some ρ
 //     ⟹  xᵀ H x > 0 where Φ_q x = 0 and g x = 0
 //
+// A law that is set apart has no part in A_qq: its f does the work of k w δx on its deformation's wᵀ δx, so it adds k w wᵀ, which
+// is no less than that of the least slope k ≥ 0 in the box. Only where there is an energy.
+//
 // Positive definite: with G ≈ L⁻¹ of M = L Lᵀ, in doubles, G (M ± R) Gᵀ is close to the identity; where its rows are off by less
 // than one in sum, all its eigenvalues are positive, and so are those of M ± R. Row by row, so that stiff and soft may stand
 // side by side:
@@ -80,6 +83,16 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const std::v
             H[a * N + b] += part;
             H[b * N + a] += part;
         }
+    }
+    for (std::size_t c = 0; c < system.apart.size(); ++c) {
+        const auto at = static_cast<std::size_t>(system.corner(c));
+        const double k = (-J[(at + 1) * size + static_cast<std::size_t>(system.deformation(c))]).lo;
+        if (!system.conservative || !(k >= 0)) return false;
+        const Sparse w = row_of(at);
+        for (const auto& [i, a] : w)
+            for (const auto& [j, b] : w)
+                H[static_cast<std::size_t>(i) * N + static_cast<std::size_t>(j)] +=
+                    Interval(k) * (i == j ? sqr(a) : a * b);
     }
     double most = 0;
     for (const Interval& entry : H) most = std::max(most, mag(entry));
