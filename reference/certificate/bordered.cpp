@@ -252,7 +252,8 @@ MatrixXd inverse(const MatrixXd& J) {
 // before: then a knot may lie between, and the inverse be of its other side. Near a limit point that is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int most = 12, last = 2, most_anew = 3;
-    constexpr double close = 1e-7, rounding = 1e-13;  // of the model's size
+    constexpr double close = 1e-7;  // of the model's size
+    const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
         double size = 0;

@@ -24,8 +24,6 @@
 // however stiff the stop is: the piece contracts. r is then (I - |Y| R)⁻¹ of what is to be covered.
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
 #include "reference/certificate/state.hpp"
@@ -261,11 +259,10 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
-constexpr double least = 1e-20;
-
 // r with |Y F| + rest(r) < r, from the fixed point of that; empty where there is none.
 template <class Rest>
 VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
+    constexpr double least = 1e-20;
     constexpr int most = 30;
     VectorXd r = first.cwiseMax(least) * 1.01;
     for (int k = 0; k < most; ++k) {
@@ -275,15 +272,6 @@ VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
         r = next.cwiseMax(r);
     }
     return {};
-}
-
-// The same by solving for the fixed point: over a corner r is many times |Y F|.
-VectorXd tube(const VectorXd& first, const Contraction& rest) {
-    const Index n = first.size();
-    const VectorXd covered = first.cwiseMax(least) * 1.05;
-    const MatrixXd A = MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
-    const VectorXd r = Eigen::PartialPivLU<MatrixXd>(A).solve(covered);
-    return all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r : VectorXd();
 }
 
 // The box at a joint; the gauge there is the joint's own place.
@@ -298,7 +286,7 @@ void enclose(const Walk& walk, Node& node) {
         const auto J = evaluate(problem, box(node.y, room), a, Slopes::yes).J;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return;
-        VectorXd r = tube(step(Y, E), rest);
+        VectorXd r = passing(step(Y, E), rest);
         if (r.size() == 0)
             Y = inverse(middle(J, Y.rows()));  // on a corner, where that at ỹ is of one side
         else if ((r.array() <= room.array()).all())
@@ -366,7 +354,7 @@ bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, cons
         if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
-        const VectorXd r = tube(first, rest);
+        const VectorXd r = passing(first, rest);
         if (r.size() == 0 || !within(walk.system, r, tolerance)) return false;
         if ((r.array() <= room.array()).all()) {
             piece.r = r;
@@ -512,6 +500,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         held.gap = std::max(held.gap, of_piece.gap);
         pushed = {};
         ++tube.pieces;
+        tube.corners += over_a_corner(system, piece) ? 1 : 0;
         tube.to = a1;
         from = to;
         h *= 1.6;

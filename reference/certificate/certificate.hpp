@@ -66,6 +66,7 @@ struct Tube {
     double from = 0, to = 0;  // a, what is covered without a gap
     Extent width;             // of the tube: the curve is within this of the states at their a
     int pieces = 0;
+    int corners = 0;  // of these lead over a stop that closes or opens
 };
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
                     const Tolerance& tolerance = {});

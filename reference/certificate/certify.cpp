@@ -106,13 +106,20 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
         }
         const Contraction rest = contraction(at.Y, found.J);
         if (!rest.finite) return found;
-        VectorXd r = (first * 1.01).cwiseMax(least);
-        for (int k = 0; k < 3 + 40 * trial; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
-        if ((r.array() <= found.r.array()).all() && all_less((first + rest(r)) * (1 + 1e-14), r)) {
+        // By iteration, which is enough where F' hardly changes; else by solving.
+        VectorXd r;
+        if (trial == 0) {
+            r = (first * 1.01).cwiseMax(least);
+            for (int k = 0; k < 3; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
+            if (!all_less((first + rest(r)) * (1 + 1e-14), r)) r = {};
+        } else {
+            r = passing(first, rest);
+        }
+        if (r.size() > 0 && (r.array() <= found.r.array()).all()) {
             found.r = r;
             found.proved = true;
         } else {
-            found.r = (2 * r).cwiseMax(found.r);
+            found.r = r.size() > 0 ? (2 * r).cwiseMax(found.r).eval() : 4 * found.r;
             if (!found.r.allFinite()) return found;
         }
     }
@@ -143,7 +150,7 @@ double shrinks(const Contraction& rest, VectorXd v) {
 }
 
 // Origins within t L and quaternions within t of ỹ: the largest t found.
-double alone(const Problem& problem, const Approximate& at, double a, const VectorXd& small) {
+double alone(const Problem& problem, const VectorXd& found, double a, const VectorXd& small) {
     const System& system = problem.system;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
@@ -155,15 +162,15 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
             r.segment<4>(system.pose(b) + 3).setConstant(t);
         }
         r = r.cwiseMax(small);  // p* ∈ [p]
-        std::vector<Interval> y = box(at.y, r);
+        std::vector<Interval> y = box(found, r);
         if (!system.apart.empty()) {
             const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
             for (std::size_t k = 0; k < system.apart.size(); ++k)
                 y[static_cast<std::size_t>(system.deformation(k))] =
                     x[system.apart[k].element][system.apart[k].axis];
         }
-        const double by =
-            shrinks(contraction(at.Y, evaluate(problem, y, Interval(a), Slopes::yes).J), std::move(r));
+        const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
+        const double by = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
         if (by < 1) {
             best = std::max(best, t);
             t = std::min({largest, t * aim / std::max(by, 1e-3), 0.7 * failed});
@@ -347,7 +354,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             const bool balanced = certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
-                certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
+                certificate.unique = unique_around(at, found, alone(problem, found.y, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 say(certificate.detail, theorem(problem, certificate));
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
@@ -390,10 +397,11 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
 Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
                     const Tolerance& tolerance) {
     Certificate certificate = certify(make_system(model, branch), state, tolerance);
-    // On the corner of a stiff stop its slopes range too freely where they stand.
-    if (certificate.answer == Answer::open && has_corners(model))
-        certificate = certify(make_system(model, branch, Corners::apart), state, tolerance);
-    return certificate;
+    const bool shown = certificate.answer == Answer::excluded || certificate.stable;
+    if (shown || !has_corners(model)) return certificate;
+    // On the corner of a stiff stop slopes range too freely where they stand.
+    Certificate apart = certify(make_system(model, branch, Corners::apart), state, tolerance);
+    return apart.answer == Answer::open ? certificate : apart;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -1,5 +1,7 @@
 #include "reference/certificate/krawczyk.hpp"
 
+#include <Eigen/LU>
+
 namespace elastocheck::reference::certificate {
 namespace {
 
@@ -52,6 +54,15 @@ Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J)
     of.gamma = gamma(most + 2);
     of.finite = of.rest.allFinite() && of.Y.allFinite() && of.R.allFinite();
     return of;
+}
+
+VectorXd passing(const VectorXd& first, const Contraction& rest) {
+    constexpr double least = 1e-20;
+    const Index n = first.size();
+    const VectorXd covered = first.cwiseMax(least) * 1.05;
+    const MatrixXd A = MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
+    const VectorXd r = Eigen::PartialPivLU<MatrixXd>(A).solve(covered);
+    return r.allFinite() && all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r : VectorXd();
 }
 
 VectorXd step(const MatrixXd& Y, const std::vector<Interval>& F) {

@@ -31,6 +31,10 @@ struct Contraction {
 // J by rows.
 Contraction contraction(const Eigen::MatrixXd& Y, const std::vector<Interval>& J);
 
+// An r with `first` + |I - Y F'| r < r, from the fixed point of that by solving for it: over the corner of a stop r is many
+// times `first`. Empty where there is none.
+Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
+
 // At least |Y F|.
 Eigen::VectorXd step(const Eigen::MatrixXd& Y, const std::vector<Interval>& F);
 

@@ -86,7 +86,11 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const std::v
     }
     for (std::size_t c = 0; c < system.apart.size(); ++c) {
         const auto at = static_cast<std::size_t>(system.corner(c));
-        const double k = (-J[(at + 1) * size + static_cast<std::size_t>(system.deformation(c))]).lo;
+        std::array<Interval, 2>
+            f;  // from the law itself: the least slope of a stop is zero, and rounded outward below it
+        expand(std::get<Curve>(law_of(system, system.apart[c])),
+               z[static_cast<std::size_t>(system.deformation(c))], 2, f.data());
+        const double k = f[1].lo;
         if (!system.conservative || !(k >= 0)) return false;
         const Sparse w = row_of(at);
         for (const auto& [i, a] : w)
