@@ -369,9 +369,15 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         certificate.answer = Answer::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail =
-                fmt::format("the nearest one found is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
+                fmt::format("the nearest one found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
+                            problem.border.count() > problem.border.redundant
+                                ? fmt::format(", with the idle motion of {} where the state has it,",
+                                              idle_bodies(system, problem.border))
+                                : "",
                             1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
                             certificate.error.force, certificate.error.moment);
+        else
+            certificate.detail = "none is found near the state either";
         if (certificate.held > tolerance.held)
             say(certificate.detail, fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
                                                 idle_bodies(system, problem.border), certificate.held));

@@ -113,7 +113,7 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
             const Certificate c = certify(way.model, way.branch, way.state(20 + by, slider));
             EXPECT_EQ(c.answer, Answer::proved) << k_s << " " << by << ": " << c.detail;
             // 1e-9 N beyond the corner a stop of 2e9 N/m is 5e-19 m in: no double tells which side that is.
-            if (k_s < 1e6) EXPECT_TRUE(c.stable) << k_s << " " << by;
+            EXPECT_TRUE(c.stable || k_s > 1e6) << k_s << " " << by;
             EXPECT_GT(c.unique.length, c.error.length) << k_s << " " << by;
         }
         for (const double by : {1e-8, -1e-8, 1e-6, -1e-6}) {

@@ -120,7 +120,12 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
         for (const bool origin_too : {true, false}) {
             const Certificate off = turned(angle, origin_too, true);
             EXPECT_EQ(off.answer, Answer::excluded) << angle << origin_too << ": " << off.detail;
-            EXPECT_NE(off.detail.find("away"), std::string::npos) << off.detail;
+            // Straight on by 1e-3 rad is 4e-5 mm off the circle; far off it nobody knows any more what is idle.
+            const bool near = std::abs(angle) < 2e-3 && origin_too;
+            EXPECT_NE(
+                off.detail.find(near ? "with the idle motion of 'rod' where the state has it" : "found"),
+                std::string::npos)
+                << angle << origin_too << off.detail;
         }
 }
 
