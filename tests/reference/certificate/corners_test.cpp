@@ -8,6 +8,8 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "reference/certificate/certificate.hpp"
+#include "reference/certificate/state.hpp"
+#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -122,6 +124,82 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
             const Certificate c = certify(way.model, way.branch, wrong);
             EXPECT_EQ(c.answer, Answer::excluded) << k_s << " " << by << ": " << c.detail;
         }
+    }
+}
+
+// An arm on one bushing that is soft at first in every direction, and on its corner in some.
+On cornered(const Formulation& formulation) {
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
+        "points: {o: [0, 0, 0], p: [300, 100, 0]}\nbodies: {arm: {origin: p}}\n"
+        "bushings: {b: {bodies: [arm, ground], at: o, rates: [100, 200, 300], rotational_rates: [7e5, 5e5, "
+        "4e5]}}\nloads: {push: {on: arm, at: p, force: [0.3, 0.2, 1]}}\n"
+        "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n",
+        "test.yaml"));
+    Branch way = ways(model.branches.front()).front();
+    On at{on_branch(model, way), way};
+    auto& bushing = std::get<Bushing>(at.model.elastics[0].kind);
+    bushing.formulation = formulation;
+    const auto K = std::get<LinearStiffness>(bushing.law).K;
+    PerAxis law;
+    for (int k = 0; k < 6; ++k) {
+        const double soft = K(k, k), corner = k < 3 ? 1e-4 : 0.02;
+        const auto stiffer = [&](double by, double from) {
+            return std::array<double, 4>{soft * from, soft * by, 0, 0};
+        };
+        law.axis[static_cast<std::size_t>(k)] =
+            Curve{{-corner, corner}, {stiffer(40, -corner), stiffer(1, -corner), stiffer(30, corner)}};
+    }
+    bushing.law = law;
+    return at;
+}
+
+TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
+    using F = Formulation;
+    for (const auto angles : {F::Angles::rotation_vector, F::Angles::cardan, F::Angles::projected})
+        for (const auto frame : {F::Frame::on_i, F::Frame::middle})
+            for (const bool conjugate : {true, false})
+                for (const bool offset : {true, false}) {
+                    if (frame == F::Frame::middle && !conjugate) continue;
+                    const On at = cornered({frame, angles, conjugate, offset});
+                    const System plain = make_system(at.model, at.branch),
+                                 apart = make_system(at.model, at.branch, Corners::apart);
+                    ASSERT_EQ(apart.apart.size(), 6U);
+                    Equilibrium state;
+                    state.load = 70;
+                    state.poses = {at.model.bodies[0].design};
+                    state.poses[0].r += Eigen::Vector3d(2e-3, 5e-5, -3e-4);
+                    state.poses[0].p = Eigen::Quaterniond(Eigen::AngleAxisd(
+                                           0.3, Eigen::Vector3d(1, -2, 0.02).normalized())) *
+                                       state.poses[0].p;
+                    const auto of = [&](const System& system) {
+                        return evaluate(system, thin(state_at(system, state).z), Interval(state.load),
+                                        Slopes::no)
+                            .E;
+                    };
+                    const auto E = of(plain), E_apart = of(apart);
+                    for (std::size_t row = 0; row < 6; ++row) {
+                        // x and f are doubles: what of them is rounded, times the stiffest slope.
+                        EXPECT_LT(mag(E[row] - E_apart[row]), 1e-7 * (1 + mag(E[row]))) << row;
+                        EXPECT_GT(mag(E[row]), 1e-3) << row;
+                    }
+                    for (std::size_t row = 6; row < 18; ++row) EXPECT_LT(mag(E_apart[row]), 1e-7) << row;
+                }
+}
+
+TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
+    const On at = cornered({});
+    std::vector<double> loads;
+    for (int k = 0; k <= 60; ++k) loads.push_back(10. * k);
+    const EquilibriumPath path = equilibrium::solve(at.model, at.branch, loads);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    const Tube tube = certify_branch(at.model, at.branch, path.points);
+    EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
+    EXPECT_GE(tube.corners, 3);
+    for (const auto& point : path.points) {
+        const Certificate c = certify(at.model, at.branch, point);
+        EXPECT_EQ(c.answer, Answer::proved) << point.load << c.detail;
+        EXPECT_TRUE(c.stable) << point.load;
     }
 }
 
