@@ -177,9 +177,8 @@ double alone(const Problem& problem, const VectorXd& found, double a, const Vect
             if (by > enough || t < 1.3 * best) break;
         } else {
             // In proportion to t; not where a corner lies in the box, which it has to become clear of.
-            const double shorter = !std::isfinite(by)      ? 0.05
-                                   : std::isfinite(failed) ? corner
-                                                           : std::clamp(aim / by, 0.01, aim);
+            const double longest = std::isfinite(failed) ? corner : aim,
+                         shorter = std::isfinite(by) ? std::clamp(aim / by, 0.01, longest) : 0.05;
             failed = std::min(failed, t);
             t *= shorter;
             if (t <= best || t < 1e-13) break;

@@ -138,6 +138,10 @@ TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
                 certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
             EXPECT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
             EXPECT_EQ(c.stable, standing) << share;
+            // The stiffness is gone half way to the other one.
+            const double apart = height(load, true) - height(load, false);
+            EXPECT_LT(c.unique.length, 0.51 * apart) << share;
+            EXPECT_GT(c.unique.length, 0.05 * apart) << share;
         }
     }
     // Past it there is none.
