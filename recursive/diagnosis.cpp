@@ -6,11 +6,14 @@
 #include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "recursive/assembly.hpp"
+#include "recursive/finite.hpp"
 #include "recursive/rank.hpp"
 
 namespace elastocheck::recursive {
@@ -388,6 +391,13 @@ Diagnosis diagnose(const Model& model) {
     const int m = result.rows = constraint_rows(model);
     const int nb = static_cast<int>(model.bodies.size());
     const double L = result.length = characteristic_length(model);
+
+    if (!not_finite(model).empty()) {
+        result.constraint_error = result.imbalance = std::numeric_limits<double>::quiet_NaN();
+        result.determined.assign(model.joints.size(), false);
+        result.null_space.resize(n + m, 0);
+        return result;
+    }
 
     VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
     for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
