@@ -28,8 +28,8 @@ struct Worst {
 
     void add(const StressCell& cell) {
         wrong |= cell.verdict == Verdict::wrong;
-        if (std::isfinite(cell.lost))
-            digits = std::max(digits.value_or(0), cell.lost);
+        if (const double lost = digits_lost(cell); std::isfinite(lost))
+            digits = std::max(digits.value_or(0), lost);
         else
             (cell.outcome == Outcome::converged ? unknown : honest) = true;
     }
@@ -41,6 +41,11 @@ struct Worst {
 };
 
 }  // namespace
+
+double digits_lost(const StressCell& cell) {
+    constexpr double all = 16;
+    return cell.apart == 0 ? 0 : std::clamp(all + std::log10(cell.apart / cell.range), 0.0, all);
+}
 
 LostDigits lost_digits(const Survival& survival) {
     LostDigits result;
@@ -59,7 +64,10 @@ LostDigits lost_digits(const Survival& survival) {
             if (cell.scene != scene || cell.sweep != other_arithmetic) continue;
             worst[place_of(result.variants, cell.variant)][place_of(result.groups, group_of(cell.solver))]
                 .add(cell);
-            if (cell.lost > (result.worst == nullptr ? 0 : result.worst->lost)) result.worst = &cell;
+            if (digits_lost(cell) > (result.worst == nullptr ? 0 : digits_lost(*result.worst)))
+                result.worst = &cell;
+            if (cell.lost > (result.worst_right == nullptr ? 0 : result.worst_right->lost))
+                result.worst_right = &cell;
             const bool stood = std::ranges::any_of(drawn, [&](const StressCell* one) {
                 return one->way == cell.way && one->solver == cell.solver &&
                        one->outcome == Outcome::converged;

@@ -25,6 +25,8 @@ using Eigen::VectorXd;
 
 // Eigenvalues of a 6×6 with a unit diagonal that are more than its rounding (some 1e-15).
 constexpr double stiffness_threshold = 1e-13;
+// A lever is the difference of two places: of the coordinates, what it may be where they are the same.
+constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
 constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
 
 // Where on its body an end of a constraint or element is attached; a direction is attached nowhere.
@@ -37,9 +39,10 @@ const Vector3d* lever(const Direction&) { return nullptr; }
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
+    const auto where = [&](BodyId b) { return model.bodies[static_cast<std::size_t>(b)].design.r.norm(); };
     const auto take = [&](const auto& end) {
         const Vector3d* s = lever(end);
-        if (!s || end.body == ground || s->isZero(0)) return;
+        if (!s || end.body == ground || s->norm() <= lever_rounding * where(end.body)) return;
         sum += s->squaredNorm();
         ++count;
     };

@@ -57,6 +57,7 @@ json arithmetic(const Field& part) {
             {"variants", variants},
             {"lost", rows},
             {"worst", part["worst"].text()},
+            {"worst_right", part["worst_right"].text()},
             {"gave_up", gave_up}};
 }
 

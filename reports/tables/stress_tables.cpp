@@ -60,8 +60,13 @@ std::string where(const compare::StressCell& cell) {
 }
 
 std::string worst_of(const compare::LostDigits& lost) {
-    return lost.worst == nullptr ? "nobody loses a digit"
-                                 : fmt::format("{:.1f}: {}", lost.worst->lost, where(*lost.worst));
+    return lost.worst == nullptr ? "none"
+                                 : fmt::format("{:.1f}: {}", digits_lost(*lost.worst), where(*lost.worst));
+}
+std::string worst_right_of(const compare::LostDigits& lost) {
+    return lost.worst_right == nullptr
+               ? "none"
+               : fmt::format("{:.1f}: {}", lost.worst_right->lost, where(*lost.worst_right));
 }
 
 // A row a scene, a column an arithmetic, in it one number a group of solvers; empty where nobody was asked.
@@ -85,10 +90,11 @@ std::string lost_text(const compare::LostDigits& lost) {
         }
         text += '\n';
     }
-    text += "Digits lost to other arithmetic, of those that are right of the scene as it is, by";
+    text += "Digits of sixteen lost to other arithmetic, the most of all ways, by";
     for (const auto& group : lost.groups)
         fmt::format_to(out, " {}", group == lost.groups.front() ? group : "· " + group);
-    fmt::format_to(out, "; the most, {}\n", worst_of(lost));
+    fmt::format_to(out, "\nThe most, {}; of digits that were right, {}\n", worst_of(lost),
+                   worst_right_of(lost));
     for (const auto* cell : lost.gave_up)
         fmt::format_to(out, "gives up: {}: {}: {}\n", where(*cell), name(cell->outcome), cell->detail);
     return text + '\n';
@@ -98,11 +104,8 @@ json lost_json(const compare::LostDigits& lost) {
     json rows = json::array(), gave_up = json::array();
     for (const auto& row : lost.rows) rows.push_back({{"scene", row.scene}, {"lost", row.lost}});
     for (const auto* cell : lost.gave_up) gave_up.push_back({{"where", where(*cell)}, {"why", cell->detail}});
-    return {{"groups", lost.groups},
-            {"variants", lost.variants},
-            {"rows", rows},
-            {"worst", worst_of(lost)},
-            {"gave_up", gave_up}};
+    return {{"groups", lost.groups},   {"variants", lost.variants},           {"rows", rows},
+            {"worst", worst_of(lost)}, {"worst_right", worst_right_of(lost)}, {"gave_up", gave_up}};
 }
 
 }  // namespace
@@ -120,6 +123,7 @@ compare::Table cell_table(const Survival& survival) {
          words("known by", "what the true state is"),
          {"digits", "", "-log10 of the error over the range"},
          {"lost", "", "of the digits that are right of the scene as it is, those that differ here"},
+         {"apart", "mm", "how far the answer is from that of the scene as it is"},
          {"error", "mm", "of any place, at most"},
          {"claim", "mm", "what the solver says that it is off by, at most; empty where it says nothing"},
          {"range", "mm", "how far the place that goes farthest goes; the scene's size where nothing moves"},
@@ -128,8 +132,8 @@ compare::Table cell_table(const Survival& survival) {
         {}};
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome), name(c.verdict),
-                              name(c.knowledge), c.digits, c.lost, 1e3 * c.error, told(1e3 * c.claim),
-                              1e3 * c.range, c.why, c.detail});
+                              name(c.knowledge), c.digits, c.lost, 1e3 * c.apart, 1e3 * c.error,
+                              told(1e3 * c.claim), 1e3 * c.range, c.why, c.detail});
     return table;
 }
 

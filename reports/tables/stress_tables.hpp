@@ -20,7 +20,7 @@ compare::Table cell_table(const compare::Survival& survival);
 std::string stress_text(const compare::Survival& survival);
 
 // {"solvers", "sweeps", "map": [{"scene", "signs": [text a sweep]}], "extremes": [{"scene", "variant", "signs"}],
-// "arithmetic": {"groups", "variants", "rows": [{"scene", "lost": [[text a group] a variant]}], "worst", "gave_up"},
+// "arithmetic": {"groups", "variants", "rows": [{"scene", "lost": [[text a group] a variant]}], "worst", "worst_right", "gave_up"},
 // "counts", "wrong", "skipped", "cells"}
 nlohmann::ordered_json stress_json(const compare::Survival& survival);
 
