@@ -13,7 +13,7 @@ namespace {
 
 std::atomic<long> looks = 0;
 
-const bool in_force = [] {
+[[maybe_unused]] const bool in_force = [] {
     if (std::setlocale(LC_ALL, "") == nullptr) {
         std::fputs("the locale of the environment does not exist\n", stderr);
         std::_Exit(70);
