@@ -85,8 +85,10 @@ TEST(Outlook, IsToldByWhoeverCompares) {
     scene.branches[0].to = -211, scene.branches[0].steps = 20;
     const Model model = compile(scene);
     for (const char* method : {"published", "chord", "series"}) {
-        const Comparison all =
-            compare(model, {.recursion = {.method = *recursive::find_method(method)}, .prove = false});
+        Options options;
+        options.recursion.method = *recursive::find_method(method);
+        options.prove = false;
+        const Comparison all = compare(model, options);
         const auto& runs = all.branches[0].runs;
         const LegRun& equilibrium = runs[1];
         ASSERT_EQ(equilibrium.told.size(), 1u) << method;
@@ -103,8 +105,8 @@ TEST(Outlook, IsToldByWhoeverCompares) {
             EXPECT_FALSE(runs[0].told.empty()) << method;  // the series sees it as well
         }
     }
-    const Comparison strut = compare(compile(support::scene("single_bushing")), {.prove = false});
-    for (const auto& run : strut.branches[0].runs) EXPECT_TRUE(run.told.empty()) << run.told[0];
+    const Comparison bushing = compare(compile(support::scene("single_bushing")));
+    for (const auto& run : bushing.branches[0].runs) EXPECT_TRUE(run.told.empty()) << run.told[0];
 }
 
 TEST(Outlook, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {

@@ -200,8 +200,10 @@ TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
         std::get<Distance>(joint.joints[2].kind).i.s_local.y() = bad;
         std::get<AxialSpring>(element.elastics.front().kind).i.s_local.z() = bad;
         body.bodies.front().design.p.x() = bad;
-        for (const auto& [scene, named] :
-             {std::pair{joint, "joint 'tie_rod'"}, {element, "element 'K1_coil'"}, {body, "joint '"}}) {
+        for (const auto& [scene, named] : {std::pair{joint, std::string("joint 'tie_rod'")},
+                                           {element, "element 'K1_coil'"},
+                                           {body, "joint '"}}) {
+            if (std::isfinite(bad) && named.ends_with("joint '")) continue;  // a quaternion of any size turns
             const Model model = compile(scene);
             const Diagnosis d = diagnose(model);
             EXPECT_TRUE(std::isnan(d.constraint_error) && std::isnan(d.imbalance)) << named << bad;
