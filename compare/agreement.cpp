@@ -103,7 +103,8 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
         reach = larger(reach, p.norm());
     }
     const double size = box.isEmpty() ? 0 : box.diagonal().norm();
-    scale.length = size > 0 ? size : metre;
+    constexpr double at_one_place = 1e-12;  // of the coordinates: nothing but rounding is between
+    scale.length = size > at_one_place * reach ? size : metre;
     const double L = scale.length;
 
     double k = 0;

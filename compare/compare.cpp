@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "compare/characteristics.hpp"
+#include "compare/outlook.hpp"
 #include "recursive/diagnosis.hpp"
 #include "reference/certificate/certificate.hpp"
 
@@ -21,7 +22,8 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 
 // Of a walk on which nobody looks at the points. Steps as short as the recursion's take half as long again where what
 // they need is displaced from the caches in between.
-double seconds_alone(const std::vector<Way>& ways, const Gait& gait) {
+double seconds_alone(const std::vector<Way>& ways, Gait gait) {
+    gait.account = false;
     using clock = std::chrono::steady_clock;
     const auto start = clock::now();
     for (const auto& way : ways) walk(way, gait, [](const Equilibrium&) {});
@@ -66,6 +68,19 @@ Tally proved(const Way& way, const LegRun& run) {
     return tally;
 }
 
+// What the method that is asked about promises of every point. The series that stands in for the energy leg is a reference.
+std::optional<ErrorBound> promise_of(const Model& standing, const Gait& gait) {
+    if (gait.leg != Leg::recursive) return std::nullopt;
+    return promised(gait.recursion.method, recursive::diagnose(standing).length);
+}
+
+// Account is asked of whoever promises something, and of the equilibrium leg, for the stiffness that is left: that costs it
+// a thirtieth.
+Gait with_account(const Model& standing, Gait gait) {
+    gait.account = gait.leg == Leg::equilibrium || promise_of(standing, gait);
+    return gait;
+}
+
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
            const std::vector<Way>& ways, const Gait& gait) {
     LegRun run;
@@ -77,6 +92,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const double middle = asked[asked.size() / 2];
     const bool both_ways = ways.size() > 1;
     auto& marks = run.landmarks;
+    BranchAccount account{promise_of(way.model, gait)};
     static_cast<Walked&>(run) = walk(model, channels, branch, ways, gait, [&](const Equilibrium& state) {
         for (const Leg by : legs) {
             auto& worst = run.judged[static_cast<std::size_t>(by)];
@@ -91,7 +107,9 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
         else
             marks.back = state;
         if (state.load == middle) marks.middle = state;
+        if (gait.account) add(account, state);
     });
+    run.told = told(account, branch.unit);
     if (!marks.front) marks.front = marks.start;
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
@@ -349,8 +367,10 @@ Comparison compare(const Model& model, const Options& options) {
             b.determined.push_back(is_determined(channel, determined[k], stands));
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
-            b.runs.push_back(run(model, result.channels, branch, ways[k],
-                                 {.leg = leg, .recursion = options.recursion, .every = options.every}));
+            b.runs.push_back(
+                run(model, result.channels, branch, ways[k],
+                    with_account(ways[k].front().model,
+                                 {.leg = leg, .recursion = options.recursion, .every = options.every})));
         }
         if (const LegRun& energy = run_of(b, Leg::energy); is_not_asked(energy.outcome)) {
             b.second = Leg::series;

@@ -44,6 +44,9 @@ struct LegRun : Walked {
         // forces are NaN by the energy leg's where there is no energy
     Scale scale = {};  // of what acts over the points
     Landmarks landmarks = {};
+    // What its points, where they give account of themselves, come to (outlook.hpp), in words: of a method that promises a
+    // tolerance what it does not keep, of the equilibrium leg where the stiffness will be gone.
+    std::vector<std::string> told = {};
     Tally proved = {};  // of the landmarks; none where nobody asked
     std::vector<Compliance> compliance =
         {};  // at front, start and back, as far as they are apart; of a scene with wheels

@@ -119,4 +119,23 @@ std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit) {
                        symbol(shown));
 }
 
+void add(BranchAccount& account, const Equilibrium& point) {
+    if (account.ways.empty() || point.load == 0) account.ways.emplace_back();
+    add(account.ways.back(), point, account.promise);
+}
+
+std::vector<std::string> told(const BranchAccount& account, ParameterUnit unit) {
+    const Unit shown = unit_of(unit);
+    std::vector<std::string> lines;
+    for (const auto& points : account.ways) {
+        if (account.promise)
+            if (auto text = unkept(points, *account.promise, unit); !text.empty())
+                lines.push_back(std::move(text));
+        if (const auto from = points.announced_from)
+            lines.push_back(fmt::format("{}, announced from {:.5g} {} on", outlook(points.last, unit),
+                                        in_unit(shown) * *from, symbol(shown)));
+    }
+    return lines;
+}
+
 }  // namespace elastocheck::compare

@@ -44,4 +44,14 @@ struct Accounts {
 void add(Accounts& accounts, const Equilibrium& point, const std::optional<ErrorBound>& promise);
 std::string unkept(const Accounts& accounts, const ErrorBound& promise, ParameterUnit unit);
 
+// Those of the ways of a branch, one way after the other, each from a = 0 on.
+struct BranchAccount {
+    std::optional<ErrorBound> promise = {};
+    std::vector<Accounts> ways = {};
+};
+void add(BranchAccount& account, const Equilibrium& point);
+
+// One line each: what is promised and not kept, where the stiffness will be gone and since when that is announced.
+std::vector<std::string> told(const BranchAccount& account, ParameterUnit unit);
+
 }  // namespace elastocheck::compare

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "models/curve.hpp"
 #include "models/overloaded.hpp"
@@ -336,6 +338,89 @@ Scene scaled(const Scene& original, double length, double force) {
         wheel.tyre_rate *= force / length;
     }
     if (scene.vehicle) scene.vehicle->wheelbase *= length, scene.vehicle->cg_height *= length;
+    return scene;
+}
+
+namespace {
+
+using Number = std::function<void(double&)>;
+
+template <class Dense>
+void visit_all(Dense&& numbers, const Number& visit) {
+    for (auto& x : numbers.reshaped()) visit(x);
+}
+void visit_law(ScalarLaw& law, const Number& visit) {
+    std::visit(overloaded{[&](LinearRate& rate) { visit(rate.k); },
+                          [&](Curve& curve) {
+                              for (double& knot : curve.knots) visit(knot);
+                              for (auto& piece : curve.pieces)
+                                  for (double& c : piece) visit(c);
+                          }},
+               law);
+}
+void visit_law(SpatialLaw& law, const Number& visit) {
+    std::visit(overloaded{[&](LinearStiffness& linear) {
+                              for (int i = 0; i < 6; ++i)
+                                  for (int j = 0; j <= i; ++j) {
+                                      visit(linear.K(i, j));
+                                      linear.K(j, i) = linear.K(i, j);
+                                  }
+                          },
+                          [&](PerAxis& axes) {
+                              for (auto& u : axes.axis) visit_law(u, visit);
+                          }},
+               law);
+}
+
+}  // namespace
+
+void for_each_number(Scene& scene, const Number& visit) {
+    const auto all = [&](auto&& numbers) { visit_all(numbers, visit); };
+    for (auto& point : scene.hardpoints) all(point.position);
+    for (auto& body : scene.bodies) all(body.design.r), all(body.design.p.coeffs());
+    const Features features = features_of(scene);
+    for (Point* point : features.points) all(point->s_local);
+    for (Direction* direction : features.directions) all(direction->u_local);
+    for (Marker* marker : features.markers) all(marker->s_local), all(marker->A_local.coeffs());
+    for (auto& joint : scene.joints) {
+        if (auto* distance = std::get_if<Distance>(&joint.kind)) visit(distance->length);
+        if (auto* plane = std::get_if<InPlane>(&joint.kind)) visit(plane->offset);
+        if (auto* angle = std::get_if<Angle>(&joint.kind)) visit(angle->angle);
+    }
+    for (auto& elastic : scene.elastics)
+        std::visit(overloaded{[&](AxialSpring& e) { visit_law(e.law, visit), visit(e.free_length); },
+                              [&](Bushing& e) {
+                                  visit_law(e.law, visit);
+                                  all(e.preload), all(e.undeformed);
+                              }},
+                   elastic.kind);
+    for_each_load(scene, [&](LoadKind& load) {
+        std::visit(
+            overloaded{[&](DeadForce& l) { all(l.at.s_local), all(l.f); }, [&](DeadMoment& l) { all(l.m); },
+                       [&](FollowerForce& l) { all(l.at.s_local), all(l.f_local); },
+                       [&](FollowerMoment& l) { all(l.m_local); }},
+            load);
+    });
+    for (auto& branch : scene.branches) {
+        visit(branch.from), visit(branch.to);
+        for (auto& driver : branch.drivers) {
+            visit(driver.start), visit(driver.rate);
+            if (auto* preload = std::get_if<Preload>(&driver.what)) all(preload->direction);
+        }
+    }
+    for (auto& wheel : scene.wheels) {
+        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local}) all(*v);
+        visit(wheel.tyre_rate);
+    }
+}
+
+Scene an_ulp_off(const Scene& original) {
+    constexpr double end = std::numeric_limits<double>::infinity();
+    Scene scene = original;
+    for_each_number(scene, [bits = std::uint32_t{12345}](double& x) mutable {
+        bits = 1664525 * bits + 1013904223;
+        if (x != 0) x = std::nextafter(x, (bits >> 16) % 2 == 0 ? end : -end);
+    });
     return scene;
 }
 

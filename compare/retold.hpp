@@ -2,6 +2,7 @@
 // by data alone.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "models/scene.hpp"
@@ -23,6 +24,12 @@ Scene reversed(const Scene& scene);
 // Every length times `length`, every force times `force`, and with them moments times both, rates times force / length,
 // rotational rates times force · length, the parameters of the branches by their unit: the same numbers in other units.
 Scene scaled(const Scene& scene, double length, double force);
+
+// Every number that a scene is made of, one after the other, always in the same order; of what is symmetric each once.
+void for_each_number(Scene& scene, const std::function<void(double&)>& visit);
+
+// Every number that is not zero the next double above or below, the same way each time.
+Scene an_ulp_off(const Scene& scene);
 
 // The forces and moments that the law of an element gives, times `factor`. Not its preload.
 Elastic stiffened(Elastic element, double factor);

@@ -290,6 +290,7 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
         Gait gait = solver.gait;
         gait.every = every;
         try {
+            const WithArithmetic in_force(variant.arithmetic);
             const EquilibriumPath path = walk(way, gait, [&](const Equilibrium& state) {
                 found.stands.push_back(stand(way.model, run.places, state));
                 found.accounts.push_back(state.bound);
@@ -318,8 +319,9 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
         Known known;
         if (variant.known == Construction::nothing_moves)
             known = {Knowledge::construction, stand(way.model, run.places, drawn), {eps * run.reach, eps}};
-        if (known.how == Knowledge::none) known = proved(way, run, exactly, k, tolerance);
-        if (known.how == Knowledge::none) known = agreed(solvers, run, k);
+        const bool same_scene = variant.arithmetic != Arithmetic::nearest;  // what is known of that is lent
+        if (known.how == Knowledge::none && !same_scene) known = proved(way, run, exactly, k, tolerance);
+        if (known.how == Knowledge::none && !same_scene) known = agreed(solvers, run, k);
         run.known.push_back(known);
         if (known.how != Knowledge::proved) continue;
         for (std::size_t s = 0; s < solvers.size(); ++s) {
@@ -504,6 +506,25 @@ void judge_retold(const Solver& solver, const Found& found, const WayRun& run, c
     }
 }
 
+// How far the answer is from that of the scene as it is, and what digits that costs.
+void count_lost(const Solver& solver, const Found& found, const WayRun& run, const Found& base_found,
+                const WayRun& base, const Retelling& how, StressCell& cell) {
+    if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
+    StressCell drawn;
+    drawn.range = range_of(base);
+    judge_points(solver, base_found, base, drawn);
+    const Match both = match(run.places, base.places);
+    double off = 0;
+    for (std::size_t k = 0; k < std::min(found.stands.size(), base_found.stands.size()); ++k) {
+        const ErrorBound d =
+            apart(only(found.stands[k], both.here), retold(only(base_found.stands[k], both.there), how));
+        if (!(d.length <= off)) off = d.length;
+    }
+    cell.apart = off / how.length;
+    cell.lost = off == 0 ? 0 : std::max(0.0, drawn.digits + std::log10(cell.apart / drawn.range));
+    if (!std::isfinite(drawn.digits) || !std::isfinite(off)) cell.lost = nan;
+}
+
 StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::size_t s, const WayRun& run,
                  const WayRun* base) {
     const Found& found = run.found[s];
@@ -518,6 +539,8 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
         return cell;
     }
     judge_points(solvers[s], found, run, cell);
+    if (base != nullptr)
+        count_lost(solvers[s], found, run, base->found[s], *base, *trial.variant.retold, cell);
     if (cell.verdict == Verdict::wrong) return cell;
     if (is_reference(solvers[s]) && says_that_it_ends(found.outcome)) {
         if (base != nullptr && all_known(*base))

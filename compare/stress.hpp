@@ -24,6 +24,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/arithmetic.hpp"
 #include "compare/legs.hpp"
 #include "models/equilibrium_path.hpp"
 #include "models/scene.hpp"
@@ -45,8 +46,9 @@ struct Variant {
     std::optional<Retelling> retold = {};  // of the scene as it is: whatever is found is the same
     // What is known of it by construction, whoever solves it.
     enum class Construction { nothing, no_equilibrium, nothing_moves } known = Construction::nothing;
-    std::vector<std::string> asked = {};  // solvers beside the references; none: all
-    std::string skipped = {};             // why nobody is asked
+    std::vector<std::string> asked = {};          // solvers beside the references; none: all
+    std::string skipped = {};                     // why nobody is asked
+    Arithmetic arithmetic = Arithmetic::nearest;  // that the solvers work with; what is true is known without
 };
 
 // A name, and what it makes of a scene. Every branch of the scene as it is; of all else the first.
@@ -62,7 +64,9 @@ struct Trial {
 };
 
 inline constexpr std::string_view as_it_is = "as it is";  // the sweep that has only the scene itself
-inline constexpr std::string_view extreme = "extreme";    // scenes that are so by their making
+inline constexpr std::string_view other_arithmetic =
+    "arithmetic";                                       // the sweep that the table of lost digits is of
+inline constexpr std::string_view extreme = "extreme";  // scenes that are so by their making
 std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps);
 
 // The sweeps that any scene stands: sweeps.cpp.
@@ -107,6 +111,10 @@ struct StressCell {
         std::numeric_limits<double>::quiet_NaN();  // -log10(error / range); NaN where nothing is known
     double error = std::numeric_limits<double>::quiet_NaN();  // of any place, at most [m]
     double claim = std::numeric_limits<double>::infinity();   // [m]
+    // Of a scene told otherwise: how far the answer is from that of the scene as it is, and how many of the digits that
+    // are right there are not the same here: max(0, digits there + log10(apart / range)). NaN where one did not converge.
+    double apart = std::numeric_limits<double>::quiet_NaN();  // [m], as the scene as it is is drawn
+    double lost = std::numeric_limits<double>::quiet_NaN();
     double range =
         0;  // how far the place that goes farthest goes, or the scene's size where nothing moves [m]
 };

@@ -140,6 +140,20 @@ std::vector<Variant> told_otherwise(const Scene& original) {
              .retold = Retelling{}}};
 }
 
+// The scene as it is, solved with other arithmetic; and every number of it an ulp off, solved as ever.
+std::vector<Variant> arithmetic(const Scene& original) {
+    const Scene scene = first_branch(original);
+    std::vector<Variant> variants;
+    for (const auto how : {Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed})
+        variants.push_back({.label = name(how),
+                            .scene = scene,
+                            .retold = Retelling{},
+                            .skipped = exists(how) ? "" : "this processor does not have it",
+                            .arithmetic = how});
+    variants.push_back({.label = "an ulp off", .scene = an_ulp_off(scene), .retold = Retelling{}});
+    return variants;
+}
+
 }  // namespace
 
 const std::vector<Sweep>& sweeps() {
@@ -151,7 +165,8 @@ const std::vector<Sweep>& sweeps() {
                                         {"levers", levers},
                                         {"load", loads},
                                         {"beyond", beyond},
-                                        {"steps", steps}};
+                                        {"steps", steps},
+                                        {std::string(other_arithmetic), arithmetic}};
     return all;
 }
 

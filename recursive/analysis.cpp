@@ -1,5 +1,7 @@
 #include "recursive/analysis.hpp"
 
+#include <cmath>
+
 #include "recursive/assembly.hpp"
 #include "recursive/loops.hpp"
 #include "recursive/pattern.hpp"
@@ -9,6 +11,7 @@ namespace elastocheck::recursive {
 Analysis analyse(const Model& model) {
     Analysis result;
     result.diagnosis = diagnose(model);
+    if (std::isnan(result.diagnosis.constraint_error)) return result;
     SaddlePoint<double>& system = result.system;
     const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
     const double L = result.diagnosis.length;

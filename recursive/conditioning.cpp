@@ -9,6 +9,8 @@
 // Eigenvalues come in both signs; the largest in size of A over the smallest is κ₂.
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "recursive/assembly.hpp"
@@ -74,6 +76,9 @@ double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator
 
 Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
     const int n = diagnosis.coordinates, m = diagnosis.rows;
+    if (constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        std::isnan(diagnosis.constraint_error))
+        return {nan, nan};
     if (n + m <= diagnosis.null_space.cols()) return {1, 1};
     SaddlePoint<double> system;
     system.n = n;

@@ -6,11 +6,14 @@
 #include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "recursive/assembly.hpp"
+#include "recursive/finite.hpp"
 #include "recursive/rank.hpp"
 
 namespace elastocheck::recursive {
@@ -22,6 +25,8 @@ using Eigen::VectorXd;
 
 // Eigenvalues of a 6×6 with a unit diagonal that are more than its rounding (some 1e-15).
 constexpr double stiffness_threshold = 1e-13;
+// A lever is the difference of two places: of the coordinates, what it may be where they are the same.
+constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
 constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
 
 // Where on its body an end of a constraint or element is attached; a direction is attached nowhere.
@@ -34,9 +39,10 @@ const Vector3d* lever(const Direction&) { return nullptr; }
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
+    const auto where = [&](BodyId b) { return model.bodies[static_cast<std::size_t>(b)].design.r.norm(); };
     const auto take = [&](const auto& end) {
         const Vector3d* s = lever(end);
-        if (!s || end.body == ground || s->isZero(0)) return;
+        if (!s || end.body == ground || s->norm() <= lever_rounding * where(end.body)) return;
         sum += s->squaredNorm();
         ++count;
     };
@@ -388,6 +394,13 @@ Diagnosis diagnose(const Model& model) {
     const int m = result.rows = constraint_rows(model);
     const int nb = static_cast<int>(model.bodies.size());
     const double L = result.length = characteristic_length(model);
+
+    if (!not_finite(model).empty()) {
+        result.constraint_error = result.imbalance = std::numeric_limits<double>::quiet_NaN();
+        result.determined.assign(model.joints.size(), false);
+        result.null_space.resize(n + m, 0);
+        return result;
+    }
 
     VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
     for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "recursive/finite.hpp"
 #include "recursive/march.hpp"
 
 namespace elastocheck::recursive {
@@ -134,6 +135,8 @@ Response respond(const Model& model, const Branch& branch, const Equilibrium& st
                  std::span<const Disturbance> disturbances, const Method& method, const Analysis& analysis) {
     check(model, branch);
     check(model, state, disturbances);
+    if (std::isnan(analysis.diagnosis.constraint_error))
+        return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}};
     March<double> s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});

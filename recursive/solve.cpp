@@ -8,6 +8,7 @@
 #include "recursive/account.hpp"
 #include "recursive/adaptive.hpp"
 #include "recursive/delay.hpp"
+#include "recursive/finite.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/sweep.hpp"
 #include "recursive/watch.hpp"
@@ -149,6 +150,8 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
     check(model, branch);
+    if (std::isnan(analysis.diagnosis.constraint_error))
+        return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}, {}};
     if (!options.account) return found(model, branch, options, analysis, visit);
     const auto* series = std::get_if<Series>(&options.method.kind);
     const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);

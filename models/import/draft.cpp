@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -99,7 +100,10 @@ std::string number(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
 
 std::string computed(double x, double scale) {
     if (std::abs(x) <= 1e-12 * scale) return "0";
-    return fmt::format("{}", std::strtod(fmt::format("{:.12g}", x).c_str(), nullptr));
+    const std::string digits = fmt::format("{:.12g}", x);
+    double rounded = x;
+    std::from_chars(digits.data(), digits.data() + digits.size(), rounded);  // in any locale
+    return fmt::format("{}", rounded);
 }
 
 std::string triple(const Vector3d& v, double scale) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "recursive/finite.hpp"
 #include "recursive/recording.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
@@ -464,6 +465,11 @@ bool starts_as_drawn(const Branch& branch) {
 
 Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {
     check(model, branch);
+    if (std::isnan(analysis.diagnosis.constraint_error)) {
+        Path none;
+        none.outcome = Outcome::not_finite, none.detail = not_finite(model);
+        return none;
+    }
     March<double> s(model, branch, analysis);
     s.consistent = true;
     s.system.lu.largest_multiplier = 1e4;  // Newton's corrections at every end make up for the digits

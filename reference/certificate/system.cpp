@@ -143,9 +143,13 @@ void set_size(System& system) {
     for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
     for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
     for (const auto& p : points) system.c += p / static_cast<double>(points.size());
-    double radius = 0;
-    for (const auto& p : points) radius = std::max(radius, (p - system.c).norm());
-    if (std::isfinite(radius) && radius > 0) system.length = radius;
+    constexpr double rounding = 0x1p-42;  // of the coordinates: what points at one place may be apart by
+    double radius = 0, farthest = 0;
+    for (const auto& p : points) {
+        radius = std::max(radius, (p - system.c).norm());
+        farthest = std::max(farthest, p.norm());
+    }
+    if (std::isfinite(radius) && radius > rounding * farthest) system.length = radius;
     if (!system.c.allFinite()) system.c.setZero();
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "models/branch.hpp"
@@ -244,9 +246,12 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
 
     const auto places = hardpoints(system);
     for (const auto& p : places) system.centre += p / static_cast<double>(places.size());
-    double radius = 0;
-    for (const auto& p : places) radius = std::max(radius, (p - system.centre).norm());
-    if (std::isfinite(radius) && radius > 0) system.length = radius;
+    // Points that nothing but rounding parts give no length.
+    constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
+    double radius = 0, reach = 0;
+    for (const auto& p : places)
+        radius = std::max(radius, (p - system.centre).norm()), reach = std::max(reach, p.norm());
+    if (std::isfinite(radius) && radius > digits * reach) system.length = radius;
 
     system.carried = VectorXd::Zero(system.constraint_rows);
     set_turns(system);

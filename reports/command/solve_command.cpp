@@ -61,27 +61,6 @@ std::vector<Channel> asked_for(const Model& model, const std::vector<std::string
     return chosen(all, patterns);
 }
 
-// What the points of one way have said of themselves.
-// Ways come one after the other, each from its start.
-void add_account(const Equilibrium& state, const std::optional<ErrorBound>& promise,
-                 std::vector<compare::Accounts>& ways) {
-    if (ways.empty() || state.load == 0) ways.emplace_back();
-    add(ways.back(), state, promise);
-}
-
-// One line each: what the method promises and does not keep, and where the stiffness will be gone.
-void tell_account(const std::string& who, const Branch& branch, const std::optional<ErrorBound>& promise,
-                  const std::vector<compare::Accounts>& ways) {
-    const auto unit = compare::unit_of(branch.unit);
-    for (const auto& points : ways) {
-        if (const auto text = promise ? unkept(points, *promise, branch.unit) : std::string(); !text.empty())
-            complain("{}: {}: {}\n", who, branch.name, text);
-        if (const auto from = points.announced_from)
-            complain("{}: {}: {}, announced from {:.5g} {} on\n", who, branch.name,
-                     compare::outlook(points.last, branch.unit), in_unit(unit) * *from, symbol(unit));
-    }
-}
-
 }  // namespace
 
 std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
@@ -135,7 +114,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     compare::Gait gait = request.gait;
     gait.account = account || promise;
     for (const auto& branch : model.branches) {
-        std::vector<compare::Accounts> accounts;
+        compare::BranchAccount said{promise};
         if (csv) progress(branch.name);
         const auto ways = compare::ways_of(model, branch, how.steps);
         compare::Analyses analyses;
@@ -144,7 +123,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         const EquilibriumPath path = compare::walk(
             ways, gait,
             [&](const Equilibrium& state) {
-                if (gait.account) add_account(state, promise, accounts);
+                if (gait.account) add(said, state);
                 if (states) states->add(state_line(model, branch.name, state));
                 return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },
@@ -160,7 +139,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
-        tell_account(who, branch, promise, accounts);
+        for (const auto& line : told(said, branch.unit)) complain("{}: {}: {}\n", who, branch.name, line);
         if (path.outcome == Outcome::converged) continue;
         complain("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;

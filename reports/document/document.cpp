@@ -122,6 +122,7 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
             {"seconds", run.seconds},
             {"residuals_by", judged},
             {"proof", run.proved.points > 0 ? proof_json(run.proved) : json(nullptr)},
+            {"told", run.told},
             {"curve", curve_json(run.curve, run.constraint_error, channels)}};
 }
 

@@ -35,6 +35,32 @@ json runs(const Field& field, std::size_t solvers) {
     return {{"signs", signs}, {"runs", list}};
 }
 
+// What other arithmetic costs: of each scene, under each of them, the digits that each group of solvers loses.
+json arithmetic(const Field& part) {
+    std::string groups;
+    for (const auto& group : part["groups"].texts()) groups += (groups.empty() ? "" : ", ") + group;
+    const auto variants = part["variants"].texts();
+    json rows = json::array(), gave_up = json::array();
+    for (const auto& row : part["rows"].items()) {
+        json cells = json::array();
+        for (const auto& variant : row["lost"].items()) {
+            std::string numbers;
+            for (const auto& loss : variant.texts()) numbers += (numbers.empty() ? "" : " ") + loss;
+            cells.push_back(numbers);
+        }
+        if (cells.size() != variants.size()) row["lost"].fail("expected what is lost of every variant");
+        rows.push_back({{"name", row["scene"].text()}, {"cells", cells}});
+    }
+    for (const auto& one : part["gave_up"].items())
+        gave_up.push_back({{"where", one["where"].text()}, {"why", one["why"].text()}});
+    return {{"groups", groups},
+            {"variants", variants},
+            {"lost", rows},
+            {"worst", part["worst"].text()},
+            {"worst_right", part["worst_right"].text()},
+            {"gave_up", gave_up}};
+}
+
 }  // namespace
 
 json survival(const Field& result) {
@@ -72,11 +98,19 @@ json survival(const Field& result) {
         counts[verdict] = count.whole();
         all += count.whole();
     }
-    return {{"solvers", who},       {"sweeps", sweeps},
-            {"rows", rows},         {"has_rows", !rows.empty()},
-            {"extremes", extremes}, {"has_extremes", !extremes.empty()},
-            {"wrong", wrong},       {"has_wrong", !wrong.empty()},
-            {"skipped", skipped},   {"count", all},
+    const auto other = part.find("arithmetic");
+    const bool any = other && !(*other)["rows"].items().empty();
+    return {{"arithmetic", any ? arithmetic(*other) : json(nullptr)},
+            {"solvers", who},
+            {"sweeps", sweeps},
+            {"rows", rows},
+            {"has_rows", !rows.empty()},
+            {"extremes", extremes},
+            {"has_extremes", !extremes.empty()},
+            {"wrong", wrong},
+            {"has_wrong", !wrong.empty()},
+            {"skipped", skipped},
+            {"count", all},
             {"counts", counts}};
 }
 

@@ -98,14 +98,18 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
                        by_abscissa, travel.outside);
 }
 
+// What stands behind a leg in these tables.
+std::string solver_of(const compare::LegRun& run) {
+    return run.method.empty() || run.method == "published" ? name(run.leg) : run.method;
+}
+
 void legs_table(const compare::BranchComparison& branch, std::string& text) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10}   {}\n", "leg", "outcome", "points",
                    "factor.", "iter.", "eval.", "ms",
                    "its states in the others' equations: force N, moment N·m, constraint mm");
     for (const auto& run : branch.runs) {
-        fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ",
-                       run.method.empty() || run.method == "published" ? name(run.leg) : run.method,
+        fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ", solver_of(run),
                        elastocheck::name(run.outcome), run.curve.a.size(), run.counts.factorisations,
                        run.counts.iterations, run.counts.evaluations, 1e3 * run.seconds);
         for (const Leg by : compare::legs) {
@@ -118,6 +122,12 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
         text.erase(text.find_last_not_of(' ') + 1);
         fmt::format_to(out, "\n");
     }
+}
+
+// What the points say of themselves: where the stiffness will be gone, promises that are not kept.
+void accounts(const compare::BranchComparison& branch, std::string& text) {
+    for (const auto& run : branch.runs)
+        for (const auto& line : run.told) text += fmt::format("  {}: {}\n", solver_of(run), line);
 }
 
 // What interval arithmetic proves of the points at the start, the middle and the ends.
@@ -227,6 +237,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         proofs(branch, text);
+        accounts(branch, text);
         if (!branch.not_asked.empty()) text += not_asked(branch);
         fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())

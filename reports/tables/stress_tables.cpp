@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/lost_digits.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
@@ -58,6 +59,55 @@ std::string where(const compare::StressCell& cell) {
     return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.way, cell.solver);
 }
 
+std::string worst_of(const compare::LostDigits& lost) {
+    return lost.worst == nullptr ? "none"
+                                 : fmt::format("{:.1f}: {}", digits_lost(*lost.worst), where(*lost.worst));
+}
+std::string worst_right_of(const compare::LostDigits& lost) {
+    return lost.worst_right == nullptr
+               ? "none"
+               : fmt::format("{:.1f}: {}", lost.worst_right->lost, where(*lost.worst_right));
+}
+
+// A row a scene, a column an arithmetic, in it one number a group of solvers; empty where nobody was asked.
+std::string lost_text(const compare::LostDigits& lost) {
+    if (lost.rows.empty()) return {};
+    constexpr std::size_t number = 4;
+    std::string text;
+    const auto out = std::back_inserter(text);
+    std::size_t head = 0, column = number * lost.groups.size();
+    for (const auto& row : lost.rows) head = std::max(head, row.scene.size());
+    for (const auto& variant : lost.variants) column = std::max(column, variant.size());
+    fmt::format_to(out, "{:<{}}", "", head);
+    for (const auto& variant : lost.variants) fmt::format_to(out, "  {:>{}}", variant, column);
+    text += '\n';
+    for (const auto& row : lost.rows) {
+        fmt::format_to(out, "{:<{}}", row.scene, head);
+        for (const auto& variant : row.lost) {
+            std::string numbers;
+            for (const auto& group : variant) numbers += fmt::format("{:>{}}", group, number);
+            fmt::format_to(out, "  {:>{}}", numbers, column);
+        }
+        text += '\n';
+    }
+    text += "Digits of sixteen lost to other arithmetic, the most of all ways, by";
+    for (const auto& group : lost.groups)
+        fmt::format_to(out, " {}", group == lost.groups.front() ? group : "· " + group);
+    fmt::format_to(out, "\nThe most, {}; of digits that were right, {}\n", worst_of(lost),
+                   worst_right_of(lost));
+    for (const auto* cell : lost.gave_up)
+        fmt::format_to(out, "gives up: {}: {}: {}\n", where(*cell), name(cell->outcome), cell->detail);
+    return text + '\n';
+}
+
+json lost_json(const compare::LostDigits& lost) {
+    json rows = json::array(), gave_up = json::array();
+    for (const auto& row : lost.rows) rows.push_back({{"scene", row.scene}, {"lost", row.lost}});
+    for (const auto* cell : lost.gave_up) gave_up.push_back({{"where", where(*cell)}, {"why", cell->detail}});
+    return {{"groups", lost.groups},   {"variants", lost.variants},           {"rows", rows},
+            {"worst", worst_of(lost)}, {"worst_right", worst_right_of(lost)}, {"gave_up", gave_up}};
+}
+
 }  // namespace
 
 compare::Table cell_table(const Survival& survival) {
@@ -72,6 +122,8 @@ compare::Table cell_table(const Survival& survival) {
          words("verdict"),
          words("known by", "what the true state is"),
          {"digits", "", "-log10 of the error over the range"},
+         {"lost", "", "of the digits that are right of the scene as it is, those that differ here"},
+         {"apart", "mm", "how far the answer is from that of the scene as it is"},
          {"error", "mm", "of any place, at most"},
          {"claim", "mm", "what the solver says that it is off by, at most; empty where it says nothing"},
          {"range", "mm", "how far the place that goes farthest goes; the scene's size where nothing moves"},
@@ -80,8 +132,8 @@ compare::Table cell_table(const Survival& survival) {
         {}};
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome), name(c.verdict),
-                              name(c.knowledge), c.digits, 1e3 * c.error, told(1e3 * c.claim), 1e3 * c.range,
-                              c.why, c.detail});
+                              name(c.knowledge), c.digits, c.lost, 1e3 * c.apart, 1e3 * c.error,
+                              told(1e3 * c.claim), 1e3 * c.range, c.why, c.detail});
     return table;
 }
 
@@ -122,6 +174,7 @@ std::string stress_text(const Survival& survival) {
         "each time\n"
         "  ~  at another equilibrium, proved as well    ?  converged, and nothing is known    X  WRONG    .  "
         "not asked\n";
+    text += '\n' + lost_text(lost_digits(survival));
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
@@ -160,6 +213,7 @@ json stress_json(const Survival& survival) {
             {"sweeps", rows.sweeps},
             {"map", map},
             {"extremes", extremes},
+            {"arithmetic", lost_json(lost_digits(survival))},
             {"counts", counts},
             {"wrong", wrong},
             {"skipped", skipped},

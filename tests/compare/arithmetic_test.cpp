@@ -1,144 +1,205 @@
 // The same scenes with other arithmetic underneath: rounded up, down, to zero, with what is denormal taken for zero, every
-// input an ulp off. Whoever still says "converged" is still right.
+// input an ulp off. Whoever still says "converged" is still right. And a number that is none, wherever it stands.
+#include "compare/arithmetic.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <xmmintrin.h>
 
+#include <algorithm>
 #include <array>
-#include <cfenv>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <stdexcept>
 
-#include "compare/agreement.hpp"
+#include "compare/lost_digits.hpp"
+#include "compare/retold.hpp"
 #include "compare/stress.hpp"
-#include "models/branch.hpp"
 #include "models/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr std::array scene_list{"mcpherson", "pendulum", "arch_driven", "parallel_springs"};
+// A bushing alone: all its points are one, and a rounding between them is no length.
+constexpr std::array scene_list{"mcpherson", "pendulum", "arch_driven", "parallel_springs", "single_bushing"};
+constexpr std::array others{Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed};
 
-Way first_way(const Scene& scene) {
-    const Model model = compile(scene);
-    return ways_of(model, model.branches.front(), 20).back();
+Scene small(const std::string& name) {
+    Scene scene = support::scene(name);
+    scene.branches.resize(1);
+    scene.branches.front().steps = 20;
+    return scene;
 }
 
-// The end of the way by every solver.
-struct End {
-    Outcome outcome = Outcome::converged;
-    Equilibrium state;
-};
-std::vector<End> ends(const Way& way) {
-    std::vector<End> all;
-    for (const auto& solver : solvers()) {
-        End& end = all.emplace_back();
-        Gait gait = solver.gait;
-        gait.every = way.branch.steps;
-        end.outcome = walk(way, gait, [&](const Equilibrium& state) { end.state = state; }).outcome;
-    }
-    return all;
+// The scene as it is, and all of the sweep.
+std::vector<Trial> asked(const std::string& name) {
+    std::vector<Sweep> both;
+    for (const auto& sweep : sweeps())
+        if (sweep.name == as_it_is || sweep.name == other_arithmetic) both.push_back(sweep);
+    return trials(name, small(name), both);
 }
 
-double apart(const Equilibrium& a, const Equilibrium& b) {
-    double worst = 0;
-    for (std::size_t k = 0; k < a.poses.size(); ++k) {
-        const double length = (a.poses[k].r - b.poses[k].r).norm();
-        if (!(length <= worst)) worst = length;
-    }
-    return worst;
+std::string told(const StressCell& cell) {
+    return fmt::format("{}, {}, {}, {}: {} {} {}", cell.scene, cell.variant, cell.way, cell.solver,
+                       name(cell.verdict), cell.why, cell.detail);
 }
 
-// What another arithmetic may make of a state [m]: of who claims to be exact what it claims, of who claims a tolerance
-// that, of the others, whose steps amplify a rounding, a millionth of the size.
-double allowed(const Solver& solver, double size) {
-    if (solver.gait.leg != Leg::recursive || solver.name == "series") return 1e-9 * size;
-    if (solver.name == "adaptive") return recursive::Adaptive{}.length_tolerance;
-    return 1e-6 * size;
+// Not folded by the compiler.
+double third() {
+    const volatile double one = 1, three = 3;
+    return one / three;
+}
+double half_of_the_least() {
+    const volatile double least = std::numeric_limits<double>::min(), half = 0.5;
+    const volatile double product = least * half;
+    return product;
 }
 
-void holds_under(const std::string& what, const std::function<std::vector<End>(const Way&)>& under) {
-    const auto who = solvers();
-    for (const auto& name : scene_list) {
-        const Way way = first_way(support::scene(name));
-        const auto before = ends(way), now = under(way);
-        const double size = scale_of(way.model, way.branch, {}).length;
-        double lost = 0;
-        for (std::size_t s = 0; s < who.size(); ++s) {
-            if (now[s].outcome != Outcome::converged || before[s].outcome != Outcome::converged) continue;
-            const double off = apart(now[s].state, before[s].state);
-            EXPECT_TRUE(std::isfinite(off) && off <= allowed(who[s], size))
-                << name << " " << who[s].name << ", " << what << ": " << off << " m";
-            lost = std::max(lost, off / size);
+TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
+    const double nearest = third();
+    for (const Arithmetic how : others) {
+        try {
+            const WithArithmetic in_force(how);
+            EXPECT_EQ(third() > nearest, how == Arithmetic::up) << name(how);
+            EXPECT_EQ(half_of_the_least() == 0, how == Arithmetic::flushed && exists(how)) << name(how);
+            throw std::runtime_error("whoever solves may throw");
+        } catch (const std::runtime_error&) {
         }
-        testing::Test::RecordProperty(fmt::format("{} {}", name, what),
-                                      fmt::format("{:.1e} of the size", lost));
-        // The references do not give up for a rounding.
-        for (std::size_t s = 0; s < who.size(); ++s)
-            if (who[s].gait.leg == Leg::equilibrium && before[s].outcome == Outcome::converged) {
-                EXPECT_EQ(now[s].outcome, Outcome::converged) << name << " " << what;
+        EXPECT_EQ(third(), nearest) << name(how);
+        EXPECT_GT(half_of_the_least(), 0) << name(how);
+    }
+    // 1/3 lies above its nearest double: down and towards zero are told from each other by -1/3.
+    const auto minus_third = [](Arithmetic how) {
+        const WithArithmetic in_force(how);
+        const volatile double minus = -1, three = 3;
+        const volatile double quotient = minus / three;
+        return quotient;
+    };
+    EXPECT_LT(minus_third(Arithmetic::down), minus_third(Arithmetic::towards_zero));
+    EXPECT_EQ(minus_third(Arithmetic::up), minus_third(Arithmetic::towards_zero));
+}
+
+// What is lost is told, not bound, but of who claims to be exact: fewer than the digits that are more than it claims.
+TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
+    for (const auto& scene : scene_list) {
+        const Survival survival = stress(asked(scene));
+        const LostDigits lost = lost_digits(survival);
+        EXPECT_EQ(lost.variants.size(), exists(Arithmetic::flushed) ? 5u : 4u);
+        ASSERT_EQ(lost.rows.size(), 1u);
+        for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+        // Nobody gives up for a rounding.
+        for (const auto* cell : lost.gave_up) ADD_FAILURE() << told(*cell);
+        for (const auto& cell : survival.cells) {
+            if (cell.sweep != other_arithmetic || cell.outcome != Outcome::converged) continue;
+            EXPECT_TRUE(std::isfinite(cell.lost) && cell.lost >= 0) << told(cell);
+            if (cell.solver == "equilibrium" || cell.solver == "energy" || cell.solver == "series") {
+                EXPECT_GE(cell.digits, 8) << told(cell);
+            }
+        }
+        ASSERT_NE(lost.worst, nullptr);
+        RecordProperty(fmt::format("lost digits, {}", scene),
+                       fmt::format("{:.1f} by {}", digits_lost(*lost.worst), told(*lost.worst)));
+    }
+}
+
+// Some digit of some answer differs, or what was asked for was not in force where it was solved.
+TEST(Arithmetic, ReachesEverySolver) {
+    const Survival survival = stress(asked("mcpherson"));
+    for (const auto& solver : survival.solvers) {
+        bool differs = false;
+        for (const auto& cell : survival.cells)
+            if (cell.solver == solver && cell.variant == name(Arithmetic::up)) differs |= cell.apart > 0;
+        EXPECT_TRUE(differs) << solver;
+    }
+}
+
+// Where five digits are the same, three are lost of eight that are right, and none of three.
+TEST(Arithmetic, DigitsAreLostThatWereRightAndDiffer) {
+    const Survival survival = stress(asked("pendulum"));
+    const auto as_drawn = [&](const StressCell& cell) {
+        return *std::ranges::find_if(survival.cells, [&](const StressCell& other) {
+            return other.sweep == as_it_is && other.way == cell.way && other.solver == cell.solver;
+        });
+    };
+    int asked = 0;
+    for (const auto& cell : survival.cells) {
+        if (cell.sweep != other_arithmetic || cell.outcome != Outcome::converged) continue;
+        const StressCell drawn = as_drawn(cell);
+        const double in_common = -std::log10(cell.apart / drawn.range);
+        EXPECT_NEAR(cell.lost, std::max(0.0, drawn.digits - in_common), 1e-9) << told(cell);
+        EXPECT_NEAR(digits_lost(cell), std::clamp(16 - in_common, 0.0, 16.0), 1e-6) << told(cell);
+        ++asked;
+    }
+    EXPECT_GT(asked, 40);
+}
+
+TEST(Arithmetic, EveryNumberIsAnUlpOffAndNoFurther) {
+    Scene before = support::scene("double_wishbone"), after = an_ulp_off(before);
+    std::vector<double> a, b;
+    for_each_number(before, [&](double& x) { a.push_back(x); });
+    for_each_number(after, [&](double& x) { b.push_back(x); });
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_GT(a.size(), 400u);
+    int up = 0, down = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        if (a[k] == 0) {
+            EXPECT_EQ(b[k], 0);
+            continue;
+        }
+        ++(b[k] > a[k] ? up : down);
+        EXPECT_EQ(b[k], std::nextafter(a[k], b[k])) << k;
+        EXPECT_NE(b[k], a[k]) << k;
+    }
+    EXPECT_GT(up, 50);
+    EXPECT_GT(down, 50);
+}
+
+// Of all ways of the first branch: the first outcome that is another, and where the last way ends.
+struct Answer {
+    Outcome outcome = Outcome::converged;
+    std::vector<Pose> poses;
+};
+
+// Each number of the scene in turn, also of its geometry: it does not matter, or somebody says so.
+TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
+    for (const char* name : {"mcpherson", "tyre_on_road"}) {
+        const Scene scene = small(name);
+        const auto found = [&](const Scene& made) {
+            std::vector<Answer> all;
+            const Model model = compile(made);
+            for (const auto& solver : solvers()) {
+                Answer& answer = all.emplace_back();
+                Gait gait = solver.gait;
+                gait.every = 4, gait.account = false;
+                for (const auto& way : ways_of(model, model.branches.front(), 4)) {
+                    const auto path =
+                        walk(way, gait, [&](const Equilibrium& state) { answer.poses = state.poses; });
+                    if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;
+                }
+            }
+            return all;
+        };
+        const auto expected = found(scene);
+        int count = 0;
+        Scene counted = scene;
+        for_each_number(counted, [&](double&) { ++count; });
+        for (const double none :
+             {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+            for (int at = 0; at < count; ++at) {
+                Scene poisoned = scene;
+                for_each_number(poisoned, [&, k = 0](double& x) mutable {
+                    if (k++ == at) x = none;
+                });
+                const auto now = found(poisoned);
+                for (std::size_t s = 0; s < now.size(); ++s) {
+                    if (now[s].outcome != Outcome::converged) continue;
+                    ASSERT_EQ(now[s].poses.size(), expected[s].poses.size());
+                    for (std::size_t b = 0; b < now[s].poses.size(); ++b)
+                        EXPECT_LE((now[s].poses[b].r - expected[s].poses[b].r).norm(), 1e-12)
+                            << name << ", number " << at << " of " << count << ", " << solvers()[s].name;
+                }
             }
     }
-}
-
-struct RoundingMode {
-    explicit RoundingMode(int mode) { std::fesetround(mode); }
-    ~RoundingMode() { std::fesetround(FE_TONEAREST); }
-};
-
-TEST(Arithmetic, RoundedUpDownOrToZeroWhoConvergesIsStillRight) {
-    for (const auto& [mode, what] : {std::pair{FE_UPWARD, "rounded up"},
-                                     {FE_DOWNWARD, "rounded down"},
-                                     {FE_TOWARDZERO, "rounded to zero"}})
-        holds_under(what, [&](const Way& way) {
-            const RoundingMode rounded(mode);
-            return ends(way);
-        });
-}
-
-TEST(Arithmetic, WithDenormalsTakenForZeroWhoConvergesIsStillRight) {
-    constexpr unsigned flush_and_zero = 0x8040;
-    holds_under("denormals are zero", [&](const Way& way) {
-        const unsigned before = _mm_getcsr();
-        _mm_setcsr(before | flush_and_zero);
-        auto found = ends(way);
-        _mm_setcsr(before);
-        return found;
-    });
-}
-
-// Every number of the model that a leg reads, one ulp up or down.
-Way jittered(Way way) {
-    unsigned k = 12345;
-    const auto jitter = [&](double& x) {
-        k = 1664525 * k + 1013904223;
-        if (x != 0) x = std::nextafter(x, (k >> 16) % 2 == 0 ? INFINITY : -INFINITY);
-    };
-    const auto all = [&](auto&& vector) {
-        for (int n = 0; n < vector.size(); ++n) jitter(vector(n));
-    };
-    for (auto& body : way.model.bodies) all(body.design.r);
-    for (auto& constraint : way.model.constraints)
-        std::visit(
-            [&](auto& kind) {
-                if constexpr (requires { kind.i.s_local; }) all(kind.i.s_local), all(kind.j.s_local);
-                if constexpr (requires { kind.length; }) jitter(kind.length);
-            },
-            constraint.kind);
-    for (auto& elastic : way.model.elastics)
-        std::visit(
-            [&](auto& kind) {
-                all(kind.i.s_local), all(kind.j.s_local);
-                if constexpr (requires { kind.free_length; }) jitter(kind.free_length);
-            },
-            elastic.kind);
-    return way;
-}
-
-TEST(Arithmetic, WithEveryInputAnUlpOffWhoConvergesIsStillRight) {
-    holds_under("an ulp off", [](const Way& way) { return ends(jittered(way)); });
 }
 
 }  // namespace

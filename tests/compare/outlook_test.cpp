@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compare/compare.hpp"
 #include "compare/legs.hpp"
 #include "compare/outlook.hpp"
 #include "models/compile.hpp"
@@ -61,6 +62,51 @@ TEST(Outlook, IsToldSinceThePointFromWhichOnItIsSaid) {
             << points[k - 1].load;
     EXPECT_LT(-211, *from);
     EXPECT_FALSE(announced_from(accounted(model, 150, Leg::series).points).has_value());
+}
+
+// Both ways of a branch begin at a = 0: what the first announces is said, though the second has nothing to say.
+TEST(Outlook, OfABranchIsToldWayByWay) {
+    const Model model = compile(support::scene("two_spring_arch"));
+    BranchAccount account;
+    for (const double to : {-211., 150.})
+        for (const auto& point : accounted(model, to, Leg::series).points) add(account, point);
+    EXPECT_EQ(account.ways.size(), 2u);
+    const auto lines = told(account, ParameterUnit::newton);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_TRUE(lines[0].starts_with("at this rate the stiffness is gone near -211.")) << lines[0];
+    EXPECT_NE(lines[0].find(", announced from -"), std::string::npos) << lines[0];
+}
+
+// Whoever compares hears it of the equilibrium leg, whatever the recursion is; and of a method that promises, what it
+// promises. Account changes no state and no count.
+TEST(Outlook, IsToldByWhoeverCompares) {
+    Scene scene = support::scene("two_spring_arch");
+    scene.branches.resize(1);
+    scene.branches[0].to = -211, scene.branches[0].steps = 20;
+    const Model model = compile(scene);
+    for (const char* method : {"published", "chord", "series"}) {
+        Options options;
+        options.recursion.method = *recursive::find_method(method);
+        options.prove = false;
+        const Comparison all = compare(model, options);
+        const auto& runs = all.branches[0].runs;
+        const LegRun& equilibrium = runs[1];
+        ASSERT_EQ(equilibrium.told.size(), 1u) << method;
+        EXPECT_TRUE(equilibrium.told[0].starts_with("at this rate the stiffness is gone near -211."))
+            << equilibrium.told[0];
+        const LegRun alone = run(model, model.branches[0], Leg::equilibrium);
+        EXPECT_TRUE(alone.told.empty());
+        EXPECT_EQ(alone.counts.factorisations, equilibrium.counts.factorisations);
+        EXPECT_EQ(alone.counts.evaluations, equilibrium.counts.evaluations);
+        EXPECT_EQ(alone.curve.a, equilibrium.curve.a);
+        if (std::string(method) != "series") {
+            EXPECT_TRUE(runs[0].told.empty()) << method;
+        } else {
+            EXPECT_FALSE(runs[0].told.empty()) << method;  // the series sees it as well
+        }
+    }
+    const Comparison bushing = compare(compile(support::scene("single_bushing")));
+    for (const auto& run : bushing.branches[0].runs) EXPECT_TRUE(run.told.empty()) << run.told[0];
 }
 
 TEST(Outlook, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {

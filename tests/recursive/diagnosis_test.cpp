@@ -5,7 +5,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
@@ -187,6 +189,36 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
     EXPECT_LE(diagnose(compile(scene)).imbalance, 1e-9);
     std::get<DeadForce>(scene.static_loads[0].kind).f.z() -= 50;
     EXPECT_NEAR(diagnose(compile(scene)).imbalance, 50, 1e-9);
+}
+
+// Nothing is told of a rank that no number has; whoever walks says where there is none.
+TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
+    const double none[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                           1e300};  // whose square is beyond all numbers
+    for (const double bad : none) {
+        Scene joint = support::scene("mcpherson"), element = joint, body = joint;
+        std::get<Distance>(joint.joints[2].kind).i.s_local.y() = bad;
+        std::get<AxialSpring>(element.elastics.front().kind).i.s_local.z() = bad;
+        body.bodies.front().design.p.x() = bad;
+        for (const auto& [scene, named] : {std::pair{joint, std::string("joint 'tie_rod'")},
+                                           {element, "element 'K1_coil'"},
+                                           {body, "joint '"}}) {
+            if (std::isfinite(bad) && named.ends_with("joint '")) continue;  // a quaternion of any size turns
+            const Model model = compile(scene);
+            const Diagnosis d = diagnose(model);
+            EXPECT_TRUE(std::isnan(d.constraint_error) && std::isnan(d.imbalance)) << named << bad;
+            EXPECT_TRUE(d.redundant.empty() && d.idle.empty()) << named << bad;
+            EXPECT_TRUE(std::isnan(conditioning(model, d).equilibrated)) << named << bad;
+            for (const auto& method : methods) {
+                const auto path = solve(model, model.branches.front(), {.method = method, .steps = 3});
+                EXPECT_EQ(path.outcome, Outcome::not_finite) << method.name << named << bad;
+                EXPECT_NE(path.detail.find("as drawn a number is not finite in "), std::string::npos)
+                    << path.detail;
+                EXPECT_NE(path.detail.find(named), std::string::npos) << path.detail;
+                EXPECT_TRUE(path.points.empty());
+            }
+        }
+    }
 }
 
 TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {

@@ -33,6 +33,9 @@ const char* const map = R"({
   "solvers": ["published", "series"], "sweeps": ["as it is", "far <away>"],
   "map": [{"scene": "arch", "signs": ["39", "X!"]}],
   "extremes": [{"scene": "column", "variant": "straight | so", "signs": "?~"}],
+  "arithmetic": {"groups": ["steps", "series"], "variants": ["rounded <up>"],
+    "rows": [{"scene": "arch", "lost": [["0.0", "1.2"]]}], "worst": "1.2: arch, series", "worst_right": "none",
+    "gave_up": [{"where": "arch, rounded up: chord", "why": "too | far"}]},
   "counts": {"right": 3, "unpromised": 1, "honest": 1, "elsewhere": 1, "unjudged": 1, "wrong": 1},
   "wrong": [{"scene": "arch", "variant": "far", "way": "down", "solver": "published", "why": "off by 2 mm"}],
   "skipped": []})";
@@ -46,12 +49,16 @@ TEST(Survival, TheMapIsOnThePageAndInItsTwin) {
     write_report(result, "result.json", folder.path / "with");
     const std::string html = text_of(folder.path / "with" / "report.html"),
                       markdown = text_of(folder.path / "with" / "report.md");
-    for (const char* part : {"<b class=\"some\">3</b><b class=\"many\">9</b>",
-                             "<b class=\"wrong\">X</b><b class=\"honest\">!</b>",
-                             "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>",
-                             "Of 8 answers 3 are right", "1 are wrong", "far &lt;away&gt;", "off by 2 mm"})
+    for (const char* part :
+         {"<b class=\"some\">3</b><b class=\"many\">9</b>",
+          "<b class=\"wrong\">X</b><b class=\"honest\">!</b>",
+          "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 answers 3 are right", "1 are wrong",
+          "far &lt;away&gt;", "off by 2 mm",
+          "by steps, series; the most, 1.2: arch, series; of digits that were right, none",
+          "rounded &lt;up&gt;", "<td class=\"words\">0.0 1.2</td>", "arch, rounded up: chord: too | far."})
         EXPECT_TRUE(contains(html, part)) << part;
-    for (const char* part : {"| arch | `39` | `X!` |", "`?~`", "straight \\| so", "off by 2 mm"})
+    for (const char* part :
+         {"| arch | `39` | `X!` |", "`?~`", "straight \\| so", "off by 2 mm", "| arch | 0.0 1.2 |"})
         EXPECT_TRUE(contains(markdown, part)) << part;
 }
 
@@ -65,6 +72,17 @@ TEST(Survival, ASignThatIsNoneIsRefused) {
     }
 }
 
+TEST(Survival, WhatIsLostIsAskedOfEveryArithmetic) {
+    const Folder folder;
+    auto result = small_result();
+    result["stress"] = json::parse(map);
+    result["stress"]["arithmetic"]["rows"][0]["lost"].push_back({"0.0", "0.0"});
+    EXPECT_THROW(write_report(result, "result.json", folder.path / "r"), ResultError);
+    result["stress"].erase("arithmetic");  // of an older one
+    write_report(result, "result.json", folder.path / "r");
+    EXPECT_FALSE(contains(text_of(folder.path / "r" / "report.html"), "other arithmetic"));
+}
+
 TEST(Survival, OfTheCommandIsWhatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
@@ -75,7 +93,7 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     EXPECT_EQ(document["schema"], "elastocheck/stress/1");
     EXPECT_EQ(document["map"][0]["signs"].size(), document["sweeps"].size());
     const auto& columns = document["cells"]["columns"];
-    EXPECT_EQ(columns.size(), 14u);
+    EXPECT_EQ(columns.size(), 16u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
     EXPECT_EQ(document["counts"]["wrong"], document["wrong"].size());
     const auto report = elastocheck_says("report " + scenes + "/single_bushing.yaml --stress " + out +

@@ -97,6 +97,10 @@ std::optional<Section> references_section(const Field& scene) {
                 if (!said && !also.empty()) section.words["says_also"].push_back(also);
                 said = said || !also.empty();
             }
+            if (const auto told = leg.find("told"))
+                for (const auto& line : told->texts())
+                    section.words["told"].push_back(
+                        fmt::format("On branch {}, by the account of {}: {}", name, leg["leg"].text(), line));
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
                 name, leg["leg"].text(),
