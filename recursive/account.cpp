@@ -142,14 +142,16 @@ struct Accountant {
     }
     // From the last equilibrium found along the branch to a; q is where that leads.
     bool follow(Real a, State<Real>& q) {
-        constexpr int shortest = 256;  // of the way
-        const Vector<Real> straight = Vector<Real>::Zero(s.n()), lambda_straight = Vector<Real>::Zero(s.m());
+        constexpr int shortest = 4096;  // of the way
+        Vector<Real> curvature = Vector<Real>::Zero(s.n()), lambda_curvature = Vector<Real>::Zero(s.m());
         Node<Real> here = *last_found, next = here;
         const Real way = a - here.p;
         for (Real h = way; here.p != a;) {
             next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
             const Real tried = next.p - here.p;
-            if (try_step(s, going(), here, straight, lambda_straight, next).verdict == Verdict::believed) {
+            if (try_step(s, going(), here, curvature, lambda_curvature, next).verdict == Verdict::believed) {
+                curvature = (next.dq - here.dq) / tried;
+                lambda_curvature = (next.dlambda - here.dlambda) / tried;
                 std::swap(here, next);
                 h = 2 * tried;
             } else if (h = tried / 4; !(std::abs(h) * shortest >= std::abs(way))) {
@@ -199,6 +201,7 @@ struct Accountant {
             // Of what is idle nothing is said, and from here it is elsewhere: it counts from the point, if that leads to
             // what the branch does.
             State<Real> near = from;
+            const Vector<Real> lambda_there = lambda;
             const ErrorBound bound_near = bound(near, 0), apart = distance(q, near, idle_bodies());
             if (std::isfinite(bound_near.length) &&
                 apart.length <= static_cast<double>(going().length_tolerance) &&
@@ -206,20 +209,24 @@ struct Accountant {
                 q = near;
                 return bound_near;
             }
+            lambda = lambda_there;
         }
         const ErrorBound left = bound(q, 0), off = distance(from, q, {});
         return {off.length + left.length, off.angle + left.angle};
     }
 
-    // Of the equilibrium that the branch leads to: the one that Newton's method finds near the point may be another. Where
-    // it is not known where the branch leads, that one.
+    // Of the equilibrium that the branch leads to: the one that Newton's method finds near the point may be another. A path
+    // that turns back is known by its points alone.
     void operator()(Equilibrium& point) {
         if (!begun) begin();
         const auto a = static_cast<Real>(point.load);
         State<Real> q = state_of<Real>(point.poses);
         const bool led = last_found && !turns_back && follow(a, q);
         go_to(s, {1, a});
-        point.bound = led ? bound_on_branch(point, q) : bound(q, multipliers);
+        if (led)
+            point.bound = bound_on_branch(point, q);
+        else
+            point.bound = turns_back ? bound(q, multipliers) : ErrorBound{};
         if (std::isfinite(point.bound.length)) {
             point.stiffness_left = stiffness_left();
             last_found = Node<Real>{q, lambda, {}, {}, a, 0};

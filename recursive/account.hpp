@@ -13,15 +13,16 @@
 // lead to an equilibrium z*, which by Newton and Kantorovich's theorem is the only one near, and no farther than that way.
 // It need not be the one that q stands for: an equilibrium of another branch may be nearer. So z₀ is not the point: it is
 // where the branch leads, by believed steps (walk.hpp) from what settles at a = 0 and on from point to point, and the distance
-// of the point from there is added. Only where they lead nowhere z₀ is the point, and z* has to be on the branch's side of
-// every singular point: the determinant has the sign that it has at a = 0. What is left behind the last correction is less than it, and what rounding
-// makes of G and Φ as they are evaluated in extended precision, e_i = ε Σ_j |M_ij| c_j with c = (size of r, 1, |λ|), is
+// of the point from there is added. Where a path is followed past limit points z₀ is the point.
+//
+// What is left behind the last correction is less than it, and what rounding makes of
+// G and Φ as they are evaluated in extended precision, e_i = ε Σ_j |M_ij| c_j with c = (size of r, 1, |λ|), is
 //
 //   R = max |M⁻¹ (±e)|   over a few choices of the signs
 //
 //   |q - q*| ≤ Σ |dqᵏ| + |dq_last| + 3 R         per body: of the origin, of the orientation
 //
-// Where neither leads anywhere there is no bound: infinite. Of what is idle nothing is said: dq holds still what nothing
+// Where they lead nowhere there is no bound: infinite. Of what is idle nothing is said: dq holds still what nothing
 // resists, and where anything is idle z₀ is the point after all, if z* is where the branch leads but for that.
 //
 // What stiffness is left there is told by the same factors (stiffness.hpp), over what it was at the first point.

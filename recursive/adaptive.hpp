@@ -10,7 +10,8 @@
 // An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the determinant
 // as it was. It is found where the determinant dips: where it is, in the middle, of another sign or less than
 // half of what it is at either end, the step is halved until it is no more, or the point is found. Two modes that become
-// unstable at once leave the sign, too: they are seen in the least stiffness of every node (stiffness.hpp).
+// unstable at once leave the sign, too: they are seen in the least stiffness of every node (stiffness.hpp). What begins
+// unstable is not followed (inertia.hpp), and what takes more than `most_steps` ends as that.
 //
 // Curves have knots, which no step goes over: it ends there (landing.hpp), and the next one begins with the derivative
 // that the path has behind. Where the determinant changes its sign with the piece, the path turns back at the knot.

@@ -13,15 +13,19 @@
 
 namespace elastocheck::recursive {
 
+// Whether the work of all forces is that of an energy: a load that turns with its body has none, and the symmetric part of
+// its K says nothing.
+bool has_energy(const Model& model, const Branch& branch);
+
 // Of the matrix of (24) [n + m square], in the norm |W x|, `weight` [n]; of every idle mode an unknown that is large in
-// it is held. False where round-off may be what is negative, and where K has no energy: it is not symmetric.
+// it is held. False where round-off may be what is negative, which grows with ρ, and where K is not symmetric.
 bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorXd& weight,
                  const std::vector<int>& held);
 
 // Of the equilibrium whose consistent tangent is in the system.
 template <class Real>
 bool is_unstable(const March<Real>& s) {
-    if (s.free <= 0) return false;
+    if (s.free <= 0 || sizeof(Real) < sizeof(double) || !has_energy(s.model, s.branch)) return false;
     const Held<Real>& idle = s.system.held;
     std::vector<int> held;
     for (int c = 0; c < idle.idle; ++c) {

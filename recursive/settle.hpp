@@ -4,6 +4,7 @@
 
 #include "recursive/inertia.hpp"
 #include "recursive/steps.hpp"
+#include "recursive/stiffness.hpp"
 #include "recursive/walk.hpp"
 
 namespace elastocheck::recursive {
@@ -151,7 +152,10 @@ Outcome settle(March<Real>& s) {
 // equilibrium, and so may a drawing that is at rest.
 template <class Real>
 Outcome judge_start(March<Real>& s) {
-    s.begins_unstable = is_unstable(s);
+    Softest<Real> softest;  // what is soft beside the stiffest is below the rounding of the whole
+    const LeastStiffness least = least_stiffness(s, softest);
+    s.begins_unstable =
+        is_unstable(s) || (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
     return s.begins_unstable ? Outcome::singular : Outcome::converged;
 }
 

@@ -152,6 +152,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
     check(model, branch);
     if (std::isnan(analysis.diagnosis.constraint_error))
         return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}, {}};
+    if (options.account_every < 1)
+        throw std::invalid_argument("account is given of every n-th point, n from 1");
     if (!options.account) return found(model, branch, options, analysis, visit);
     const auto* series = std::get_if<Series>(&options.method.kind);
     const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);

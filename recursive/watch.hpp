@@ -4,7 +4,7 @@
 // The true branch is followed ahead of the method by a few long tangents (walk.hpp): steps of a quarter of the way at
 // most, each corrected to an equilibrium, believed where the corrections are small beside the step, the determinant of
 // the consistent matrix keeps its sign and the chord agrees with the tangents at its ends; and at the end no stiffness is
-// negative (stiffness.hpp). That is a handful of factorisations. Where a step is not believed however it is halved,
+// negative (stiffness.hpp, inertia.hpp), nor is one where it begins. That is a handful of factorisations. Where a step is not believed however it is halved,
 // `adaptive` goes the same way with all its care, and its word is taken: the method ends where the branch does.
 #pragma once
 

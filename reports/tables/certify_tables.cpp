@@ -36,8 +36,8 @@ std::string what_is_proved(const compare::CertifyStudy& study) {
         "Proved: by interval arithmetic, that the model's equations of balance and constraint, with the "
         "numbers stored "
         "for it taken as exact, have a solution within {} of the solver's point, and no other as near as "
-        "\"alone "
-        "within\". Excluded: that they have none there. A proved curve has no gap between the points. Not "
+        "\"alone within\" with idle motions and the sharing of redundant joints as there. Excluded: that "
+        "they have none there. A proved curve has no gap between the points. Not "
         "proved: that "
         "the equations are the suspension's, or its numbers right.",
         claim(study.tolerance));

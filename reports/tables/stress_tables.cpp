@@ -72,7 +72,7 @@ std::string worst_right_of(const compare::LostDigits& lost) {
 // A row a scene, a column an arithmetic, in it one number a group of solvers; empty where nobody was asked.
 std::string lost_text(const compare::LostDigits& lost) {
     if (lost.rows.empty()) return {};
-    constexpr std::size_t number = 4;
+    constexpr std::size_t number = 5;
     std::string text;
     const auto out = std::back_inserter(text);
     std::size_t head = 0, column = number * lost.groups.size();

@@ -351,6 +351,104 @@ TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
     }
 }
 
+void expect_followed(const std::string& scene) {
+    const Model model = compile(parse_scene(scene, "scene.yaml"));
+    for (const Method& method : methods) {
+        const auto path = solve(model, model.branches[0], {.method = method});
+        EXPECT_EQ(path.outcome, Outcome::converged) << method.name << ": " << path.detail;
+    }
+}
+
+// What rounding leaves of stiff elements and joints is more than the springs of a chain that is free as drawn, and stable.
+TEST(Start, ThatIsSoftBesideStiffElementsIsNotCalledUnstable) {
+    expect_followed(R"(
+elastocheck: 1
+name: soft beside stiff
+units: {length: mm, angle: deg, force: N}
+points:
+  h0: [194.171, 34.763, -441.838]
+  o0: [-173.993, 190.107, 145.064]
+  h1: [311.954, 391.509, -184.634]
+  o1: [-6.269, -169.958, -372.078]
+  h2: [-359.883, -243.531, -411.971]
+  o2: [38.826, 202.922, 63.073]
+  h3: [184.767, -273.752, -300.596]
+  o3: [67.575, 384.286, -77.735]
+  h4: [-495.763, -479.948, -194.695]
+  o4: [115.374, -415.435, -275.49]
+  f0: [-256.172, -322.927, -630.327]
+  f1: [-656.362, -505.351, -140.942]
+  f2: [607.188, 193.729, -361.115]
+  f3: [251.502, -316.914, 21.333]
+  f4: [-249.441, 628.139, -206.692]
+  far: [1000, 0, 400]
+bodies:
+  b0: {origin: o0}
+  b1: {origin: o1}
+  b2: {origin: o2}
+  b3: {origin: o3}
+  b4: {origin: o4}
+  block: {origin: far}
+joints:
+  j0: {type: revolute, bodies: [b0, ground], at: h0, axis: [0.361, 0.97, -0.318]}
+  j1: {type: revolute, bodies: [b1, b0], at: h1, axis: [0.202, 0.037, -0.954]}
+  j2: {type: revolute, bodies: [b2, b1], at: h2, axis: [-0.34, -0.721, -0.498]}
+  j3: {type: revolute, bodies: [b3, b2], at: h3, axis: [0.54, 0.362, -0.918]}
+  j4: {type: revolute, bodies: [b4, b3], at: h4, axis: [-0.845, 0.45, -0.794]}
+springs:
+  t0: {bodies: [b0, ground], from: o0, to: f0, rate: 1e-1}
+  t1: {bodies: [b1, b0], from: o1, to: f1, rate: 1e-1}
+  t2: {bodies: [b2, b1], from: o2, to: f2, rate: 1e-1}
+  t3: {bodies: [b3, b2], from: o3, to: f3, rate: 1e-1}
+  t4: {bodies: [b4, b3], from: o4, to: f4, rate: 1e-1}
+bushings:
+  b: {bodies: [block, ground], at: far, rates: [1e11, 1e11, 1e11], rotational_rates: [1e11,1e11,1e11]}
+loads:
+  other: {on: block, at: far, force: [1, 0, 0]}
+branches:
+  up: {load: other, to: 1, steps: 2}
+probes:
+  far: {on: block, at: far}
+  tip: {on: b4, at: o4}
+)");
+}
+
+// A thrust that turns with its body, above what a dead one could be and below what makes the links flutter: the symmetric part
+// of its K is negative, and says nothing, however little of the whole the other part is.
+TEST(Start, UnderAThrustThatFollowsIsNotJudgedAsIfItHadAnEnergy) {
+    expect_followed(R"(
+elastocheck: 1
+name: Ziegler beside a stiff bushing
+units: {length: m, angle: rad, force: N}
+points:
+  A: [0, 0, 0]
+  B: [0, 0, 1]
+  C: [0, 0, 2]
+  far: [1, 0, 0]
+bodies:
+  one: {origin: A}
+  two: {origin: B}
+  block: {origin: far}
+joints:
+  a: {type: revolute, bodies: [one, ground], at: A, axis: y}
+  b: {type: revolute, bodies: [two, one], at: B, axis: y}
+torsion_springs:
+  ka: {bodies: [one, ground], at: A, axis: y, rate: 100}
+  kb: {bodies: [two, one], at: B, axis: y, rate: 100}
+bushings:
+  s: {bodies: [block, ground], at: far, rates: [1e10, 1e10, 1e10], rotational_rates: [1e10, 1e10, 1e10]}
+static_loads:
+  thrust: {on: two, at: C, force: [0, 0, -240], follows: true}
+loads:
+  push: {on: block, at: far, force: [1, 0, 0]}
+branches:
+  up: {load: push, to: 1, steps: 4}
+probes:
+  tip: {on: two, at: C}
+  far: {on: block, at: far}
+)");
+}
+
 TEST(Found, AnUnstableStretchIsSeenFromAnyStepsOfItsOwn) {
     // A body on a vertical slide through a ring of springs that push it sideways off its axis: unstable near
     // the ring. Adaptive takes as many steps as it needs, not as many as points are asked for.

@@ -120,7 +120,6 @@ struct KnownFault {
 };
 const KnownFault known_faults[] = {
     {"flat_and_steep", "flat rises by 1e-3 N", "energy"},  // takes hardly any stiffness for a limit point
-    {"flat_and_steep", "steep within 1e-6 mm", "equilibrium"},  // takes the knot for a loss of stability
 };
 bool is_known(const compare::StressCell& cell) {
     return std::ranges::any_of(known_faults, [&](const KnownFault& fault) {

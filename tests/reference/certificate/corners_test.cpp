@@ -203,6 +203,41 @@ TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
     }
 }
 
+// Each piece has to be a bridge then, and there is no end to them.
+TEST(CertifyBranch, AWayThatStaysOnACornerIsProvedOrGivenUp) {
+    const Model model = compile(parse_scene(R"(
+elastocheck: 1
+name: corner at rest
+units: {length: mm, angle: deg, force: N}
+points:
+  foot: [0, 0, 0]
+  head: [0, 0, 400]
+  side: [100, 0, 400]
+bodies:
+  plate: {origin: head}
+joints:
+  guide: {type: translational, bodies: [plate, ground], at: head, axis: z}
+springs:
+  first: {bodies: [plate, ground], from: head, to: foot, rate: 30}
+bushings:
+  b: {bodies: [plate, ground], at: head, rates: [10, 10, 10], rotational_rates: [1000, 1000, 1000], curves: {y: {table: [[-1, -100],[0, 0], [1, 300]]}}}
+loads:
+  vertical: {on: plate, at: head, force: [0, 0, 1]}
+branches:
+  up: {load: vertical, to: 300, steps: 10}
+probes:
+  centre: {on: plate, at: head}
+)",
+                                            "zero.yaml"));
+    const Branch way = ways(model.branches.front()).front();
+    const Model there = on_branch(model, way);
+    const auto path = equilibrium::solve(there, way, std::vector<double>{0, 100, 200, 300});
+    ASSERT_EQ(path.outcome, Outcome::converged);
+    const Tube tube = certify_branch(there, way, path.points);
+    EXPECT_TRUE(tube.answer == Answer::proved || tube.detail.find("stays on a knot") != tube.detail.npos)
+        << tube.detail;
+}
+
 TEST(CertifyBranch, EveryWayOfEveryBuiltInSceneIsOneCurve) {
     int ways = 0, with_corners = 0;
     for (const auto& scene : support::scene_names()) {

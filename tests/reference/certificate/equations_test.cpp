@@ -164,7 +164,7 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     };
     const Tube tube = tube_of(way);
     EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
-    EXPECT_EQ(tube.corners, 1);
+    EXPECT_GE(tube.corners, 1);
 }
 
 // Whatever a bushing measures, at small turns and large ones: the equilibrium leg's points are proved.
