@@ -6,6 +6,7 @@
 
 #include "recursive/settle.hpp"
 #include "recursive/stiffness.hpp"
+#include "recursive/straight.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -149,7 +150,8 @@ struct Accountant {
         for (Real h = way; here.p != a;) {
             next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
             const Real tried = next.p - here.p;
-            if (try_step(s, going(), here, curvature, lambda_curvature, next).verdict == Verdict::believed) {
+            if (try_step(s, going(), here, curvature, lambda_curvature, next).verdict == Verdict::believed &&
+                is_straight(s, going(), here, next)) {
                 curvature = (next.dq - here.dq) / tried;
                 lambda_curvature = (next.dlambda - here.dlambda) / tried;
                 std::swap(here, next);

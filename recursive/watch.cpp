@@ -2,6 +2,7 @@
 
 #include "recursive/settle.hpp"
 #include "recursive/stiffness.hpp"
+#include "recursive/straight.hpp"
 #include "recursive/sweep.hpp"
 
 namespace elastocheck::recursive {
@@ -9,7 +10,6 @@ namespace {
 
 constexpr double longest = 1. / 4, shortest = 1. / 64;  // of the way
 constexpr double near = 1e-4;                           // of L, or rad: what a step need not be told apart
-constexpr double straight = 0.25;  // of a chord, that it may be from the mean of its ends' tangents
 
 // Whether it is the branch that ends, not the numbers.
 bool ends(Outcome outcome) {
@@ -31,37 +31,6 @@ Outcome settles(March<double>& s, const Branch& branch, const Analysis& analysis
     };
     const Outcome outcome = settled();
     return outcome == Outcome::converged ? judge_start(s) : outcome;
-}
-
-// Whether an element has turned over on the way: a spring that points the other way has gone through a length of nothing,
-// a bushing whose rotation does has gone through half a turn. Its force jumps there, and Newton's method lands beyond.
-bool turned_over(const AxialSpring& e, const State<double>& from, const State<double>& to) {
-    return !(deformation<double>(e, from).D.dot(deformation<double>(e, to).D) > 0);
-}
-bool turned_over(const Bushing& e, const State<double>& from, const State<double>& to) {
-    constexpr double quarter = 1.5;  // of a turn [rad], nearly
-    const Vector3<double> before = deformation<double>(e, from).theta(),
-                          after = deformation<double>(e, to).theta();
-    return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
-}
-bool any_turned_over(const Model& model, const State<double>& from, const State<double>& to) {
-    return std::ranges::any_of(model.elastics, [&](const auto& element) {
-        return std::visit([&](const auto& e) { return turned_over(e, from, to); }, element.kind);
-    });
-}
-
-// The chord from one node to the next against the tangents at its ends, and nothing turned over.
-bool is_straight(const March<double>& s, const Going<double>& going, const Node<double>& from,
-                 const Node<double>& to) {
-    Vector<double> chord(s.n());
-    for (BodyId b = 0; b < from.q.bodies(); ++b) {
-        const Matrix3<double> turned = to.q[b].A * from.q[b].A.transpose();
-        chord.segment<3>(6 * b) = to.q[b].r - from.q[b].r;
-        chord.segment<3>(6 * b + 3) = logarithm<double>(turned);
-    }
-    const Vector<double> mean = (to.p - from.p) / 2 * (from.dq + to.dq);
-    return share<double>(going, chord - mean) <= straight * share<double>(going, chord) + 1 &&
-           !any_turned_over(s.model, from.q, to.q);
 }
 
 // Whether the few tangents come through.

@@ -428,7 +428,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
 
     // As long as it goes; half of it where it does not, three fifths more where it did.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    constexpr int most_pieces = 5'000;
+    constexpr int most_pieces = 2'000;
     double h = first_share * way;
     Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;

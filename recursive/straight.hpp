@@ -1,0 +1,44 @@
+// Whether a long step went straight: what Newton's method finds at its end need not be the branch's, and a sign that the
+// determinant keeps does not tell.
+#pragma once
+
+#include "recursive/walk.hpp"
+
+namespace elastocheck::recursive {
+
+// Whether an element has turned over on the way: a spring that points the other way has gone through a length of nothing,
+// a bushing whose rotation does has gone through half a turn. Its force jumps there, and Newton's method lands beyond.
+template <class Real>
+bool turned_over(const AxialSpring& e, const State<Real>& from, const State<Real>& to) {
+    return !(deformation<Real>(e, from).D.dot(deformation<Real>(e, to).D) > 0);
+}
+template <class Real>
+bool turned_over(const Bushing& e, const State<Real>& from, const State<Real>& to) {
+    constexpr Real quarter = 1.5;  // of a turn [rad], nearly
+    const Vector3<Real> before = deformation<Real>(e, from).theta(), after = deformation<Real>(e, to).theta();
+    return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
+}
+template <class Real>
+bool any_turned_over(const Model& model, const State<Real>& from, const State<Real>& to) {
+    return std::ranges::any_of(model.elastics, [&](const auto& element) {
+        return std::visit([&](const auto& e) { return turned_over(e, from, to); }, element.kind);
+    });
+}
+
+// The chord from one node to the next against the tangents at its ends, and nothing turned over.
+template <class Real>
+bool is_straight(const March<Real>& s, const Going<Real>& going, const Node<Real>& from,
+                 const Node<Real>& to) {
+    Vector<Real> chord(s.n());
+    for (BodyId b = 0; b < from.q.bodies(); ++b) {
+        const Matrix3<Real> turned = to.q[b].A * from.q[b].A.transpose();
+        chord.template segment<3>(6 * b) = to.q[b].r - from.q[b].r;
+        chord.template segment<3>(6 * b + 3) = logarithm<Real>(turned);
+    }
+    const Vector<Real> mean = (to.p - from.p) / 2 * (from.dq + to.dq);
+    constexpr Real straight = Real(0.25);  // of the chord, that it may be from the mean of the tangents
+    return share<Real>(going, chord - mean) <= straight * share<Real>(going, chord) + 1 &&
+           !any_turned_over(s.model, from.q, to.q);
+}
+
+}  // namespace elastocheck::recursive
