@@ -428,7 +428,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
 
     // As long as it goes; half of it where it does not, three fifths more where it did.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    constexpr int most_pieces = 2'000;
+    constexpr int most_bridges = 40;  // in a row
     double h = first_share * way;
     Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;
@@ -438,12 +438,11 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     if (from.box.size() == 0) return open(fmt::format("nothing is proved at {:.9g}", tube.from));
     const VectorXd none = VectorXd::Zero(from.y.size());
     std::size_t next_state = 0;
-    bool halved = false, bridged = false;  // the piece before
+    bool halved = false;
+    int bridges = 0;  // one after the other, to here
     while (tube.to != end) {
-        if (tube.pieces == most_pieces)
-            return open(
-                fmt::format("{} pieces lead to {:.12g} only: the way stays on a knot, or close to one",
-                            most_pieces, tube.to));
+        if (bridges == most_bridges)
+            return open(fmt::format("past {:.12g} the way stays on a knot, or close to one", tube.to));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
@@ -509,9 +508,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         tube.to = a1;
         from = to;
         h *= 1.6;
-        // It is behind, unless the way stays on it.
-        if (over_knot && !bridged && std::abs(h) < std::abs(first_share * way)) h = first_share * way;
-        bridged = over_knot;
+        if (over_knot && std::abs(h) < std::abs(first_share * way)) h = first_share * way;  // it is behind
+        bridges = over_knot ? bridges + 1 : 0;
         if (std::abs(h) > std::abs(way)) h = way;
     }
     const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&
