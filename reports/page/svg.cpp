@@ -1,6 +1,7 @@
 #include "reports/page/svg.hpp"
 
 #include <fmt/format.h>
+#include <charconv>
 
 #include <cctype>
 #include <cstdlib>
@@ -84,7 +85,9 @@ std::string coarser(std::string_view text) {
         const std::size_t end = std::min(text.find_first_not_of("0123456789.", k), text.size());
         const std::string_view word = text.substr(k, end - k);
         if (word.find('.') != word.npos) {
-            std::string number = fmt::format("{:.1f}", std::strtod(std::string(word).c_str(), nullptr));
+            double value = 0;  // a point whatever the locale: gnuplot writes one
+            std::from_chars(word.data(), word.data() + word.size(), value);
+            std::string number = fmt::format("{:.1f}", value);
             if (number.ends_with(".0")) number.resize(number.size() - 2);
             result += number;
         } else if (!word.empty()) {
