@@ -1,6 +1,7 @@
 #include "reports/command/arguments.hpp"
 
 #include <fmt/format.h>
+#include <charconv>
 
 #include <stdexcept>
 
@@ -64,6 +65,22 @@ void add_settings(CLI::App& command, Settings& settings) {
         ->take_all()
         ->type_name("PATH=VALUE")
         ->expected(1);
+}
+
+CLI::Option* add_number(CLI::App& command, const std::string& name, double& number, double low, double high,
+                        const std::string& text) {
+    return command
+        .add_option_function<std::string>(
+            name,
+            [name, &number, low, high](const std::string& word) {
+                const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+                if (error != std::errc{} || end != word.data() + word.size() ||
+                    !(number >= low && number <= high))
+                    throw CLI::ValidationError(
+                        name, fmt::format("'{}' is no number from {} to {}", word, low, high));
+            },
+            text)
+        ->type_name("FLOAT");
 }
 
 }  // namespace elastocheck::reports

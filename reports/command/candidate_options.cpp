@@ -59,18 +59,8 @@ void add_candidate_options(CLI::App& command, CandidateRequest& request) {
         ->check(a_file("*.csv"));
     command.add_option("--candidate-command", request.command,
                        "a solver to be run, without a shell: './mysolver {scene} {steps} {output}'");
-    // Read as every number here is: the library's own reading asks the locale for its comma.
-    command.add_option_function<std::string>(
-        "--candidate-timeout",
-        [&request](const std::string& text) {
-            const auto [end, error] =
-                std::from_chars(text.data(), text.data() + text.size(), request.timeout);
-            const bool read = error == std::errc{} && end == text.data() + text.size();
-            if (!read || !(request.timeout >= 0.001 && request.timeout <= 86400))
-                throw CLI::ValidationError("--candidate-timeout",
-                                           "Value " + text + " not in range [0.001 - 86400]");
-        },
-        "seconds after which the command is killed (default: 60)");
+    add_number(command, "--candidate-timeout", request.timeout, 0.001, 86400,
+               "seconds after which the command is killed (default: 60)");
     command
         .add_option("--map", request.map,
                     "YAML: how the candidate names its columns, their units, signs, offsets")

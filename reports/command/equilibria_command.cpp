@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -33,14 +34,13 @@ CLI::App* add_equilibria_command(CLI::App& app, EquilibriaRequest& request) {
     auto* command = app.add_subcommand(
         "equilibria", "All equilibria that can be found at one load, each proved, and what they mean");
     command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    command
-        ->add_option("--at", request.at,
-                     "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg")
+    constexpr double any = std::numeric_limits<double>::max();
+    add_number(*command, "--at", request.at, -any, any,
+               "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg")
         ->required();
     command->add_option("--branch", request.branch, "name of the branch (default: the first)");
-    command
-        ->add_option("--turned", request.turned, "list none with a body turned by more [deg] (default: 90)")
-        ->check(CLI::Range(0., 180.));
+    add_number(*command, "--turned", request.turned, 0, 180,
+               "list none with a body turned by more [deg] (default: 90)");
     add_settings(*command, request.settings);
     return command;
 }
