@@ -47,7 +47,7 @@ struct Certificate {
     Extent error;  // an upper bound of the distance from the state to the true equilibrium
     Extent
         unique;  // no other has poses as near as this, whatever its wrenches (∞), of those that have idle motions and the
-        // sharing of redundant joints as here; 0 where nothing is known
+    // sharing of redundant joints as here; 0 where nothing is known
     double held = 0;  // |μ|: what holds idle modes, at most [N, N·m]; 0 where there are none
     double gap = 0;   // what redundant constraints stay open by, at most [m, rad]; 0 where there are none
     // Every stiffness of what is free and not idle is positive over the whole box; false: not shown.

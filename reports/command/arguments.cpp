@@ -1,8 +1,8 @@
 #include "reports/command/arguments.hpp"
 
 #include <fmt/format.h>
-#include <charconv>
 
+#include <charconv>
 #include <stdexcept>
 
 #include "reports/text/escape.hpp"
