@@ -436,7 +436,7 @@ torsion_springs:
   ka: {bodies: [one, ground], at: A, axis: y, rate: 100}
   kb: {bodies: [two, one], at: B, axis: y, rate: 100}
 bushings:
-  s: {bodies: [block, ground], at: far, rates: [1e10, 1e10, 1e10], rotational_rates: [1e10, 1e10, 1e10]}
+  s: {bodies: [block, ground], at: far, rates: [3e8, 3e8, 3e8], rotational_rates: [3e8, 3e8, 3e8]}
 static_loads:
   thrust: {on: two, at: C, force: [0, 0, -240], follows: true}
 loads:
