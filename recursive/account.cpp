@@ -164,7 +164,7 @@ struct Accountant {
         lambda = here.lambda;
         return true;
     }
-    // How far apart two configurations are, `without` some bodies.
+    // How far apart two configurations are, `without` some bodies; none, all count.
     static ErrorBound distance(const State<Real>& from, const State<Real>& to,
                                const std::vector<bool>& without) {
         Real length = 0, angle = 0;
@@ -185,7 +185,8 @@ struct Accountant {
             if (std::abs(held.value[at]) > Real(1e-6))
                 idle[static_cast<std::size_t>(held.row[at] / 6)] = true;
         }
-        return idle;
+        // Where none is left to tell equilibria apart by, all are compared, idle or not.
+        return std::ranges::find(idle, false) == idle.end() ? std::vector<bool>{} : idle;
     }
     // Where the branch begins.
     void begin() {

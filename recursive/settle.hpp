@@ -9,6 +9,11 @@
 
 namespace elastocheck::recursive {
 
+// Whether the design position, where it is an equilibrium, is also where the branch begins.
+inline bool starts_as_drawn(const Branch& branch) {
+    return std::ranges::all_of(branch.drivers, [](const Driver& driver) { return driver.start == 0; });
+}
+
 // What pushes an idle mode is asked where the modes are known best: as drawn.
 template <class Real>
 bool pushes_idle_mode(const March<Real>& s) {

@@ -18,10 +18,6 @@ bool ends(Outcome outcome) {
            outcome == Outcome::inconsistent_constraints;
 }
 
-bool starts_as_drawn(const Branch& branch) {
-    return std::ranges::all_of(branch.drivers, [](const Driver& driver) { return driver.start == 0; });
-}
-
 // To the equilibrium at a = 0, whose factors are then in the system.
 Outcome settles(March<double>& s, const Branch& branch, const Analysis& analysis) {
     const auto settled = [&] {

@@ -457,10 +457,6 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
 }
 
 // Whether the branch holds anything that the drawing does not.
-bool starts_as_drawn(const Branch& branch) {
-    return std::ranges::all_of(branch.drivers, [](const Driver& driver) { return driver.start == 0; });
-}
-
 }  // namespace
 
 Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {

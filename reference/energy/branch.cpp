@@ -32,8 +32,8 @@ using Eigen::VectorXd;
 
 // Of a step, one after the other. Where a stop closes the tangent jumps, and no step over it fits both: it is taken once
 // it is negligible, which from the whole span takes some twenty.
-constexpr int halvings = 26;
-constexpr double resolution = 1e-9;        // of the parameter: smallest step
+constexpr int halvings = 40;
+constexpr double resolution = 1e-12;       // of the parameter: smallest step
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 constexpr double look =
     1e-3;  // of the span: an instability that comes and goes within this is not looked for

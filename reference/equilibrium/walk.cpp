@@ -302,6 +302,9 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
     walk.length = std::max(std::abs(walk.system.branch->to), reach);
     walk.before.reset();
     walk.here = station_at(walk, 0, walk.here.x, &walk.here.linearised);
+    // What hung on a load that has been let go of is idle only now.
+    if (std::abs(walk.here.stiffness.least) <= walk.here.stiffness.round_off)
+        walk.here = station_at(walk, 0, walk.here.x, nullptr);
     walk.first_stiffness = walk.here.stiffness.least;
     walk.first_tangent = pose_size(walk.system, walk.here.tangent);
     const std::string at_0 = parameter(*walk.system.branch, 0);

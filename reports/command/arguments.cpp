@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 #include "reports/text/escape.hpp"
@@ -69,15 +70,19 @@ void add_settings(CLI::App& command, Settings& settings) {
 
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& number, double low, double high,
                         const std::string& text) {
+    const std::string range =
+        std::isfinite(low) || std::isfinite(high) ? fmt::format(" from {} to {}", low, high) : "";
     return command
         .add_option_function<std::string>(
             name,
-            [name, &number, low, high](const std::string& word) {
-                const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-                if (error != std::errc{} || end != word.data() + word.size() ||
+            [name, &number, low, high, range](const std::string& word) {
+                // A plus is all that from_chars refuses of what people write.
+                const char* first = word.data() + (word.starts_with('+') ? 1 : 0);
+                const char* last = word.data() + word.size();
+                const auto [end, error] = std::from_chars(first, last, number);
+                if (error != std::errc{} || end != last || !std::isfinite(number) ||
                     !(number >= low && number <= high))
-                    throw CLI::ValidationError(
-                        name, fmt::format("'{}' is no number from {} to {}", word, low, high));
+                    throw CLI::ValidationError(name, fmt::format("'{}' is no number{}", word, range));
             },
             text)
         ->type_name("FLOAT");

@@ -34,7 +34,7 @@ CLI::App* add_equilibria_command(CLI::App& app, EquilibriaRequest& request) {
     auto* command = app.add_subcommand(
         "equilibria", "All equilibria that can be found at one load, each proved, and what they mean");
     command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    constexpr double any = std::numeric_limits<double>::max();
+    constexpr double any = std::numeric_limits<double>::infinity();
     add_number(*command, "--at", request.at, -any, any,
                "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg")
         ->required();

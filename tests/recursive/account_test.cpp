@@ -197,7 +197,6 @@ TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
     EXPECT_EQ(reference::energy::solve(model, branch, every_point(branch)).outcome, Outcome::dividing_point);
 }
 
-// Without being asked nobody gives account.
 // Newton's method comes to rest where two links that contradict each other stay open: at no equilibrium, and on no branch.
 TEST(Account, WhereTheFirstPointHasNoBoundNothingIsPromised) {
     const Model model = compile(parse_scene(R"(
@@ -223,6 +222,7 @@ probes: {tip: {on: bob, at: tip}}
     }
 }
 
+// Without being asked nobody gives account.
 TEST(Account, IsGivenWhereItIsAsked) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];

@@ -164,6 +164,24 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
 
 // ---- --version, --help
 
+TEST(Numbers, AreReadWholeWithAPointAndInTheirRange) {
+    const std::string asks = "equilibria " + scenes + "/two_spring_arch.yaml --at ";
+    for (const auto& [words, says] :
+         {std::pair<std::string, const char*>{"x", "--at: 'x' is no number\n"},
+          {"-120,5", "'-120,5' is no number\n"},
+          {"nan", "'nan' is no number\n"},
+          {"-inf", "'-inf' is no number\n"},
+          {"1e999", "'1e999' is no number\n"},
+          {"++1", "'++1' is no number\n"},
+          {"-120 --turned 181", "--turned: '181' is no number from 0 to 180\n"}}) {
+        const auto said = elastocheck_says(asks + words);
+        EXPECT_EQ(said.code, 2) << words;
+        EXPECT_TRUE(contains(said.err, says)) << words << ": " << said.err;
+    }
+    EXPECT_EQ(elastocheck_says(asks + "+120.5").out, elastocheck_says(asks + "120.5").out);
+    EXPECT_EQ(elastocheck_says(asks + "+120.5").code, 0);
+}
+
 TEST(Version, NamesTheCommitAndEveryLibrary) {
     const std::string said = elastocheck_says("--version").out;
     EXPECT_TRUE(std::regex_search(

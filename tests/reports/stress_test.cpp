@@ -114,24 +114,11 @@ TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
     }
 }
 
-// What is wrong today and known to be: a line goes when its fault does. Nothing else may be wrong.
-struct KnownFault {
-    const char *scene, *variant, *solver;
-};
-const KnownFault known_faults[] = {
-    {"flat_and_steep", "flat rises by 1e-3 N", "energy"},  // takes hardly any stiffness for a limit point
-};
-bool is_known(const compare::StressCell& cell) {
-    return std::ranges::any_of(known_faults, [&](const KnownFault& fault) {
-        return cell.scene == fault.scene && cell.variant == fault.variant && cell.solver == fault.solver;
-    });
-}
-
 TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
     const auto survival = compare::stress(extremes());
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)
-        EXPECT_TRUE(cell.verdict != compare::Verdict::wrong || is_known(cell)) << fmt::format(
+        EXPECT_TRUE(cell.verdict != compare::Verdict::wrong) << fmt::format(
             "{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.way, cell.solver, cell.why, cell.detail);
     if (HasFailure()) std::cout << stress_text(survival);
 }
