@@ -82,7 +82,7 @@ class Reference {
             std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(asked.back()); });
             std::ranges::copy(asked, std::back_inserter(all));
             std::ranges::sort(all, nearer);
-            all.erase(std::ranges::unique(all).begin(), all.end());
+            all.erase(std::unique(all.begin(), all.end()), all.end());
             bool ended = false;
             reference::equilibrium::solve(way.model, way.branch, all, {}, [&](const Equilibrium& state) {
                 ended = ended || !ends_at_table(way.model, way.branch, state).empty();

@@ -129,12 +129,13 @@ struct Accountant {
     }
 
     // Where forces have no energy, with the sign of the determinant.
-    double stiffness_left() {
+    double stiffness_left(const State<Real>& q) {
         if (s.free <= 0) return 1;
         const LeastStiffness least = least_stiffness(s, softest);
         const double sign = least.of_energy || s.system.lu.orientation == orientation ? 1 : -1;
         if (first_stiffness == 0) first_stiffness = least.value;
-        return sign * least.value / first_stiffness;
+        const double idle = pushed_over(s, q, lambda);
+        return (idle < 0 ? idle : sign * least.value) / first_stiffness;
     }
 
     Going<Real> going() const {
@@ -231,13 +232,13 @@ struct Accountant {
         else
             point.bound = turns_back ? bound(q, multipliers) : ErrorBound{};
         if (std::isfinite(point.bound.length)) {
-            point.stiffness_left = stiffness_left();
+            point.stiffness_left = stiffness_left(q);
             last_found = Node<Real>{q, lambda, {}, {}, a, 0};
             differentiate(s, going(), *last_found);
         } else if (orientation != 0) {
             q = state_of<Real>(point.poses);
             lambda.setZero();
-            if (correct(q) == Outcome::converged) point.stiffness_left = stiffness_left();
+            if (correct(q) == Outcome::converged) point.stiffness_left = stiffness_left(q);
         }
     }
 };

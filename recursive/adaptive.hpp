@@ -112,7 +112,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
     Softest<Real> softest;
     const auto unstable = [&] {
         const LeastStiffness least = least_stiffness(s, softest);
-        return least.of_energy && least.value < 0;
+        return (least.of_energy && least.value < 0) || pushed_over(s, next.q, next.lambda) < 0;
     };
     if (const Outcome outcome = judge_start(s); outcome != Outcome::converged) return outcome;
     keep(node.q, node.lambda, 0);

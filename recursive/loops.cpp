@@ -18,20 +18,25 @@ struct Visit {
 std::vector<int> loops(const Model& model) {
     const std::size_t nowhere = model.constraints.size();
     std::vector<std::vector<End>> ends(model.bodies.size() + 1);  // ground in slot 0
+    std::vector<int> block(model.constraints.size(), -1);
+    int time = 0, blocks = 0;
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
         const auto [i, j] = std::visit(
             [](const auto& kind) {
                 return std::pair{kind.i.body, kind.j.body};
             },
             model.constraints[c].kind);
+        if (i == j) {  // of one body, or of two that are fixed to the ground: a loop by itself
+            block[c] = blocks++;
+            continue;
+        }
         ends[static_cast<std::size_t>(i + 1)].push_back({static_cast<std::size_t>(j + 1), c});
         ends[static_cast<std::size_t>(j + 1)].push_back({static_cast<std::size_t>(i + 1), c});
     }
     // Depth first: when each body was come to, and the earliest that is reached from it or from behind it.
-    std::vector<int> came(ends.size(), -1), earliest(ends.size(), 0), block(model.constraints.size(), -1);
+    std::vector<int> came(ends.size(), -1), earliest(ends.size(), 0);
     std::vector<std::size_t> open;  // constraints whose block is not complete
     std::vector<Visit> way;
-    int time = 0, blocks = 0;
     const auto come_to = [&](std::size_t body, std::size_t by) {
         came[body] = earliest[body] = time++;
         way.push_back({body, by});

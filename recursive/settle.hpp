@@ -2,7 +2,7 @@
 // loads, what the drivers start at, joints that are not closed as drawn.
 #pragma once
 
-#include "recursive/inertia.hpp"
+#include "recursive/idle.hpp"
 #include "recursive/steps.hpp"
 #include "recursive/stiffness.hpp"
 #include "recursive/walk.hpp"
@@ -159,8 +159,8 @@ template <class Real>
 Outcome judge_start(March<Real>& s) {
     Softest<Real> softest;  // what is soft beside the stiffest is below the rounding of the whole
     const LeastStiffness least = least_stiffness(s, softest);
-    s.begins_unstable =
-        is_unstable(s) || (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
+    s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
+                        (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
     return s.begins_unstable ? Outcome::singular : Outcome::converged;
 }
 

@@ -43,6 +43,7 @@ bool comes_through(March<double>& s, double to) {
         next.p = to * ahead;
         const Trial<double> trial = try_step(s, going, node, curvature, lambda_curvature, next);
         if (trial.verdict == Verdict::believed && contradict_at(s, next, q, lambda)) return false;
+        if (trial.verdict == Verdict::believed && pushed_over(s, next.q, next.lambda) < 0) return false;
         if (trial.verdict == Verdict::believed && is_straight(s, going, node, next)) {
             curvature = (next.dq - node.dq) / (next.p - node.p);
             lambda_curvature = (next.dlambda - node.dlambda) / (next.p - node.p);

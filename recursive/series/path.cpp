@@ -371,7 +371,7 @@ bool is_past(Walk& w, double rises) {
     if (side(w, rises) != w.side) return true;
     if (!w.stable) return false;
     const LeastStiffness least = least_stiffness(w.s, w.softest);
-    return least.of_energy && least.value < 0;
+    return (least.of_energy && least.value < 0) || pushed_over(w.s, w.s.q, w.s.lambda) < 0;
 }
 
 // The polynomial goes straight on where the path divides. The march goes to the point, by halves; returns how far the

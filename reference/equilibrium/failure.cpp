@@ -152,8 +152,13 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         constexpr double mostly = 0.9;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
             return unanswerable(system, U * (U.transpose() * left_over));
-        // At a limit point a good part of the step finds no answer; far below, arithmetic is at its end.
-        constexpr double good_part = 1e-6, end_of_arithmetic = 1e-13;
+        // At a limit point a good part of the step finds no answer; far below, arithmetic is at its end: of poses of the
+        // model's own size, or so many times farther off.
+        constexpr double good_part = 1e-6, at_home = 1e-13;
+        double away = 1;
+        for (int body = 0; body < system.bodies; ++body)
+            away = std::max(away, walk.here.x.segment<3>(7 * body).norm());
+        const double end_of_arithmetic = away * at_home;
         const double step = std::abs(t - walk.here.t) * largest(walk.here.E_rate);
         if (attempt.out_of_time || attempt.residual <= std::max(good_part * step, end_of_arithmetic))
             return {Outcome::iteration_limit,

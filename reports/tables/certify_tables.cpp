@@ -69,9 +69,9 @@ std::string certify_text(const compare::CertifyStudy& study) {
             if (way.branch != branch) continue;
             const char* unit = symbol(way.unit);
             if (way.curve && way.curve->answer == compare::Answer::proved)
-                fmt::format_to(out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}\n",
+                fmt::format_to(out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}{}\n",
                                in_unit(way.unit) * way.curve->from + 0.0, in_unit(way.unit) * way.curve->to,
-                               unit);
+                               unit, way.curve->corners > 0 ? ", over corners of laws" : "");
             if (way.limit && way.limit->answer == compare::Answer::proved)
                 fmt::format_to(out, "  a limit point is proved, between {:.16g} and {:.16g} {}\n",
                                in_unit(way.unit) * way.limit->from, in_unit(way.unit) * way.limit->to, unit);

@@ -6,6 +6,7 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "recursive/diagnosis.hpp"
+#include "recursive/loops.hpp"
 #include "recursive/solve.hpp"
 
 namespace elastocheck::recursive {
@@ -137,6 +138,86 @@ TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
             "bar"));
         const auto path = solve(model, model.branches[0], {.method = *find_method("series")});
         EXPECT_EQ(path.outcome == Outcome::converged, to < 314) << to << path.detail;
+    }
+}
+
+// A row that can be of no body is in no loop of joints but its own.
+TEST(Extremes, ALinkBetweenWhatIsFixedIsHeldAtItsLengthAndAtNoOther) {
+    const Model model = compile(parse_scene(R"(
+elastocheck: 1
+name: a link between what is fixed
+units: {length: mm, angle: rad, force: N, moment: N·m}
+points: {ball: [0, 0, 0], wall: [0, 500, 0], tip: [400, 0, 0]}
+bodies: {block: {origin: wall}, bob: {origin: tip}}
+joints:
+  weld: {type: fixed, bodies: [block, ground], at: wall}
+  link: {type: distance, bodies: [block, ground], from: wall, to: ball}
+  ball: {type: spherical, bodies: [bob, ground], at: ball}
+bushings: {ball: {bodies: [bob, ground], at: ball, rates: [0, 0, 0], rotational_rates: [600, 600, 600]}}
+loads: {pull: {on: bob, at: tip, force: [0, 0, 1]}}
+branches:
+  kept: {load: pull, to: 500, steps: 4, hold: {joints.link: 0}}
+  stretched: {drive: {joints.link: 1}, to: 5, steps: 4}
+probes: {tip: {on: bob, at: tip}}
+)",
+                                            "link.yaml"));
+    ASSERT_EQ(model.bodies.size(), 1u);  // the block is ground
+    for (const int row : loops(model)) EXPECT_GE(row, 0);
+    for (const Method& method : methods) {
+        EXPECT_EQ(solve(model, model.branches[0], {.method = method}).outcome, Outcome::converged)
+            << method.name;
+        EXPECT_EQ(solve(model, model.branches[1], {.method = method}).outcome,
+                  Outcome::inconsistent_constraints)
+            << method.name;
+    }
+}
+
+// A rod on a ball at the end of a mount, loaded along itself: nothing resists its turning as drawn.
+Model rod(const std::string& held, double to) {
+    return compile(parse_scene(fmt::format(R"(
+elastocheck: 1
+name: rod
+units: {{length: mm, angle: rad, force: N, moment: N·m}}
+points: {{ball: [0, 0, 0], tip: [400, 0, 0]}}
+bodies: {{mount: {{origin: ball}}, rod: {{origin: tip}}}}
+joints: {{ball: {{type: spherical, bodies: [rod, mount], at: ball}}}}
+bushings: {{seat: {{bodies: [mount, ground], at: ball, rates: [1000, 1000, 1000], rotational_rates: [600, 600, 600]}}}}
+{}
+loads: {{along: {{on: rod, at: tip, force: [1, 0, 0]}}}}
+branches: {{along: {{load: along, to: {}, steps: 8}}}}
+probes: {{tip: {{on: rod, at: tip}}}}
+)",
+                                           held, to),
+                               "rod"));
+}
+
+TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
+    for (const Method& method : methods) {
+        const Model pulled = rod("", 500), pushed = rod("", -500);
+        EXPECT_EQ(solve(pulled, pulled.branches[0], {.method = method}).outcome, Outcome::converged)
+            << method.name;
+        const auto falls = solve(pushed, pushed.branches[0], {.method = method, .account = true});
+        EXPECT_EQ(falls.outcome, Outcome::dividing_point) << method.name << falls.detail;
+        EXPECT_LE(falls.points.size(), 1u) << method.name;  // there is none but the first
+    }
+}
+
+TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
+    const char* const pull = "static_loads: {weight: {on: rod, at: tip, force: [50, 0, 0]}}";
+    const char* const push = "static_loads: {weight: {on: rod, at: tip, force: [-50, 0, 0]}}";
+    for (const Method& method : methods) {
+        const Model hangs = rod(pull, 100), stands = rod(push, 10), falls = rod(pull, -100);
+        const auto path = solve(hangs, hangs.branches[0], {.method = method, .account = true});
+        EXPECT_EQ(path.outcome, Outcome::converged) << method.name << path.detail;
+        const auto none = solve(stands, stands.branches[0], {.method = method});
+        EXPECT_EQ(none.outcome, Outcome::singular) << method.name;
+        EXPECT_NE(none.detail.find("that settles at 0"), none.detail.npos) << method.name << none.detail;
+        // Hangs until the load has taken the weight from it, at 50 N.
+        const auto over = solve(falls, falls.branches[0], {.method = method});
+        EXPECT_EQ(over.outcome, Outcome::dividing_point) << method.name << over.detail;
+        ASSERT_FALSE(over.points.empty());
+        EXPECT_NEAR(over.points.back().load, -50, 13) << method.name;
+        EXPECT_GE(over.points.back().load, -50 * (1 + 1e-5)) << method.name;
     }
 }
 

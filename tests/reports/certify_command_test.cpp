@@ -27,6 +27,14 @@ TEST(CertifyCommand, ProvesTheReferencesAndSaysWhatThatMeans) {
     EXPECT_TRUE(contains(said.out, "Proved: all ")) << said.out;
 }
 
+TEST(CertifyCommand, SaysWhereACurveLeadsOverAStop) {
+    const Said said = elastocheck_says("certify " + scenes +
+                                       "/../extremes/stop_that_touches.yaml --method equilibrium --points 4");
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.out, "from 0 to 2000 N, over corners of laws\n")) << said.out;
+    EXPECT_TRUE(contains(said.out, "from 0 to -2000 N\n")) << said.out;
+}
+
 TEST(CertifyCommand, APointThatIsProvablyNoneIsABrokenLimit) {
     const Said said =
         elastocheck_says("certify " + scenes + "/chrono_mcpherson.yaml --method published --points 4");

@@ -1,0 +1,92 @@
+// Motions that nothing resists where they were looked for, as drawn and unloaded. The border of (24) holds them, and what
+// else is said of stability is said of the others. But what acts may resist them as they turn, as its weight does a
+// pendulum, or push them over: a rod that is pushed along itself, a weight that stands on a ball. With Z those that share
+// bodies, orthonormal in W and in the null space of Φ_q,
+//
+//   zᵀKz < 0, z in Z      the energy falls along z: the equilibrium is unstable
+//
+// K with the reactions of the joints, which are what is turned.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+
+#include "recursive/inertia.hpp"
+
+namespace elastocheck::recursive {
+
+// The least eigenvalue of ZᵀKZ of all of them, K of the consistent matrix in the system; 0 where none is below what
+// rounding makes of it.
+template <class Real>
+double least_of_idle(const March<Real>& s) {
+    constexpr double several = 256;  // of the roundings of a sum
+    constexpr double epsilon = std::max(static_cast<double>(std::numeric_limits<Real>::epsilon()),
+                                        std::numeric_limits<double>::epsilon());
+    const Held<Real>& held = s.system.held;
+    const SaddleMatrix<Real>& M = s.system.M;
+    double least = 0;
+    for (int first = 0, end = 0; first < held.idle; first = end) {
+        for (end = first + 1; end < held.idle && held.with[static_cast<std::size_t>(end)] == first;) ++end;
+        const int modes = end - first, places = held.end(first) - held.begin(first);
+        const auto z = [&](int mode, int place) {
+            return Eigen::Map<const Vector6<Real>>(held.value.data() + held.begin(first + mode) + place);
+        };
+        const auto body = [&](int place) {
+            return held.row[static_cast<std::size_t>(held.begin(first) + place)] / 6;
+        };
+        Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(modes, modes), sizes = Q;
+        for (int i = 0; i < places; i += 6)
+            for (int j = 0; j < places; j += 6) {
+                const int at = M.block_at(body(i), body(j));
+                if (at < 0) continue;
+                const Eigen::Map<const Matrix6<Real>> K(M.values.data() + at);
+                for (int a = 0; a < modes; ++a)
+                    for (int b = 0; b < modes; ++b) {
+                        Q(a, b) += static_cast<double>(z(a, i).dot(K * z(b, j)));
+                        sizes(a, b) +=
+                            static_cast<double>(z(a, i).cwiseAbs().dot(K.cwiseAbs() * z(b, j).cwiseAbs()));
+                    }
+            }
+        if (!Q.allFinite()) continue;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver((Q + Q.transpose()) / 2,
+                                                                    Eigen::EigenvaluesOnly);
+        if (solver.eigenvalues()[0] < -several * epsilon * sizes.norm())
+            least = std::min(least, solver.eigenvalues()[0]);
+    }
+    return least;
+}
+
+// The least stiffness of an idle motion at the equilibrium near (q, λ), whose consistent matrix is in the system and
+// factorised, where what acts pushes it over: below a millionth of the forces over L, which what is left out of balance of
+// them comes to, and that of the equilibrium itself. Else 0. The system is left factorised, there or here.
+template <class Real>
+double pushed_over(March<Real>& s, const State<Real>& near, const Vector<Real>& lambda_near) {
+    constexpr int corrections = 3;
+    constexpr double noticed = 1e-6;
+    if (s.system.held.idle == 0 || sizeof(Real) < sizeof(double) || !has_energy(s.model, s.branch)) return 0;
+    const auto least = [&](const State<Real>& q) {
+        const double stiffness = least_of_idle(s);
+        if (!(stiffness < 0)) return 0.;
+        external_force<Real>(s.model, s.branch, s.inputs, q, s.upper);
+        elastic_force<Real>(s.model, s.inputs, q, s.force);
+        const Real acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
+        return stiffness < -noticed * static_cast<double>(acts) / s.length ? stiffness : 0.;
+    };
+    if (!(least(near) < 0)) return 0;
+    const Counts counts = s.counts;  // judges, finds nothing: not counted
+    State<Real> q = near;
+    Vector<Real> lambda = lambda_near;
+    bool there = true;
+    for (int k = 0; k < corrections && there; ++k) {
+        residual_at(s, q, lambda);
+        back_substitute(s);
+        there = s.x.allFinite();
+        s.dq = s.x.head(s.n());
+        advance(q, s.dq);
+        lambda += s.x.tail(s.m());
+        there = there && factorise_at(s, q, lambda) == Outcome::converged;
+    }
+    s.counts = counts;
+    return there ? least(q) : 0;
+}
+
+}  // namespace elastocheck::recursive
