@@ -247,19 +247,67 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points, const
 
 // ---- What is left out.
 
-// "branch 'jounce' past 1500 N"
-void tell_what_is_missing(const Branch& branch, const CandidateBranch& given,
-                          std::vector<std::string>& list) {
-    const double unit = in_unit(given.unit), length = unit * std::abs(branch.to - branch.from);
-    if (std::isnan(given.from)) return;
-    const double from = unit * std::min(branch.from, branch.to), to = unit * std::max(branch.from, branch.to);
+// What points at these places leave out of a way between: its ends, and what is wider than a quarter of it between two.
+// " from 0 to 1500 N", "" where it is nothing.
+std::string left_out(std::vector<double> at, double low, double high, std::string_view unit) {
+    constexpr double widest = 0.25;
+    const double length = high - low;
+    std::ranges::sort(at);
     std::string parts;
-    if (given.from - from > part_left * length)
-        parts += fmt::format(" from {:.6g} to {:.6g} {}", from, given.from, symbol(given.unit));
-    if (to - given.to > part_left * length)
-        parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and", given.to, to,
-                             symbol(given.unit));
-    if (!parts.empty()) list.push_back(fmt::format("branch '{}'{}", branch.name, parts));
+    const auto tell = [&](double from, double to, double share) {
+        if (to - from > share * length)
+            parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and", from + 0.0,
+                                 to + 0.0, unit);
+    };
+    tell(low, at.empty() ? high : at.front(), part_left);
+    for (std::size_t k = 1; k < at.size(); ++k) tell(at[k - 1], at[k], widest * (1 + part_left));
+    if (!at.empty()) tell(at.back(), high, part_left);
+    return parts;
+}
+
+// Of what is judged, column by column; by one reading or the other. "branch 'jounce' from 1500 to 3000 N",
+// "camber on branch 'jounce' from 1500 to 3000 N"
+void tell_what_is_missing(const Branch& branch, const BranchComparison& of, const CandidateBranch& given,
+                          const CandidateJudgement& judgement, const std::vector<Channel>& channels,
+                          std::vector<std::string>& list) {
+    const double unit = in_unit(of.unit);
+    const auto missing = [&](std::size_t c) {
+        std::optional<std::string> least;
+        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+            const auto& reading = given.reading(kind);
+            if (reading.columns.empty()) continue;
+            double low = unit * std::min(branch.from, branch.to),
+                   high = unit * std::max(branch.from, branch.to);
+            std::string_view in = symbol(of.unit);
+            if (kind == ReadingKind::equal_abscissa) {
+                const auto abscissa = static_cast<std::size_t>(of.abscissa);
+                const auto travel = truth_of(of).channel(abscissa);
+                low = std::ranges::min(travel), high = std::ranges::max(travel);
+                in = symbol(channels[abscissa].unit);
+                if (!(high - low >= least_travel)) continue;
+            }
+            std::vector<double> at;
+            for (std::size_t k = 0; k < reading.at.size(); ++k)
+                if (!std::isnan(reading.candidate[c][k])) at.push_back(reading.at[k]);
+            const std::string parts = left_out(std::move(at), low, high, in);
+            if (!least || parts.empty()) least = parts;
+        }
+        return least;
+    };
+    std::vector<std::pair<std::string, std::string>> of_columns;  // name, what is missing of it
+    for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
+        const std::size_t channel = judgement.columns[c].channel;
+        if (!judgement.judged[c] || !of.determined[channel]) continue;
+        if (auto parts = missing(c)) of_columns.emplace_back(channels[channel].name, std::move(*parts));
+    }
+    if (of_columns.empty()) return;  // why nothing is compared is told
+    const bool alike = std::ranges::all_of(
+        of_columns, [&](const auto& column) { return column.second == of_columns.front().second; });
+    if (alike && !of_columns.front().second.empty())
+        list.push_back(fmt::format("branch '{}'{}", of.branch, of_columns.front().second));
+    for (const auto& [name, parts] : of_columns)
+        if (!alike && !parts.empty())
+            list.push_back(fmt::format("{} on branch '{}'{}", name, of.branch, parts));
 }
 
 void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) {
@@ -375,7 +423,6 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                 given.from = std::isnan(given.from) ? places.a[k] : std::min(given.from, places.a[k]);
                 given.to = std::isnan(given.to) ? places.a[k] : std::max(given.to, places.a[k]);
             }
-        tell_what_is_missing(model.branches[b], given, result.not_given);
         const auto objections = disagreements(model, channels, model.branches[b], of, Of::references);
         for (const auto& why : objections.texts()) result.reasons.push_back(of.branch + ": " + why);
         if (!objections.empty()) {
@@ -390,6 +437,8 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         Reference reference(model, model.branches[b], of.steps, outputs);
         given.equal_parameter = at_equal_parameter(points, candidate, result.columns, reference, of);
         given.equal_abscissa = at_equal_abscissa(points, candidate, result.columns, channels, reference, of);
+        tell_what_is_missing(model.branches[b], of, given, result, channels, result.not_given);
+        result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
         result.branches.push_back(std::move(given));
     }
 

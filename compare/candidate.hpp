@@ -111,7 +111,7 @@ struct CandidateJudgement {
     Tolerance tolerance = default_tolerance;
     bool asked = false;                     // the tolerance was given, not the default
     std::vector<std::string> reasons;       // why not judged
-    std::vector<std::string> not_given;     // branches, and parts of them
+    std::vector<std::string> not_given;     // branches, and parts of them, or of a column
     std::vector<PointColumn> columns;       // as they stand
     std::vector<bool> judged;               // per column: it counts for the verdict
     std::vector<CandidateBranch> branches;  // those that it has points on
@@ -121,6 +121,7 @@ struct CandidateJudgement {
     std::vector<Leftover> leftovers;
     std::vector<std::string> notes;
     int compared = 0;  // numbers
+    int outside = 0;   // points where the reference does not come
 };
 
 // Throws std::invalid_argument for points that cannot be placed (points.hpp).

@@ -140,6 +140,14 @@ Vector3d on_the_road(const Wheels& wheels, std::size_t w, const Axis& axis) {
     const Vector3d patch = wheels.at(wheels.patch(w));
     return axis.through + axis.n * (patch.z() - axis.through.z()) / axis.n.z() - patch;
 }
+// Across the wheel, outwards, and along it, forwards: both on the road, turned as the wheel is steered.
+Vector3d across(const Wheels& wheels, std::size_t w) {
+    const Vector3d e = wheels.spin(w);
+    return Vector3d(e.x(), e.y(), 0).normalized();
+}
+Vector3d along(const Wheels& wheels, std::size_t w) {
+    return wheels.side(w) * across(wheels, w).cross(Vector3d::UnitZ());
+}
 
 // The car body rolls by 1 rad towards this wheel of an axle, the wheels on the road: this one rises by half the track,
 // the other goes down by as much.
@@ -366,33 +374,32 @@ const std::array table{
               return axis ? std::atan2(-x.side(w) * axis->n.y(), axis->n.z()) : undefined;
           }},
     Entry{Of::steered_wheel, "scrub_radius_steered", Unit::mm,
-          "lateral distance on the road from the same axis to the contact patch, positive where the axis "
-          "meets the road "
-          "inboard of the patch",
+          "across the wheel, from the contact patch to where the same axis meets the road, positive where "
+          "that is inboard",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? -x.side(w) * on_the_road(x, w, *axis).y() : undefined;
+              return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{Of::steered_wheel, "mechanical_trail_steered", Unit::mm,
-          "longitudinal distance on the road from the contact patch to the same axis, positive where the "
-          "axis meets the road "
-          "ahead of the patch",
+          "along the wheel, from the contact patch to where the same axis meets the road, positive where "
+          "that is in front",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? on_the_road(x, w, *axis).x() : undefined;
+              return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{
         Of::front_wheel, "anti_dive", Unit::percent,
-        "brake_share · wheelbase / cg_height · how far the contact patch goes forward over travel: what the "
+        "brake_share · wheelbase / cg_height · how far the contact patch goes forward over how far it rises: "
+        "what the "
         "links carry of "
         "the load that braking shifts; positive where they hold the nose up",
         no_vertical,
         [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, 1); }},
     Entry{Of::front_wheel, "anti_lift", Unit::percent,
           "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes "
-          "forward over travel; "
+          "forward over how far it rises; "
           "positive where the links hold the nose down as the axle drives",
           no_vertical,
           [](const Wheels& x, std::size_t w) {
@@ -400,14 +407,15 @@ const std::array table{
           }},
     Entry{
         Of::rear_wheel, "anti_lift", Unit::percent,
-        "brake_share · wheelbase / cg_height · how far the contact patch goes back over travel: what the "
+        "brake_share · wheelbase / cg_height · how far the contact patch goes back over how far it rises: "
+        "what the "
         "links carry of the "
         "load that braking shifts; positive where they hold the tail down",
         no_vertical,
         [](const Wheels& x, std::size_t w) { return anti(x, x.patch(w), x.model.vehicle->brake_share, -1); }},
     Entry{Of::rear_wheel, "anti_squat", Unit::percent,
           "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the patch) goes "
-          "back over travel; "
+          "back over how far it rises; "
           "positive where the links hold the tail up as the axle drives",
           no_vertical,
           [](const Wheels& x, std::size_t w) {

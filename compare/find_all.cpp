@@ -67,10 +67,10 @@ std::vector<Pose> at_random(std::vector<Pose> poses, double size, std::minstd_ra
     return poses;
 }
 
-void measure(const Model& model, const Equilibrium& from, FoundEquilibrium& found) {
+void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium& found) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const double length = (found.state.poses[b].r - from.poses[b].r).norm(),
-                     angle = found.state.poses[b].p.angularDistance(from.poses[b].p);
+        const double length = (found.state.poses[b].r - from[b].r).norm(),
+                     angle = found.state.poses[b].p.angularDistance(from[b].p);
         if (length > found.length || found.body.empty())
             found.length = length, found.body = model.bodies[b].name;
         found.angle = std::max(found.angle, angle);
@@ -114,14 +114,18 @@ bool is_other_way_round(const Model& model, const Equilibrium& state) {
 }
 
 std::string meaning_of(const AllEquilibria& all, const FoundEquilibrium& one) {
-    const bool branch_arrives = all.outcome == Outcome::converged;
     const std::string away = fmt::format("{:.4g} mm away ('{}')", 1e3 * one.length, one.body);
     if (one.on_branch)
         return one.stable ? "the branch as it is walked"
                           : "on the branch as it is walked, and unstable there";
+    if (!all.begins)
+        return fmt::format("{}, {} from the drawing, from which no branch begins",
+                           one.stable ? "stable" : "unstable", away);
     if (!one.stable) return fmt::format("unstable, {}: what is pushed past it does not come back", away);
-    if (branch_arrives) return fmt::format("another stable equilibrium, {}: it can snap over to it", away);
-    return fmt::format("stable, {} from where the branch ends: it may snap over to it there", away);
+    if (all.outcome == Outcome::converged)
+        return fmt::format("another stable equilibrium, {}: it can snap over to it", away);
+    return fmt::format("stable, {} from where the branch ends: it may {} it there", away,
+                       all.outcome == Outcome::limit_point ? "snap over to" : "go over to");
 }
 
 }  // namespace
@@ -195,15 +199,13 @@ AllEquilibria find_all(const Model& model, const Branch& branch, double a, const
         }
     }
 
-    const Equilibrium* from = arrives && !all.list.empty() ? &path.points.back()
-                              : path.points.empty()        ? nullptr
-                                                           : &path.points.back();
+    all.begins = !path.points.empty();
     all.proved = !all.list.empty();
     for (auto& one : all.list) {
         say("proof");
         one.proof = reference::certificate::certify(way.model, way.branch, one.state);
         all.proved &= one.proof.answer == Answer::proved;
-        if (from != nullptr) measure(way.model, *from, one);
+        measure(way.model, reached, one);
         one.meaning = meaning_of(all, one);
     }
     for (std::size_t i = 0; i < all.list.size(); ++i)

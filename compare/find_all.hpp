@@ -37,7 +37,8 @@ struct FoundEquilibrium {
     bool stable = false;     // by the sign of its least stiffness
     double stiffness = 0;    // the least of what is free and resisted, scaled by the leg
     bool on_branch = false;  // as it is walked from the design position
-    // From the branch's own equilibrium, or from the last before its end: the place that is farthest.
+    // From the branch's own equilibrium, or from the last before its end, or, where none begins, from the drawing: the
+    // place that is farthest.
     double length = 0;      // [m]
     double angle = 0;       // [rad]
     std::string body = {};  // that moves so far
@@ -50,6 +51,7 @@ struct AllEquilibria {
     double a = 0;                          // SI
     Outcome outcome = Outcome::converged;  // of the branch on its way to a, by the equilibrium leg
     std::string detail = {};
+    bool begins = true;  // the branch: its first point is a stable equilibrium
     std::vector<FoundEquilibrium> list = {};  // that of the branch first, then the nearest
     int other_way_round = 0;  // equilibria with a joint put together the other way round: not in the list
     int turned_over = 0;      // ... with a body turned by more than FindOptions::turn: neither

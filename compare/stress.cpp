@@ -172,6 +172,7 @@ Claim claim_of(const Solver& solver, const ErrorBound& account, double size) {
     if (std::isfinite(account.length) && std::isfinite(account.angle)) return {account};
     const ErrorBound rounding = exact(size);
     if (is_reference(solver)) return {rounding, false};
+    if (solver.gait.account) return {};  // of a point without one nothing is promised, and that is said
     return std::visit(overloaded{[&](const recursive::Adaptive& told) -> Claim {
                                      return {{std::max(told.length_tolerance, rounding.length),
                                               std::max(told.angle_tolerance, rounding.angle)}};

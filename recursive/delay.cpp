@@ -102,19 +102,33 @@ double delayed_stiffness(const Model& model, const Branch& branch, const Method&
     return largest(s, G);
 }
 
+// Between two points of the true branch, looked for again on the way to the second until they are near each other beside how
+// far that is: then the line between is as good as the few digits of it that anybody needs.
 std::optional<double> stability_limit(const Model& model, const Branch& branch, const Method& method,
                                       const Analysis& analysis) {
-    constexpr int points = 64;
+    constexpr int points = 64, passes = 24;
+    constexpr double near = 1. / 32;
     if (!std::holds_alternative<Linear>(method.kind)) return std::nullopt;
-    const EquilibriumPath path =
-        solve(model, branch, {.method = find_method("adaptive").value(), .steps = points}, analysis);
-    double before = 0, at = 0;
-    for (const Equilibrium& point : path.points) {
-        const double now = delayed_stiffness(model, branch, method, analysis, point);
-        if (now >= 1)
-            return now > before ? at + (1 - before) / (now - before) * (point.load - at) : point.load;
-        before = now;
-        at = point.load;
+    Branch way = branch;
+    for (int pass = 0; pass < passes; ++pass) {
+        const EquilibriumPath path =
+            solve(model, way, {.method = find_method("adaptive").value(), .steps = points}, analysis);
+        double before = 0, at = 0;
+        const Equilibrium* beyond = nullptr;
+        double now = 0;
+        for (const Equilibrium& point : path.points) {
+            now = delayed_stiffness(model, branch, method, analysis, point);
+            if (now >= 1) {
+                beyond = &point;
+                break;
+            }
+            before = now;
+            at = point.load;
+        }
+        if (beyond == nullptr || beyond->load == 0) return beyond ? std::optional(0.) : std::nullopt;
+        if (std::abs(beyond->load - at) <= near * std::abs(beyond->load))
+            return at + (1 - before) / (now - before) * (beyond->load - at);
+        way.to = beyond->load;
     }
     return std::nullopt;
 }

@@ -123,7 +123,7 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
                    }},
         disturbance);
     if (outcome == Outcome::loaded_idle_mode)
-        return what + " pushes what nothing resists: " + idle_modes(diagnosis);
+        return what + " pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
     if (outcome == Outcome::inconsistent_constraints)
         return what + " would open joints that hold the same twice";
     return what;

@@ -124,17 +124,21 @@ Outcome settle_truly(March<Real>& s) {
             }
         }
     }
-    // To round-off: corrections fall quadratically until they are it.
+    // To round-off: corrections fall quadratically until they are it. Where they begin stiffly they need not fall at once,
+    // and what does not come to rest has not settled.
+    constexpr int most = 24;
     const Real enough = 100 * std::numeric_limits<Real>::epsilon() * length;
+    const Real rest = std::max(Real(1e-6) * length, 1000 * enough);
     Real before = std::numeric_limits<Real>::infinity();
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0;; ++k) {
         Real unused = 0;
         if (const Outcome outcome =
                 correct(s, Going<Real>{Drive::start, length, Real(1)}, node.q, node.lambda, Real(1), unused);
             outcome != Outcome::converged)
             return outcome;
         const Real size = std::sqrt(size_of_solution(s));
-        if (size <= enough || !(size < before)) break;
+        if (size <= enough || (size <= rest && !(size < before))) break;
+        if (k == most) return Outcome::branch_lost;
         before = size;
     }
     if (says_twice(s)) {

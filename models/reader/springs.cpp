@@ -65,7 +65,7 @@ std::vector<Elastic> read_spring(const std::string& name, const Cursor& at, cons
         {"bodies", "from", "to", "rate", "curve", "free_length", "preload", "bump_stop", "rebound_stop"});
     const AxialSpring ends = read_ends(at, defs);
     AxialSpring spring = ends;
-    spring.law = read_law(at, of_lengths(defs.units), defs);
+    spring.law = read_law(at, of_springs(defs.units), defs);
     spring.free_length = free_length(at, ends.free_length, spring.law, defs.units);
     std::vector<Elastic> result{{name, spring}};
     add_stops(name, at, ends, "bump_stop", "rebound_stop", defs, result);

@@ -119,7 +119,13 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const
         const PropertyFile file = parse_property_file(text, file_name);
         const PropertyBlock* curve = file.find("CURVE");
         if (!curve) fail(file_name, 0, "CURVE", "missing: there is no curve in this file");
-        return curve_rows(file, *curve, file.length, file.force);
+        auto rows = curve_rows(file, *curve, file.length, file.force);
+        // F = AKISPL(free length - DM(I, J)), and here f(ℓ - ℓ₀), tension positive.
+        if (units.of_spring && file_name.ends_with(".spr")) {
+            for (auto& row : rows) row = {-row.x, -row.f};
+            std::ranges::reverse(rows);
+        }
+        return rows;
     }
     if (!is_utf8(text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
     const Value table = rows_of(text);
@@ -130,6 +136,7 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const
 }  // namespace
 
 LawUnits of_lengths(const Units& units) { return {units.length, units.force, units.rate}; }
+LawUnits of_springs(const Units& units) { return {units.length, units.force, units.rate, true}; }
 LawUnits of_angles(const Units& units) { return {units.angle, units.moment, units.rotational_rate}; }
 
 std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at, const Definitions& defs) {

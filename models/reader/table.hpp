@@ -13,7 +13,10 @@ namespace elastocheck::reader {
 // What a law relates, and the units of its numbers.
 struct LawUnits {
     Unit deflection, force, rate;
+    bool of_spring =
+        false;  // whose property file (.spr) counts what it is shorter by, and what pushes its ends apart
 };
+LawUnits of_springs(const Units& units);  // of lengths
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 

@@ -47,8 +47,10 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
         const std::string by =
             branch.abscissa < 0 ? "" : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
         const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
+        const bool hardly = w.max > w.tolerance && w.max < 1.1 * w.tolerance;  // seen to
         const std::string size = std::isnan(w.max) ? "a number that is none"
                                  : w.max < 1e-9    ? "nothing"
+                                 : hardly          ? fmt::format("{:.6g} {}", w.max, symbol(w.unit))
                                                    : quantity(w.max, symbol(w.unit));
         text += fmt::format(
             "{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size, spaced(w.channel), w.branch,
@@ -91,12 +93,31 @@ void leftover_line(const compare::Leftover& left, std::string& text) {
     if (!left.why_not.empty()) text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
 }
 
+// What the states leave in the equilibrium leg's balance, at most [N], [N·m]; 0 of none, and of what is no number.
+std::pair<double, double> imbalance(const CandidateJudgement& j) {
+    double force = 0, moment = 0;
+    for (const auto& left : j.leftovers)
+        for (const auto& of : left.truth)
+            force = std::max(force, of.force), moment = std::max(moment, of.moment);
+    return {force, moment};
+}
+
 }  // namespace
 
 std::string sentence(const CandidateJudgement& j, const compare::Comparison& comparison) {
     const std::string who = fmt::format("the candidate ‘{}’", j.name);
-    const std::string partly =
+    std::string partly =
         j.not_given.empty() ? "" : fmt::format(" It does not give {}.", joined(j.not_given, 3));
+    if (j.outside > 0)
+        partly += fmt::format(" {} of its points {} where the full solution does not come.", j.outside,
+                              j.outside == 1 ? "lies" : "lie");
+    // Forces are judged where they have a tolerance; a state that is none in balance is no solution, asked or not.
+    constexpr double balanced = 1e-2;  // [N], [N·m]: of poses right to the last digit
+    const auto [force, moment] = imbalance(j);
+    const bool in_balance = !(force > balanced) && !(moment > balanced);
+    if (!in_balance)
+        partly +=
+            fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.", force, moment);
     const std::string hints = j.said.empty() ? "" : fmt::format(" {}.", joined(j.said, 4));
     switch (j.verdict) {
         case Grade::not_judged:
@@ -105,7 +126,8 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "",
                 hints);
         case Grade::pass:
-            if (std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max < 1e-9; }))
+            if (in_balance &&
+                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max < 1e-9; }))
                 return fmt::format(
                     "Pass: {} is the full solution{}, within the arithmetic; the tolerance is {}.{}", who,
                     j.not_given.empty() ? "" : " where it says something", tolerance_of(j), partly);

@@ -53,6 +53,12 @@ std::string sentence(const compare::CertifyStudy& study) {
     }
     if (study.conclusive())
         return fmt::format("Proved: all {} points are equilibria to {}.", points, claim(study.tolerance));
+    if (points == 0) return "Not proved: no point was found.";
+    if (proved == points)
+        return fmt::format(
+            "Not all is proved: {} that were found {} to {}, and some was not found, or not judged.",
+            points == 1 ? "the one point" : fmt::format("all {} points", points),
+            points == 1 ? "is an equilibrium" : "are equilibria", claim(study.tolerance));
     return fmt::format("Not all is proved: {} of {} points are equilibria to {}, the others are open.",
                        proved, points, claim(study.tolerance));
 }

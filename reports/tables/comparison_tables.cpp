@@ -221,6 +221,13 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
             fmt::format_to(out, " in {} steps, compared after each {} of a way", branch.steps, branch.every);
         else if (!steps.empty())
             fmt::format_to(out, " in {} steps", steps.size() - 1);
+        if (!steps.empty()) {  // in the order of the parameter
+            const auto [low, high] = std::ranges::minmax(steps);
+            const double length = unit * std::abs(definition.to - definition.from), rounding = 1e-9 * length;
+            if (high - low < length - rounding)
+                fmt::format_to(out, ", reached from {:g} to {:g} {}", low, high,
+                               symbol(branch.unit));
+        }
         const auto& reference = branch.runs[1].curve;
         if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
             const auto c = static_cast<std::size_t>(branch.abscissa);

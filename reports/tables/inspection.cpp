@@ -170,7 +170,7 @@ std::string inspection(const Inspected& inspected) {
     }
     rest(d.redundant.size(), "joints");
     if (d.redundant.empty()) line("  none");
-    line("\nidle modes (nothing resists them; they are held, and reported here)");
+    line("\nidle modes (as drawn no joint and no rate resists them; they are held, and reported here)");
     const auto idle = recursive::told_idle_modes(d);
     for (const auto& mode : std::span(idle).first(shown(idle.size()))) line("  {}", mode);
     rest(idle.size(), "modes");

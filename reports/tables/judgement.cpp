@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "reports/page/numbers.hpp"
 
@@ -27,9 +28,14 @@ std::string subject(const Assessment& j) {
     return fmt::format("the recursion by method ‘{}’", j.method);
 }
 
-std::string size(const Worst& worst) {
+// `limit`: what it was to be within, so that what breaks it by little is seen to.
+std::string size(const Worst& worst, double limit) {
     if (std::isnan(worst.max)) return "a number that is none";
-    return worst.max < nothing ? "nothing" : quantity(worst.max, symbol(worst.unit));
+    if (worst.max > limit && worst.max < 1.1 * limit)
+        return fmt::format("{:.6g} {}", worst.max, symbol(worst.unit));
+    if (worst.max < nothing)
+        return worst.max > limit ? fmt::format("{:.1e} {}", worst.max, symbol(worst.unit)) : "nothing";
+    return quantity(worst.max, symbol(worst.unit));
 }
 
 std::string asked(const Assessment& j) {
@@ -40,13 +46,19 @@ std::string asked(const Assessment& j) {
     return text + (j.asked ? "" : " (the default)");
 }
 
-// "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)"
+// "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)", by whichever reading is worse.
 std::string worst_of(const Assessment& j) {
     std::string text;
-    for (const auto* worst : {&j.position, &j.angle})
-        if (*worst)
-            text += fmt::format("{}{} ({}, branch {})", text.empty() ? "" : " and ", size(**worst),
-                                spaced((*worst)->channel), (*worst)->branch);
+    for (const auto& [at, across, limit] : {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
+                                            std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
+        const bool crosswise =
+            *across && (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (*at)->max)));
+        const auto& worst = crosswise ? *across : *at;
+        if (worst)
+            text +=
+                fmt::format("{}{} ({}, branch {}{})", text.empty() ? "" : " and ", size(*worst, limit),
+                            spaced(worst->channel), worst->branch, crosswise ? ", at equal position" : "");
+    }
     return text;
 }
 
@@ -58,7 +70,8 @@ std::string rate_of(const Assessment& j) {
 }
 
 bool exact(const Assessment& j) {
-    return !(j.position && !(j.position->max < nothing)) && !(j.angle && !(j.angle->max < nothing)) &&
+    const auto none = [](const std::optional<Worst>& worst) { return !worst || worst->max < nothing; };
+    return none(j.position) && none(j.angle) && none(j.position_across) && none(j.angle_across) &&
            !(j.wheel_rate && !(compare::as_position(*j.wheel_rate) < nothing));
 }
 

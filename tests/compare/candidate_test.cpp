@@ -254,6 +254,51 @@ TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndWhatIsMissingIsSaid) {
     EXPECT_EQ(judgement.reasons.size(), 2u) << texts(judgement);
 }
 
+// By travel alone, in one column, between two points that are far apart, beyond the end: what is not there is never right.
+TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
+    const Candidate all = table_of(Leg::equilibrium);
+    const std::size_t travel = solved().channel("travel");
+    const auto without_loads = [&](double share) {
+        Candidate part = all;
+        part.points.a.clear();
+        part.points.abscissa = travel;
+        const auto& at = std::ranges::find(part.points.columns, travel, &PointColumn::channel)->values;
+        part.points.at = at;
+        for (std::size_t k = 0; k < at.size(); ++k)
+            if (std::abs(all.points.a[k]) > share * 3000)
+                for (auto& column : part.points.columns) column.values[k] = std::nan("");
+        return part;
+    };
+    EXPECT_TRUE(judged(without_loads(1)).not_given.empty()) << texts(judged(without_loads(1)));
+    auto judgement = judged(without_loads(0.5));
+    EXPECT_EQ(judgement.verdict, Grade::pass);
+    ASSERT_EQ(judgement.not_given.size(), 2u) << texts(judgement);
+    EXPECT_TRUE(judgement.not_given[0].starts_with("branch 'jounce' from ")) << judgement.not_given[0];
+    EXPECT_TRUE(judgement.not_given[0].ends_with(" mm"));
+
+    Candidate column = all;
+    for (std::size_t k = 0; k < all.points.a.size(); ++k)
+        if (all.points.a[k] > 750) values(column, "camber")[k] = std::nan("");
+    judgement = judged(column);
+    EXPECT_EQ(judgement.not_given, std::vector<std::string>{"camber on branch 'jounce' from 750 to 3000 N"});
+    column.complete = true;
+    EXPECT_EQ(judged(column).verdict, Grade::not_judged);
+
+    Candidate ends = all;  // both ends of every branch
+    for (std::size_t k = 0; k < all.points.a.size(); ++k)
+        if (all.points.a[k] != 0 && std::abs(all.points.a[k]) != 3000)
+            for (auto& c : ends.points.columns) c.values[k] = std::nan("");
+    EXPECT_EQ(judged(ends).not_given, (std::vector<std::string>{"branch 'jounce' from 0 to 3000 N",
+                                                                "branch 'rebound' from -3000 to 0 N"}));
+
+    Candidate beyond = all;
+    beyond.points.branch.push_back("jounce");
+    beyond.points.a.push_back(6000);
+    for (auto& c : beyond.points.columns) c.values.push_back(7);
+    EXPECT_EQ(judged(beyond).outside, 1);
+    EXPECT_EQ(judged(all).outside, 0);
+}
+
 TEST(Candidate, InWhichNothingMovesIsNotJudged) {
     Candidate candidate = table_of(Leg::equilibrium);
     const double all_over[] = {1, 2, 3, 4, 5, 6};

@@ -309,6 +309,38 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
         }
 }
 
+// About a vertical kingpin patch and axis keep their distance across and along the wheel at every angle.
+TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSteered) {
+    for (const int side : {1, -1})
+        for (const double steered : {0.0, 0.9, -0.4}) {
+            const auto turned = [&](double x, double y) {
+                return Vector3d(std::cos(steered) * x - std::sin(steered) * side * y,
+                                std::sin(steered) * x + std::cos(steered) * side * y, 0);
+            };
+            const auto point = [&](double x, double y, double z) {  // from the kingpin
+                const Vector3d r = turned(x, y);
+                return fmt::format("[{:.17g}, {:.17g}, {}]", r.x(), side * 0.7 + r.y(), z);
+            };
+            const Vector3d spin = turned(0, 1);
+            const Model model = model_of(
+                fmt::format("points: {{low: {}, up: {}, c: {}, p: {}}}\n"
+                            "bodies: {{slider: {{origin: low}}, wheel: {{origin: c}}}}\n"
+                            "joints:\n"
+                            "  lift: {{type: translational, bodies: [slider, ground], at: low, axis: z}}\n"
+                            "  kingpin: {{type: revolute, bodies: [wheel, slider], at: low, axis: [low, up], "
+                            "held: true}}\n"
+                            "springs: {{coil: {{bodies: [slider, ground], from: low, to: up, rate: 30e3}}}}\n"
+                            "branches: {{steer: {{drive: joints.kingpin, to: 0.1, steps: 2}}}}\n"
+                            "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: [{:.17g}, "
+                            "{:.17g}, 0], side: {}}}\n",
+                            point(0, 0, -0.1), point(0, 0, 0.2), point(0, 0.05, 0), point(-0.03, 0.1, -0.3),
+                            spin.x(), spin.y(), side > 0 ? "left" : "right"));
+            const Read is(model, Leg::equilibrium);
+            EXPECT_NEAR(is["scrub_radius_steered"], 100, 1e-6) << side << " " << steered;
+            EXPECT_NEAR(is["mechanical_trail_steered"], 30, 1e-6) << side << " " << steered;
+        }
+}
+
 // ---- Compliance.
 
 // One body on one bushing: what a wrench at a point at r from it does is r and K by hand.

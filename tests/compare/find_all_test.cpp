@@ -102,6 +102,22 @@ TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
     EXPECT_NE(all.list[0].meaning.find("from where the branch ends"), std::string::npos);
 }
 
+// Flat, its springs pressed: no branch begins, and what is found is where it is, not "0 mm away".
+TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
+    std::string flat = arch("-100");
+    flat.replace(flat.find("[0, 0, 80]"), 10, "[0, 0, 0]");
+    for (std::size_t at; (at = flat.find("rate: 100}")) != flat.npos;)
+        flat.replace(at, 10, "rate: 100, free_length: 310}");
+    const auto all = all_of(flat, 0);
+    EXPECT_FALSE(all.begins);
+    ASSERT_EQ(all.list.size(), 3u);
+    EXPECT_EQ(all.stable(), 2);
+    for (const auto& one : all.list) {
+        EXPECT_NEAR(one.length, one.stable ? std::sqrt(0.31 * 0.31 - 0.3 * 0.3) : 0, 1e-9);
+        EXPECT_NE(one.meaning.find("from the drawing, from which no branch begins"), one.meaning.npos);
+    }
+}
+
 // A rod upright on a torsion spring: it buckles at 100 N.
 const std::string column = R"(elastocheck: 1
 name: column

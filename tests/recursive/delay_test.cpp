@@ -32,6 +32,18 @@ TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
         }
 }
 
+TEST(Delay, LimitIsTheSameHoweverFarTheBranchIsAskedToGo) {
+    for (const double times : {1.5, 40., 3e4}) {
+        Scene scene = support::scene("pendulum");
+        for (auto& branch : scene.branches) branch.to *= times;
+        const Model model = compile(scene);
+        for (const auto& branch : model.branches)
+            EXPECT_NEAR(std::abs(stability_limit(model, branch, methods[0], analyse(model)).value_or(0)),
+                        pendulum_limit, 1)
+                << times;
+    }
+}
+
 TEST(Delay, IsSaidWhereThePublishedMethodDiverges) {
     Scene scene = support::scene("pendulum");
     scene.branches[0].to *= 2;

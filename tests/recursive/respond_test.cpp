@@ -188,7 +188,7 @@ TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
         EXPECT_EQ(response.outcome, Outcome::loaded_idle_mode) << method.name;
         EXPECT_TRUE(response.increments.empty());
         EXPECT_NE(
-            response.detail.find("a wrench on 'strut' pushes what nothing resists: strut: rotation about"),
+            response.detail.find("a wrench on 'strut' pushes what no joint and no rate resists as drawn: strut: rotation about"),
             std::string::npos)
             << response.detail;
     }

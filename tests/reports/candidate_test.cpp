@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "reports/files/child.hpp"
 #include "tests/reports/command.hpp"
@@ -45,6 +47,37 @@ TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
         const Said said = judge("--steps 10 --tolerance 1e-6mm,1e-6deg,1e-4N,1e-4Nm --candidate " + file);
         EXPECT_EQ(said.code, 0) << said.out << said.err;
     }
+}
+
+// Turned about its own axis the bar has every place that is asked, and its bushing is twisted.
+TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
+    const Folder folder;
+    const std::string states = (folder.path / "states.jsonl").string();
+    ASSERT_EQ(elastocheck_says("solve " + scenes + "/pendulum.yaml --method equilibrium --steps 8 --states " +
+                               states)
+                  .code,
+              0);
+    const auto judged = [&] {
+        return elastocheck_says("judge " + scenes + "/pendulum.yaml --steps 8 --candidate " + states);
+    };
+    EXPECT_TRUE(contains(judged().out, "is the full solution, within the arithmetic")) << judged().out;
+    std::istringstream lines(text_of(states));
+    std::string turned;
+    for (std::string line; std::getline(lines, line);) {
+        auto state = json::parse(line);
+        for (auto& body : state["bodies"]) {
+            // (w, x, y, z), then by 0.3 rad about the body's (0.8, 0.6, 0), where the bar lies
+            const auto q = body["orientation"].get<std::vector<double>>();
+            const double c = std::cos(0.15), a = 0.8 * std::sin(0.15), b = 0.6 * std::sin(0.15);
+            body["orientation"] = {q[0] * c - q[1] * a - q[2] * b, q[0] * a + q[1] * c - q[3] * b,
+                                   q[0] * b + q[2] * c + q[3] * a, q[3] * c + q[1] * b - q[2] * a};
+        }
+        turned += state.dump() + "\n";
+    }
+    std::ofstream(states) << turned;
+    const Said said = judged();
+    EXPECT_FALSE(contains(said.out, "is the full solution,")) << said.out;
+    EXPECT_TRUE(contains(said.out, "Its states are out of balance by up to ")) << said.out;
 }
 
 TEST(CandidateCommand, ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {

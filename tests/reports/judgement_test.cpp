@@ -80,6 +80,26 @@ TEST(Assessment, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
     EXPECT_TRUE(sentence(nothing).starts_with("Not judged: nothing was compared.")) << sentence(nothing);
 }
 
+TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
+    Assessment j;
+    j.verdict = Grade::fail;
+    j.tolerance = {2, 1};
+    j.position = compare::Worst{"roll", "left.wheel_centre_z", compare::Unit::mm, 1.3, 1.3, 50};
+    j.position_across = compare::Worst{"roll", "right.wheel_centre_z", compare::Unit::mm, 4.8, 4.8, 50};
+    EXPECT_TRUE(
+        contains(sentence(j), "by up to 4.8\u00a0mm (right.wheel centre z, branch roll, at equal position)"))
+        << sentence(j);
+    j.position_across->max = 1.2;
+    EXPECT_TRUE(contains(sentence(j), "1.3\u00a0mm (left.wheel centre z, branch roll)")) << sentence(j);
+    // What breaks it by little, or is next to nothing itself, is seen to.
+    j.tolerance.mm = 1.2999;
+    EXPECT_TRUE(contains(sentence(j), "by up to 1.3 mm")) << sentence(j);
+    j.position->max = 1.30004, j.tolerance.mm = 1.3;
+    EXPECT_TRUE(contains(sentence(j), "by up to 1.30004 mm")) << sentence(j);
+    j.position->max = 3e-13, j.position_across->max = 1e-13, j.tolerance.mm = 1e-300;
+    EXPECT_TRUE(contains(sentence(j), "by up to 3.0e-13 mm")) << sentence(j);
+}
+
 TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);

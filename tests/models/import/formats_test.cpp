@@ -225,6 +225,24 @@ TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     EXPECT_NEAR(stop.pieces[1][0], -2500, 1e-9);
 }
 
+// In a spring's file what it is shorter by is positive, and so is what pushes its ends apart: 3000 N at 100 mm of jounce.
+TEST(PropertyFile, ASpringPushesBackByTheSideOfItsCurveThatIsCompression) {
+    const support::Folder here;
+    here.write("p.spr",
+               "[MDI_HEADER]\nFILE_TYPE = 'spr'\n[UNITS]\nLENGTH = 'mm'\nANGLE = 'deg'\nFORCE = 'newton'\n"
+               "[SPRING_DATA]\nFREE_LENGTH = 500\n[CURVE]\n{disp force}\n-100 -1000\n0 0\n100 3000\n");
+    const Scene scene = read_scene(here.write(
+        "scene.yaml",
+        block_on + "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: p.spr}}}\n"
+                   "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
+                   "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
+    const auto& law = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
+    ASSERT_EQ(law.knots.size(), 3u);
+    EXPECT_NEAR(law.knots.front(), -0.1, 1e-15);  // 100 mm shorter ...
+    EXPECT_NEAR(law.pieces[1][0], -3000, 1e-9);   // ... where tension is positive
+    EXPECT_NEAR(law.pieces.back()[0], 1000, 1e-9);
+}
+
 TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
     const std::string sound = support::text_of(folder / "fixtures" / "mount.bus");
     const auto said = [&](const std::string& text,
