@@ -109,7 +109,11 @@ void remove_abandoned(const fs::path& file, const std::string& prefix) {
         const int left = ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (left < 0) continue;
         struct stat entry {};
-        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) && ::flock(left, LOCK_EX | LOCK_NB) == 0)
+        // Its owner may have given it its name meanwhile, and begun another by this one: then it is not what was opened.
+        struct stat now {};
+        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) && ::flock(left, LOCK_EX | LOCK_NB) == 0 &&
+            ::lstat(at->path().c_str(), &now) == 0 && now.st_ino == entry.st_ino &&
+            now.st_dev == entry.st_dev)
             ::unlink(at->path().c_str());
         ::close(left);
     }

@@ -136,6 +136,10 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                                j.not_given.empty() ? " everywhere" : " where it says something",
                                worst_of(j, comparison), partly);
         case Grade::fail:
+            if (!j.said.empty() &&
+                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max <= w.tolerance; }))
+                return fmt::format("Fail: {} is no solution: {}. The tolerance is {}.{}", who,
+                                   joined(j.said, 4), tolerance_of(j), partly);
             return fmt::format("Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}",
                                who, worst_of(j, comparison), tolerance_of(j), hints, partly);
     }

@@ -52,7 +52,7 @@ std::string worst_of(const Assessment& j) {
     for (const auto& [at, across, limit] : {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
                                             std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
         const bool crosswise =
-            *across && (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (*at)->max)));
+            *across && (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
         const auto& worst = crosswise ? *across : *at;
         if (worst)
             text +=

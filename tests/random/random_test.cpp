@@ -7,7 +7,10 @@
 
 #include "compare/random_scenes.hpp"
 #include "compare/stress.hpp"
+#include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
+#include "recursive/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -127,6 +130,22 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells)
             EXPECT_TRUE(cell.verdict != Verdict::wrong && cell.verdict != Verdict::elsewhere)
                 << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " " << cell.detail;
+    }
+}
+
+// Bushings of 2e10 N/m beside free motions: the last corrections of settling do not fall at once.
+TEST(RandomScenes, WhatHasSettledIsAtRest) {
+    const Model model = compile(parse_scene(random_scene(1708), "random.yaml"));
+    const Branch& branch = model.branches.front();
+    const double start[] = {0};
+    const auto truth = reference::equilibrium::solve(model, branch, start);
+    ASSERT_EQ(truth.outcome, Outcome::converged);
+    for (const char* method : {"tangent", "midpoint", "adaptive"}) {
+        const auto path =
+            recursive::solve(model, branch, {.method = recursive::find_method(method).value(), .steps = 20});
+        ASSERT_FALSE(path.points.empty()) << method;
+        for (std::size_t b = 0; b < model.bodies.size(); ++b)
+            EXPECT_LE((path.points[0].poses[b].r - truth.points[0].poses[b].r).norm(), 1e-9) << method;
     }
 }
 
