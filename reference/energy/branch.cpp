@@ -32,8 +32,11 @@ using Eigen::VectorXd;
 
 // Of a step, one after the other. Where a stop closes the tangent jumps, and no step over it fits both: it is taken once
 // it is negligible, which from the whole span takes some twenty.
-constexpr int halvings = 40;
-constexpr double resolution = 1e-12;       // of the parameter: smallest step
+constexpr int halvings = 26;
+constexpr double resolution = 1e-9;  // of the parameter: smallest step
+// Where a law hardly rises, so far: its beginning looks as a limit point does, until steps are shorter than what it rises by.
+constexpr int more_halvings = 40;
+constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 constexpr double look =
     1e-3;  // of the span: an instability that comes and goes within this is not looked for
@@ -126,6 +129,24 @@ Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
     return left * largest(t) >= still_there * walk.first_tangent && largest(t) > 0
                ? Failure{Outcome::limit_point, turns_back}
                : Failure{Outcome::dividing_point, divides};
+}
+
+// Whether a law has a slope somewhere that is a thousandth of its steepest, and not none.
+bool hardly_rises(const Model& model) {
+    constexpr double hardly = 1e-3;
+    const auto flattens = [](const ScalarLaw& law) {
+        const auto* curve = std::get_if<Curve>(&law);
+        if (curve == nullptr) return false;
+        double steepest = 0;
+        for (const auto& piece : curve->pieces) steepest = std::max(steepest, piece[1]);
+        return std::ranges::any_of(
+            curve->pieces, [&](const auto& piece) { return piece[1] > 0 && piece[1] < hardly * steepest; });
+    };
+    return std::ranges::any_of(model.elastics, [&](const auto& element) {
+        if (const auto* spring = std::get_if<AxialSpring>(&element.kind)) return flattens(spring->law);
+        const auto* axes = std::get_if<PerAxis>(&std::get<Bushing>(element.kind).law);
+        return axes != nullptr && std::ranges::any_of(axes->axis, flattens);
+    });
 }
 
 Attempt lost(Attempt attempt, const char* why) {
@@ -268,6 +289,9 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         walk.stride = 0.5 * std::abs(h);
         if (++halved <= halvings && walk.stride > smallest) continue;
+        if (halved <= more_halvings && walk.stride > finest / resolution * smallest &&
+            hardly_rises(path.model))
+            continue;
         // Where a bushing's law ends, that is the reason.
         const bool may_be_spent =
             attempt.failure->outcome == Outcome::iteration_limit ||
