@@ -51,7 +51,7 @@ struct AllEquilibria {
     double a = 0;                          // SI
     Outcome outcome = Outcome::converged;  // of the branch on its way to a, by the equilibrium leg
     std::string detail = {};
-    bool begins = true;  // the branch: its first point is a stable equilibrium
+    bool begins = true;                       // the branch: its first point is a stable equilibrium
     std::vector<FoundEquilibrium> list = {};  // that of the branch first, then the nearest
     int other_way_round = 0;  // equilibria with a joint put together the other way round: not in the list
     int turned_over = 0;      // ... with a body turned by more than FindOptions::turn: neither

@@ -451,7 +451,8 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
             return at + ": another curve of equilibria crosses the branch, which is unstable past this point";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         case Outcome::loaded_idle_mode:
-            return at + ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
+            return at +
+                   ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
         default: return at;
     }
 }
