@@ -47,7 +47,8 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                                              : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail += ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
+            detail +=
+                ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
             break;
         case Outcome::singular:
             detail += ": the branch divides, turns back or loses its stability before";

@@ -34,8 +34,8 @@ using Eigen::VectorXd;
 // it is negligible, which from the whole span takes some twenty.
 constexpr int halvings = 26;
 constexpr double resolution = 1e-9;  // of the parameter: smallest step
-// Where a law hardly rises, so far: its beginning looks as a limit point does, until steps are shorter than what it rises by.
-constexpr int more_halvings = 40;
+// Where a law hardly rises its beginning looks as a limit point does, until steps are shorter than what it rises by. Elsewhere
+// they would only make a limit point dearer.
 constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 constexpr double look =
@@ -288,9 +288,9 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
             return Failure{Outcome::loaded_idle_mode, "a motion that nothing resists is pushed by the load"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         walk.stride = 0.5 * std::abs(h);
-        if (++halved <= halvings && walk.stride > smallest) continue;
-        if (halved <= more_halvings && walk.stride > finest / resolution * smallest &&
-            hardly_rises(path.model))
+        if (++halved <= halvings &&
+            (walk.stride > smallest ||
+             (walk.stride > finest / resolution * smallest && hardly_rises(path.model))))
             continue;
         // Where a bushing's law ends, that is the reason.
         const bool may_be_spent =

@@ -28,7 +28,8 @@ CLI::Validator one_of(const std::vector<std::string>& words);  // "words publish
 CLI::Validator such_as(
     const std::vector<std::string>& words);  // the same, and others: checked by whoever uses them
 
-// A number from `low` to `high`, which may be infinite though no number is, with a point whatever the locale: CLI11 itself asks that for its comma.
+// A number from `low` to `high`, which may be infinite though no number is, with a point whatever the locale: CLI11 itself
+// asks that for its comma.
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& number, double low, double high,
                         const std::string& text);
 

@@ -225,8 +225,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
             const auto [low, high] = std::ranges::minmax(steps);
             const double length = unit * std::abs(definition.to - definition.from), rounding = 1e-9 * length;
             if (high - low < length - rounding)
-                fmt::format_to(out, ", reached from {:g} to {:g} {}", low, high,
-                               symbol(branch.unit));
+                fmt::format_to(out, ", reached from {:g} to {:g} {}", low, high, symbol(branch.unit));
         }
         const auto& reference = branch.runs[1].curve;
         if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
