@@ -17,13 +17,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double digits = 16;       // c: how many roundings meet in one stored force
-constexpr double no_force = 1e-12;  // [N]: where nothing acts, less than this is nothing
-constexpr double metre = 1;         // the least size that a length is a share of
+constexpr double digits = 16;       // c: number of roundings that add up in one stored force
+constexpr double no_force = 1e-12;  // [N]: smaller forces count as zero
+constexpr double metre = 1;         // least size for the share of a length
 
 double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
-// ---- What the laws say, one function each: the force of a deformation, and the largest stiffness.
+// ---- Elastic laws, one function each: the force at a deformation, and the largest stiffness.
 
 Vector6 force(const LinearStiffness& u, const Vector6& e) { return u.K * e; }
 Vector6 force(const PerAxis& u, const Vector6& e) {
@@ -32,7 +32,7 @@ Vector6 force(const PerAxis& u, const Vector6& e) {
         F[static_cast<Eigen::Index>(k)] = compare::force(u.axis[k], e[static_cast<Eigen::Index>(k)]);
     return F;
 }
-// [N/m]: turning the lever L by an angle moves its end by L times that.
+// [N/m]: rotating the lever L by an angle moves its end by L times the angle.
 double stiffness(const LinearStiffness& u, double L) {
     const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
                  K_R = u.K.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff(),
@@ -77,7 +77,7 @@ double acting(const LoadKind& load, double factor, double L) {
                       load);
 }
 
-// Where something is attached, at the design pose.
+// Attachment points in the design position.
 std::vector<Vector3d> attachments(const Model& model) {
     std::vector<Pose> design;
     for (const auto& body : model.bodies) design.push_back(body.design);
@@ -103,7 +103,8 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
         reach = larger(reach, p.norm());
     }
     const double size = box.isEmpty() ? 0 : box.diagonal().norm();
-    constexpr double at_one_place = 1e-12;  // of the coordinates: nothing but rounding is between
+    // of the coordinates: only rounding separates the points
+    constexpr double at_one_place = 1e-12;
     scale.length = size > at_one_place * reach ? size : metre;
     const double L = scale.length;
 

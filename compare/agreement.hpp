@@ -1,14 +1,14 @@
-// When two references count as one truth: bounds that follow from what acts on a branch and how large the
-// model is, never absolute ones.
+// Agreement bounds of the two references: scaled by the acting forces and the size of the model,
+// never absolute.
 //
-// A leg solves its equations to a share of the forces that act, F: the largest of the loads, the reactions
-// and what the elastic elements store. It cannot do better than the last digit of a position is worth: with
-// the largest stiffness k and the largest coordinate X, a position is known to ε X and a stored force to ε k
-// X. A force is bounded by
+// A leg solves its equations to a share of the acting force F: the largest of the loads, the
+// reactions and the elastic forces. Rounding of the positions sets a floor: with the largest
+// stiffness k and the largest coordinate X, a position is known to ε X and a stored force to ε k X.
+// The bounds are
 //
-//   share · F + c ε k X,          a moment by that times L, the size of the model,
-//
-// a length by its share of L, but no less than of a metre.
+//   force    share · F + c ε k X
+//   moment   the force bound times L, the size of the model
+//   length   share of L, or of one metre where L is less
 #pragma once
 
 #include <span>
@@ -20,11 +20,12 @@
 namespace elastocheck::compare {
 
 struct Agreement {
-    double length = 1e-9;            // of L: the references' positions apart
-    double angle = 1e-6;             // [deg]
-    double wrench = 1e-7;            // of F: reactions apart
-    double residual_force = 2e-9;    // of F: what each reference's states leave in the other's balances
-    double residual_length = 1e-11;  // of L: ... in the other's constraints
+    double length = 1e-9;  // of L: distance between the positions of the references
+    double angle = 1e-6;   // [deg]
+    double wrench = 1e-7;  // of F: difference of the reactions
+    // of F: residual of one reference's states in the other's balance equations
+    double residual_force = 2e-9;
+    double residual_length = 1e-11;  // of L: likewise, residual of the constraints
 };
 
 struct Scale {
@@ -33,10 +34,10 @@ struct Scale {
     double round_off = 0;  // ε k X [N]
 };
 
-// Of a branch: model and states as a leg has them there.
+// Scale of a branch, from the states of one leg on its model.
 Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilibrium> states);
 
-// Of all states, from that of some and that of the others of one model.
+// The larger of two scales of one model, entry by entry.
 Scale larger(const Scale& a, const Scale& b);
 
 struct Bounds {
@@ -49,7 +50,8 @@ struct Bounds {
 };
 Bounds bounds_of(const Agreement& agreement, const Scale& scale);
 
-// "positions to 1e-06 mm, angles to 1e-06 deg, reactions to 0.0003 N and 0.00015 N·m, balances to ... "
+// "positions to 1e-06 mm, angles to 1e-06 deg, reactions to 0.0003 N and 0.00015 N·m, balances to
+// ... "
 std::string describe(const Bounds& bounds);
 
 }  // namespace elastocheck::compare

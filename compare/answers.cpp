@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A plane that carries a point of a wheel, and stands only where it is driven.
+// A jack: a plane that carries a point of a wheel and is active only where driven.
 bool is_jack(const Model& model, std::size_t joint) {
     const ModelJoint& j = model.joints[joint];
     return j.only_where_driven && j.j == ground &&
@@ -30,12 +30,13 @@ bool is_jack(const Model& model, std::size_t joint) {
            });
 }
 
-// A tyre that stands: what resists d_z alone between ground and a wheel, and stands only where it is driven.
+// A tyre: a bushing between ground and a wheel with stiffness in d_z only, active only where
+// driven.
 const Bushing* tyre(const Elastic& elastic) {
     return elastic.only_where_driven ? std::get_if<Bushing>(&elastic.kind) : nullptr;
 }
 
-// What a tyre exerts on its wheel, upright [N].
+// Vertical force of a tyre on its wheel [N].
 double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch, const Equilibrium& state) {
     double stress = tyre.preload.z();
     for (const auto& driver : branch.drivers)
@@ -78,7 +79,7 @@ Stand freed(const Way& way, const Equilibrium& state) {
     return free;
 }
 
-// Jacks under the first wheels, each at the height where the wheel's centre is.
+// Adds jacks under the first wheels, each at the height of its wheel's centre.
 Stand jacked_up(Stand stand, std::size_t wheels) {
     for (const Wheel& wheel : std::span(stand.model.wheels).first(wheels)) {
         const Point centre{wheel.body, wheel.centre_local};

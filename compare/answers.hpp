@@ -1,15 +1,17 @@
-// How a state answers small changes at its wheels, by one leg: what kinematics and compliance are read from.
+// Response of a state to small changes at its wheels, by one leg: input of the kinematics and
+// compliance characteristics.
 //
-// What holds the wheels on a branch, jacks and tyres, would answer as well. Two models stand in for that of the branch,
-// in the same state:
+// Compliance is computed with jacks and tyres removed, since both would add their own stiffness.
+// Two models replace that of the branch, in the same state:
 //
-//   free     what jacks and tyres exert acts on as a dead force at the same point, and they are gone
-//   jacked   the free one with every wheel centre on a jack of its own, which stands at the height where it is
+//   free     jacks and tyres removed; the forces that they exert act as dead forces at their points
+//   jacked   the free model with one jack under every wheel centre, at the height of that centre
 //
-// Of an axle that can only go up and down, or only sway, one wheel centre's height is that of all: one jack says it.
+// Where the wheels of an axle move only together (heave only, or roll only), the height of one
+// wheel centre fixes all of them, and the jacked model has one jack.
 //
-// A jack and a dead force at its point, both upright, turn alike when the wheel does, so the tangent is that of the branch
-// in all but what holds the wheels.
+// A jack and a dead force at its point are both vertical and have the same geometric stiffness when
+// the wheel turns. The tangent therefore equals that of the branch except for the removed supports.
 #pragma once
 
 #include <array>
@@ -22,41 +24,47 @@
 
 namespace elastocheck::compare {
 
-using Motions = std::vector<Increment>;  // per Model::bodies, per unit of the cause [m/N, m/(N·m), m/m, ...]
+// per Model::bodies, per unit of the cause [m/N, m/(N·m), m/m, ...]
+using Motions = std::vector<Increment>;
 
-// What acts on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact patch.
+// What acts on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact
+// patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
 struct Answers {
-    std::vector<Motions> travel;  // per wheel, jacked: its centre raised by 1 m, the others held
-    Motions steering;  // jacked: the steering joint driven by 1 m or 1 rad; empty where none stands
+    // per wheel, jacked: its centre raised by 1 m, the other wheel centres held
+    std::vector<Motions> travel;
+    // jacked: steering joint driven by 1 m or 1 rad; empty without a steering joint
+    Motions steering;
     std::vector<std::array<Motions, causes>> held;  // per wheel and cause, jacked: per N, per N·m
-    std::vector<std::array<Motions, causes>> free;  // likewise, free; empty where `why_not_free` says why
-    bool tied =
-        false;  // the wheels move only as one: `jacked` has one jack, under the first wheel; that motion is
-                // the first of `travel`, and the others are none
-    std::string why_not;           // there is none of the first three
-    std::string why_not_free;      // there is none of the last
-    bool nothing_resists = false;  // why not: a wheel is free to move, which is no failure
+    std::vector<std::array<Motions, causes>> free;  // likewise, free; empty with `why_not_free`
+    // the wheels move only together: `jacked` has one jack, under the first wheel. `travel` then
+    // holds that motion first, and its other entries are empty
+    bool tied = false;
+    std::string why_not;           // reason why travel, steering and held are missing
+    std::string why_not_free;      // reason why `free` is missing
+    bool nothing_resists = false;  // that reason is a wheel that moves freely, which is no failure
 };
 
-// The joint that steers: the first, other than a jack, that some branch drives. -1 where there is none.
+// Position of the steering joint in Model::joints: the first joint, other than a jack, that some
+// branch drives; -1 if none.
 int steering_joint(const Model& model);
 
-// By the leg's own tangent at the state; of the recursion the matrix that its method factorises. `steering` is a position in
-// Model::joints, or -1. The `analyses` are of the way: from state to state the two models differ in loads and in the height
-// of jacks, of which an analysis knows nothing that is used here.
+// Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
+// that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
+// the branch side and are reused over its states: the two models differ between states only in
+// loads and jack heights, which an analysis does not use.
 Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state, Analyses& analyses);
 inline Answers answer(const Way& way, const Gait& gait, int steering, const Equilibrium& state) {
     Analyses analyses;
     return answer(way, gait, steering, state, analyses);
 }
 
-// The response of one leg; the recursion's with the analysis, which is made where there is none.
+// Response by one leg. `analysis` is that of the recursion, computed here if empty.
 Response respond(const Gait& gait, const Model& model, const Branch& branch, const Equilibrium& state,
                  std::span<const Disturbance> disturbances, std::optional<recursive::Analysis>& analysis);
 
-// d(position) of a point of a body, and the turning of the body.
+// Displacement of a point of a body, and rotation of the body.
 Eigen::Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point);
 Eigen::Vector3d turned(const Motions& motions, BodyId body);
 

@@ -1,5 +1,5 @@
-// What a computation is made with: how its sums are rounded, and whether what is denormal counts as zero. A library that is
-// linked with, or whoever calls this one, may have set either; that must cost digits at most.
+// Floating-point environment of a computation: rounding mode and flush-to-zero. A linked library or
+// the calling program may have changed either one; that may cost digits, never correctness.
 #pragma once
 
 #include <cfenv>
@@ -7,18 +7,18 @@
 namespace elastocheck::compare {
 
 enum class Arithmetic {
-    nearest,  // as it is everywhere
+    nearest,  // the default
     up,
     down,
     towards_zero,
-    flushed,  // to nearest; denormal operands and results are zero
+    flushed,  // to nearest; denormal operands and results are zero (DAZ, FTZ)
 };
 const char* name(Arithmetic arithmetic);
 
-// Whether this processor has it.
+// Whether this processor supports it.
 bool exists(Arithmetic arithmetic);
 
-// In force in this thread while it lives. Pre: exists(arithmetic).
+// Sets the arithmetic of this thread for the lifetime of the object. Pre: exists(arithmetic).
 class WithArithmetic {
   public:
     explicit WithArithmetic(Arithmetic arithmetic);

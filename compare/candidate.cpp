@@ -15,27 +15,25 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double same_load = 1e-14;  // of a branch's length: what is left of a number in another unit
-constexpr double end_met = 1e-9;     // of a branch's length: a point this far past its end is at its end
-constexpr double part_left = 1e-6;   // likewise: what is left of a branch that counts as not given
+constexpr double same_load = 1e-14;  // of a branch's length: rounding of a unit conversion
+constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a point at the end
+// of a branch's length: a larger missing part counts as not given
+constexpr double part_left = 1e-6;
 
 const Curve& truth_of(const BranchComparison& branch) {
     return branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
 }
 
-double bound_of(Unit unit, const Tolerance& tolerance) {
-    switch (unit) {
-        case Unit::mm: return tolerance.mm;
-        case Unit::deg: return tolerance.deg;
-        case Unit::newton: return tolerance.newton;
-        case Unit::newton_metre: return tolerance.newton_metre;
-        default: return std::numeric_limits<double>::infinity();  // nothing is asked of rates
-    }
+// Limit of an output on any branch; infinite where the limit is a share of the output's extent on a
+// branch.
+double bound_of(const Channel& channel, const Tolerance& tolerance) {
+    return limit_of(channel, std::numeric_limits<double>::infinity(), tolerance);
 }
 
-// ---- The equilibrium leg at points of somebody else.
+// ---- The equilibrium leg at the points of the candidate.
 
-// Its outputs at loads [SI] of a branch, those of its own grid visited on the way; nothing where it does not come.
+// Outputs at loads [SI] of a branch, continued over the branch's own grid; empty where the leg does
+// not get there.
 class Reference {
   public:
     Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
@@ -52,7 +50,8 @@ class Reference {
         return found == known_.end() ? nullptr : &found->second;
     }
 
-    // The load that stands for this one: that of a step, and an end, that is met to its last digits; NaN beyond.
+    // Load at which the reference is evaluated: that of a step if equal to rounding, the given load
+    // within the branch side, its end up to `end_met` beyond; else NaN.
     double placed(double load) const {
         const double length = sorted_.back() - sorted_.front();
         const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
@@ -103,20 +102,20 @@ class Reference {
 
 // ---- One reading of one branch.
 
-struct Asked {  // of the points on one branch
+struct Asked {  // points of the candidate on one branch
     std::vector<std::size_t> points;
-    std::vector<double> x;     // where the candidate says that each is: parameter [unit] or abscissa
-    std::vector<double> load;  // where the reference is asked for it [SI]; NaN where it does not come there
+    std::vector<double> x;     // position given by the candidate: parameter [unit] or abscissa
+    std::vector<double> load;  // load requested from the reference [SI]; NaN beyond its range
 };
 
-// What the candidate has of it and the reference, column by column.
+// Compares candidate and reference column by column.
 CandidateReading compared(const Asked& asked, const std::vector<PointColumn>& columns, Reference& reference,
                           const BranchComparison& branch) {
     CandidateReading reading;
     std::vector<const std::vector<double>*> rows;
     std::vector<std::size_t> points;
     for (std::size_t k = 0; k < asked.points.size(); ++k) {
-        if (std::isnan(asked.x[k])) continue;  // it does not say where it is
+        if (std::isnan(asked.x[k])) continue;  // the candidate gives no position
         const auto* row = std::isnan(asked.load[k]) ? nullptr : reference.at(asked.load[k]);
         if (row == nullptr) {
             ++reading.outside;
@@ -164,7 +163,7 @@ CandidateReading at_equal_parameter(const std::vector<std::size_t>& points, cons
     return compared(asked, columns, reference, branch);
 }
 
-// Where the candidate says the abscissa of its points, if it does.
+// Abscissa values of the candidate's points, or null.
 const std::vector<double>* abscissa_of(const Candidate& candidate, const std::vector<PointColumn>& columns,
                                        int channel) {
     if (channel < 0) return nullptr;
@@ -197,7 +196,7 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points, const
     const auto t = truth.channel(c);
     const double length = std::abs(t.back() - t.front()), rounding = end_met * length;
     const double per_unit = 1 / in_unit(branch.unit);
-    // The abscissa is the last of what the reference is asked for.
+    // The abscissa is the last requested channel.
     const auto travel = [&](double load) {
         const auto* row = reference.at(load);
         return row == nullptr ? nan : row->back();
@@ -224,7 +223,7 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points, const
         for (std::size_t k = 0; k < points.size(); ++k) {
             const double off = asked.x[k] - travel(asked.load[k]);
             if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(asked.x[k]))))
-                continue;  // there, or never
+                continue;  // converged, or no load
             const double load = reference.placed(asked.load[k] + off * slope[k]);
             if (load != asked.load[k]) next[k] = load;
         }
@@ -233,22 +232,23 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points, const
         for (std::size_t k = 0; k < points.size(); ++k) {
             const double now = travel(asked.load[k]), there = travel(next[k]);
             if (!(std::abs(asked.x[k] - there) < std::abs(asked.x[k] - now)))
-                continue;  // as near as it comes
+                continue;  // no further improvement
             slope[k] = (next[k] - asked.load[k]) / (there - now);
             asked.load[k] = next[k];
             better = true;
         }
         if (!better) break;
     }
-    for (std::size_t k = 0; k < points.size(); ++k)  // a knot, or a branch that ends early
+    // a knot of a curve, or a branch that ends early
+    for (std::size_t k = 0; k < points.size(); ++k)
         if (!(std::abs(travel(asked.load[k]) - asked.x[k]) <= rounding)) asked.load[k] = nan;
     return compared(asked, columns, reference, branch);
 }
 
-// ---- What is left out.
+// ---- Missing parts.
 
-// What points at these places leave out of a way between: its ends, and what is wider than a quarter of it between two.
-// " from 0 to 1500 N", "" where it is nothing.
+// Parts of an interval that points leave out: the ends, and gaps wider than a quarter of the
+// interval. " from 0 to 1500 N", "" if none.
 std::string left_out(std::vector<double> at, double low, double high, std::string_view unit) {
     constexpr double widest = 0.25;
     const double length = high - low;
@@ -265,8 +265,8 @@ std::string left_out(std::vector<double> at, double low, double high, std::strin
     return parts;
 }
 
-// Of what is judged, column by column; by one reading or the other. "branch 'jounce' from 1500 to 3000 N",
-// "camber on branch 'jounce' from 1500 to 3000 N"
+// Missing parts of the judged columns; a column that is complete in either reading has none.
+// "branch 'jounce' from 1500 to 3000 N", "camber on branch 'jounce' from 1500 to 3000 N"
 void tell_what_is_missing(const Branch& branch, const BranchComparison& of, const CandidateBranch& given,
                           const CandidateJudgement& judgement, const std::vector<Channel>& channels,
                           std::vector<std::string>& list) {
@@ -294,13 +294,13 @@ void tell_what_is_missing(const Branch& branch, const BranchComparison& of, cons
         }
         return least;
     };
-    std::vector<std::pair<std::string, std::string>> of_columns;  // name, what is missing of it
+    std::vector<std::pair<std::string, std::string>> of_columns;  // name, missing part
     for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
         const std::size_t channel = judgement.columns[c].channel;
         if (!judgement.judged[c] || !of.determined[channel]) continue;
         if (auto parts = missing(c)) of_columns.emplace_back(channels[channel].name, std::move(*parts));
     }
-    if (of_columns.empty()) return;  // why nothing is compared is told
+    if (of_columns.empty()) return;  // the reason for no comparison is already reported
     const bool alike = std::ranges::all_of(
         of_columns, [&](const auto& column) { return column.second == of_columns.front().second; });
     if (alike && !of_columns.front().second.empty())
@@ -310,16 +310,40 @@ void tell_what_is_missing(const Branch& branch, const BranchComparison& of, cons
             list.push_back(fmt::format("{} on branch '{}'{}", name, of.branch, parts));
 }
 
+// Keeps the worst deviation of each unit, by its share of the limit; outputs whose limit is a share
+// of their extent count as one unit.
 void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) {
-    const auto same =
-        std::ranges::find_if(list, [&](const CandidateWorst& w) { return w.unit == worst.unit; });
+    const auto same = std::ranges::find_if(list, [&](const CandidateWorst& w) {
+        return w.extent > 0 ? worst.extent > 0 : worst.extent == 0 && w.unit == worst.unit;
+    });
+    const auto taken = [](const CandidateWorst& w) { return w.max / w.limit; };
     if (same == list.end())
         list.push_back(worst);
-    else if (worse(worst.max, same->max) != same->max && !std::isnan(same->max))
+    else if (worse(taken(worst), taken(*same)) != taken(*same) && !std::isnan(same->max))
         *same = worst;
 }
 
-// Whether the candidate stands still where the reference moves: on every branch and in every column.
+// Whether every point of the candidate is at the start of its branch although the reference moves:
+// then only the design position was compared.
+bool none_has_moved(const CandidateJudgement& judgement, const Comparison& comparison) {
+    bool moving_reference = false;
+    for (const auto& branch : judgement.branches) {
+        const Curve& truth =
+            truth_of(*std::ranges::find(comparison.branches, branch.branch, &BranchComparison::branch));
+        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
+            const auto& reading = branch.reading(kind);
+            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+                const double begin = truth.values[truth.start][judgement.columns[c].channel];
+                for (const double v : reading.truth[c])
+                    if (std::abs(v - begin) > 1e-9) return false;
+                moving_reference = moving_reference || reading.columns[c].range > 1e-6;
+            }
+        }
+    }
+    return moving_reference;
+}
+
+// Whether the candidate is constant on every branch and in every column where the reference moves.
 bool nothing_moves(const CandidateJudgement& judgement) {
     bool moving_reference = false;
     for (const auto& branch : judgement.branches)
@@ -341,7 +365,7 @@ bool nothing_moves(const CandidateJudgement& judgement) {
     return moving_reference;
 }
 
-// All branches one after the other: at equal parameter where there is one, else at equal abscissa.
+// Concatenates all branches: at equal parameter where available, else at equal abscissa.
 Beside beside(const CandidateJudgement& judgement, const Comparison& comparison, std::size_t c) {
     Beside b;
     b.column = c;
@@ -361,7 +385,8 @@ Beside beside(const CandidateJudgement& judgement, const Comparison& comparison,
             b.branch.push_back(branch.branch);
         }
     }
-    // Of the other outputs of this unit those that the candidate gives as well: their references are there.
+    // Other outputs of this unit that the candidate gives too, since their reference values are
+    // available.
     for (std::size_t d = 0; d < judgement.columns.size(); ++d) {
         const std::size_t channel = judgement.columns[d].channel;
         if (d == c || comparison.channels[channel].unit != comparison.channels[b.channel].unit) continue;
@@ -395,8 +420,15 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
     for (const auto& column : result.columns) {
         const Channel& channel = channels[column.channel];
         const bool named = !candidate.every_output || !channel.kinematic();
-        result.judged.push_back((channel.main || named) && std::isfinite(bound_of(channel.unit, tolerance)));
+        result.judged.push_back((channel.main || named) && std::isfinite(limit_of(channel, 1, tolerance)));
+        result.others += result.judged.back() && !is_motion(channel);
     }
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        result.has_forces =
+            result.has_forces ||
+            (!channels[c].joints().empty() && std::ranges::any_of(comparison.branches, [&](const auto& b) {
+                return b.determined.size() > c && b.determined[c];
+            }));
 
     const auto& places = candidate.points;
     const bool by_parameter = !places.a.empty();
@@ -453,7 +485,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                                                            &BranchComparison::branch))
                                    .channel(static_cast<std::size_t>(branch.abscissa));
                 const auto [low, high] = std::ranges::minmax(t);
-                if (!(high - low >= least_travel)) continue;  // nothing to read over
+                if (!(high - low >= least_travel)) continue;  // range too short for a reading
             }
             for (std::size_t c = 0; c < reading.columns.size(); ++c) {
                 const Deviation& d = reading.columns[c];
@@ -461,11 +493,15 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                 result.compared += d.compared;
                 if (!result.judged[c] || d.compared == 0) continue;
                 judged += d.compared;
-                const double limit = bound_of(channel.unit, tolerance);
+                const BranchComparison& of =
+                    *std::ranges::find(comparison.branches, branch.branch, &BranchComparison::branch);
+                const double extent = of.extents[result.columns[c].channel],
+                             limit = limit_of(channel, extent, tolerance);
                 CandidateWorst worst;
                 worst.branch = branch.branch, worst.channel = channel.name, worst.unit = channel.unit;
                 worst.max = d.max, worst.end = d.end, worst.range = d.range;
-                worst.kind = kind, worst.at = d.at, worst.tolerance = limit;
+                worst.kind = kind, worst.at = d.at, worst.limit = limit;
+                worst.extent = std::isinf(bound_of(channel, tolerance)) ? extent : 0;
                 keep_worst(result.worst, worst);
                 within = within && std::isfinite(d.max) && d.max <= limit;
                 if (!std::isfinite(d.max))
@@ -481,7 +517,8 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
             result.reasons.emplace_back("where its points are is no number");
             break;
         }
-    const auto state_error = [&](const Leftover& left) {  // of constraints [mm]; NaN is largest
+    // constraint residual [mm]; NaN is largest
+    const auto state_error = [&](const Leftover& left) {
         double worst = 0;
         for (const auto& r : left.truth) worst = worse(1e3 * r.length, worst);
         return worst;
@@ -494,6 +531,8 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         }
 
     if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
+    if (within && none_has_moved(result, comparison))
+        result.reasons.emplace_back("its points are all where the branches begin: nothing has moved there");
     if (judged == 0)
         result.reasons.emplace_back(result.compared == 0 ? "nothing was compared"
                                                          : "nothing that was compared has a tolerance");
@@ -501,7 +540,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         for (const auto& missing : result.not_given) result.reasons.push_back("it does not give " + missing);
 
     for (std::size_t c = 0; c < result.columns.size(); ++c) {
-        const double bound = bound_of(channels[result.columns[c].channel].unit, tolerance);
+        const double bound = bound_of(channels[result.columns[c].channel], tolerance);
         bool off = false;
         for (const auto& branch : result.branches)
             for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {

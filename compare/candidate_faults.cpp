@@ -1,11 +1,15 @@
-// What goes wrong between tools is signs, units, where something is counted from, and which column is which. A column v that
-// is off from its reference r is read otherwise, the simplest first, and the first reading that it is right in is told:
+// Diagnosis of wrong columns: signs, units, reference positions and exchanged columns.
 //
-//   v = -r     v = r + c     v = f r     v = r_0 + f (r - r_0)     v = -r + c     v = f r + c     v = ± another output
+// A column v that deviates from its reference r is tested against transformations, the simplest
+// first; the first one that makes it right is reported:
 //
-// with f a unit for another, or fitted; c the mean of what is left; r_0 where the branch begins. Right is: a twentieth of
-// the deviation or less is left, and no more than the tolerance or a thousandth of what the reference moves by. If none is,
-// it may be right up to a point.
+//   v = -r     v = r + c     v = f r     v = r_0 + f (r - r_0)     v = -r + c     v = f r + c
+//   v = ± another output
+//
+// with f a unit factor, or fitted; c the mean of the remaining difference; r_0 the value at the
+// start of the branch. Right means: at most a twentieth of the deviation remains, and at most the
+// tolerance or a thousandth of the range of the reference. If none applies, the column may be right
+// up to a point.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,20 +25,20 @@ namespace {
 using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
-constexpr double explained = 0.05;     // of the deviation that may be left
-constexpr double of_movement = 1e-3;   // of what the reference moves by
-constexpr double first_part = 0.1;     // of the points of a branch that are right before it is wrong
-constexpr double right_so_far = 1e-3;  // of what it is off by later
-constexpr double at_once =
-    0.03;  // of that, a tenth of the branch on: what grows as a power, up to the sixth, is
-           // off by less than a hundredth there, and was never right
+constexpr double explained = 0.05;     // of the deviation that may remain
+constexpr double of_movement = 1e-3;   // of the range of the reference
+constexpr double first_part = 0.1;     // of the points of a branch that must be right first
+constexpr double right_so_far = 1e-3;  // of the largest deviation beyond
+// of that, a tenth of the branch further on: a deviation that grows as a power up to the sixth is
+// below a hundredth there, and was never right
+constexpr double at_once = 0.03;
 
 struct Written {
     double factor;
     const char* word;
 };
 constexpr double pi = std::numbers::pi;
-// What a number may have been written in, over the unit that it was taken for.
+// Possible unit confusions, relative to the unit assumed for the column.
 constexpr std::array units{Written{1e-3, "metres for millimetres, or the like"},
                            Written{1e3, "millimetres for metres, or the like"},
                            Written{0.1, "centimetres for millimetres"},
@@ -88,7 +92,7 @@ const char* unit_word(double factor) {
     return "";
 }
 
-// Where on its branch a column begins to be wrong that was right before.
+// First wrong point of a column that is right before it on its branch.
 std::optional<Explanation> wrong_from(const Beside& b) {
     for (std::size_t first = 0; first < b.branch.size();) {
         std::size_t last = first;
@@ -149,7 +153,7 @@ std::optional<Explanation> explain(const Beside& b) {
         for (const auto& unit : units)
             try_it({.kind = Kind::factor, .factor = sign * unit.factor, .unit_word = unit.word},
                    times(sign * unit.factor, r));
-    // Fitted, of the whole and of what it changes by.
+    // Fitted, for the whole column and for its change.
     if (const double rr = dot(r, r); rr > 0) {
         const double f = dot(v, r) / rr;
         try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, times(f, r));

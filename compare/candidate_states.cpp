@@ -16,7 +16,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool is_said(const Pose& pose) { return pose.r.allFinite() && pose.p.coeffs().allFinite(); }
-// What is said and is no number is infinite.
+// An infinite entry marks a value that is not a number.
 bool is_broken(const Pose& pose) {
     const auto infinite = [](double x) { return std::isinf(x); };
     return std::ranges::any_of(pose.r, infinite) || std::ranges::any_of(pose.p.coeffs(), infinite);
@@ -26,7 +26,7 @@ Pose broken_where_not_finite(Pose pose) {
     return pose;
 }
 
-// The way of a branch that a load lies on.
+// The branch side that contains a load.
 const Way& way_to(const std::vector<Way>& ways, double load) {
     const auto found = std::ranges::find_if(ways, [&](const Way& w) { return w.branch.to * load >= 0; });
     return found == ways.end() ? ways.front() : *found;
@@ -53,8 +53,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     Candidate result;
     result.name = std::move(name);
     result.every_output = true;
-    std::vector<Channel>
-        channels;  // all but characteristics, which are of a leg's tangent and not of the state
+    std::vector<Channel> channels;  // all but characteristics, which need the tangent of a leg
     std::vector<std::size_t> position;
     for (std::size_t c = 0; c < comparison.channels.size(); ++c)
         if (!std::holds_alternative<Characteristic>(comparison.channels[c].reads))
@@ -98,7 +97,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
         }
         if (!left.a.empty() || !left.why_not.empty()) result.leftovers.push_back(std::move(left));
     }
-    // What hangs on a body that is not said is not said.
+    // Outputs of a body without a given pose have no values.
     std::erase_if(result.points.columns, [](const PointColumn& column) {
         return std::ranges::all_of(column.values, [](double v) { return std::isnan(v); });
     });

@@ -15,7 +15,7 @@ std::string branch_of(const Model& model, const Points& points, std::size_t k) {
     return points.branch.empty() ? model.branches.front().name : points.branch[k];
 }
 
-// The points of a level on a way, from a = 0 on; what it does not say of the channels is NaN.
+// Points of a level on one branch side, from a = 0 on; missing channels are NaN.
 Curve curve_on(const Model& model, const Way& way, const std::string& branch, const std::vector<Channel>& all,
                const Comparison& outline, const Points& points) {
     const double unit = in_unit(unit_of(way.branch.unit)), to = unit * way.branch.to;

@@ -35,7 +35,7 @@ CertifiedWay certify_way(const Way& way, Gait gait, const CertifyOptions& option
     if (gait.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve =
             certificate::certify_branch(way.model, way.branch, path.points, in_si(options.tolerance));
-    // The last point is where to begin to look for it, and claims nothing.
+    // The last point starts the search for the limit point; it claims no accuracy.
     constexpr certificate::Tolerance anywhere{1, 1, 1e9, 1e9};
     if (path.outcome == Outcome::limit_point && !path.points.empty())
         result.limit = certificate::certify_limit_point(way.model, way.branch, path.points.back(), anywhere);

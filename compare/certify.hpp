@@ -1,4 +1,4 @@
-// What of a path is proved (reference/certificate), point by point and as one curve.
+// Interval proofs (reference/certificate) of the points of a path, and of the path as one curve.
 #pragma once
 
 #include <functional>
@@ -19,28 +19,30 @@ namespace elastocheck::compare {
 using reference::certificate::LimitPoint;
 using reference::certificate::Tube;
 
-// What is claimed where nobody says otherwise.
+// Default accuracy that is to be proved.
 inline constexpr const char* claimed_accuracy = "1e-6mm,1e-6deg";
-// "1e-8mm": what is not said is as above. Throws std::invalid_argument as parse_tolerance does.
+// Parses "1e-8mm"; a quantity that is not given takes its default. Throws std::invalid_argument as
+// parse_tolerance does.
 Tolerance claim(std::string_view text);
 
-// One solver along one way of a branch.
+// One solver along one side of a branch.
 struct CertifiedWay {
-    std::string branch;        // the name of the way
+    std::string branch;        // of the branch side
     Unit unit = Unit::newton;  // of its parameter
-    double to = 0;             // where the way ends, in that unit
+    double to = 0;             // end of the branch side, in that unit
     std::string solver;        // "equilibrium", "energy", or a method of the recursion
     Outcome outcome = Outcome::converged;
     std::string detail = {};
     Tally tally = {};
     std::optional<Tube> curve = {};        // of the equilibrium leg
-    std::optional<LimitPoint> limit = {};  // where the path ends in one
+    std::optional<LimitPoint> limit = {};  // where the path ends in a limit point
 };
 
 struct CertifyOptions {
     std::vector<Gait> solvers;  // empty: both references and the series
     Tolerance tolerance;
-    int points = 20;  // of a way, at least, where it has as many steps; the start besides
+    // least number of points per branch side besides the start, as far as it has as many steps
+    int points = 20;
     std::function<void(std::string_view)> progress = {};
 };
 
@@ -51,7 +53,7 @@ struct CertifyStudy {
     int points() const;
     int proved() const;
     bool excluded() const;  // some point is proved wrong
-    // Every solver came to its end, or to a limit point that is proved, and every point is proved.
+    // Every solver reached the end or a proved limit point, and every point is proved.
     bool conclusive() const;
 };
 

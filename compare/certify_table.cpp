@@ -1,4 +1,4 @@
-// Proofs as a table.
+// Table of the interval proofs.
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -1,5 +1,5 @@
-// What became of the numbers of a scene file since a result was accepted: a result that moved has its reason there, or
-// in the code.
+// Changes of the numbers in a scene file since a result was accepted: possible causes of a moved
+// result.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 namespace elastocheck::compare {
 
 struct Change {
-    std::optional<Number> was, is;  // of one path; none where it is new, or gone
+    std::optional<Number> was, is;  // of one path; empty where the number is new or removed
 };
 
-// In the order of the scene as it is, then what is gone. Numbers are told by their paths, and are the same where value
-// and unit are, as they stand in the file.
+// In the order of the current scene, then the removed numbers. Numbers are identified by their
+// paths and compared by value and unit as written in the file.
 std::vector<Change> changes(std::span<const Number> was, std::span<const Number> is);
 
 }  // namespace elastocheck::compare

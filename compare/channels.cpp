@@ -42,7 +42,7 @@ const ModelJoint& joint_of(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)];
 }
 
-// ---- Values in SI, one function a kind.
+// ---- Values in SI, one function per type that a channel reads.
 
 double read(const Model&, const Equilibrium& state, const Coordinate& c) {
     return c.sign * (position(state, c.at)[c.axis] - c.counted_from);
@@ -58,12 +58,13 @@ double read(const Model& model, const Equilibrium& state, const Camber& c) {
     return -std::asin(spin_axis(model, state, c.wheel).z());
 }
 
-// ---- What steers.
+// ---- Steering axis.
 
-constexpr double flattest = 0.1;  // [rad] of a steering axis to the road
+constexpr double flattest = 0.1;  // [rad] smallest angle of a steering axis to the road
 const double least_steering = 2 * std::numbers::pi / 180;
 
-// From the contact patch to where the steering axis meets the road; undefined where it lies too flat.
+// Vector from the contact patch to the intersection of the steering axis with the road; undefined
+// for a flat axis.
 Vector3d pivot(const Model& model, const Equilibrium& state, std::size_t wheel) {
     const Wheel& w = model.wheels[wheel];
     const Vector3d l = position(state, w.steering_axis->lower),
@@ -103,7 +104,7 @@ double read(const Model&, const Equilibrium& state, const Compression& c) {
 }
 double read(const Model& model, const Equilibrium& state, const Effort& c) {
     const int driven = joint_of(model, c.joint).driven;
-    if (driven < 0) return 0;  // does not stand on this branch
+    if (driven < 0) return 0;  // inactive on this branch
     const Wrench& on_i = wrench(state, c.joint);
     return std::visit(
         overloaded{[&](const DistanceBetween& d) {
@@ -113,7 +114,7 @@ double read(const Model& model, const Equilibrium& state, const Effort& c) {
                    [&](const DirectionAtAngle& a) {
                        return on_i.moment.dot(direction(state, a.j).cross(direction(state, a.y_j)));
                    },
-                   // These have no offset, so lowering never lets them be driven.
+                   // No offset to drive: lowering never drives these.
                    [](const CoincidentPoints&) { return std::nan(""); },
                    [](const PerpendicularDirections&) { return std::nan(""); }},
         model.constraints[static_cast<std::size_t>(driven)].kind);
@@ -157,7 +158,7 @@ void add_position(std::vector<Channel>& list, const std::string& stem, const std
                                                   towards[static_cast<std::size_t>(k)])});
 }
 
-// Of a wheel, beside its position and angles.
+// Channels of a wheel beside its position and angles.
 void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w, const std::string& prefix) {
     const Wheel& wheel = model.wheels[w];
     const Point patch{wheel.body, wheel.contact_local};
@@ -207,7 +208,7 @@ void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& 
         "than 0.1 rad");
 }
 
-// Of two wheels that are opposite.
+// Channels of two opposite wheels.
 void add_axle(std::vector<Channel>& list, const Model& model) {
     if (model.wheels.size() != 2 || model.wheels[0].side == model.wheels[1].side) return;
     const std::size_t left = model.wheels[0].side > 0 ? 0 : 1, right = 1 - left;
@@ -293,7 +294,8 @@ void add_effort(std::vector<Channel>& list, const Model& model, int k) {
     if (joint.driven < 0) return;
     const bool turns = std::holds_alternative<DirectionAtAngle>(
         model.constraints[static_cast<std::size_t>(joint.driven)].kind);
-    // What drives joint `rack` is a joint of its own, `rack.drive`: its effort is the rack's.
+    // The driver of joint `rack` is a separate joint, `rack.drive`; its effort is reported for the
+    // rack.
     const std::string stem =
         joint.name.ends_with(".drive") ? joint.name.substr(0, joint.name.size() - 6) : joint.name;
     list.push_back({.name = stem + (turns ? ".drive_moment" : ".drive_force"),
@@ -419,7 +421,7 @@ std::vector<Channel> channels(const Model& model) {
 
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups) {
     std::vector<Channel> list;
-    std::set<std::vector<int>> done;  // on the other body it is the same with the other sign
+    std::set<std::vector<int>> done;  // the total on the other body differs only in sign
     for (const auto& group : groups) {
         std::map<BodyId, std::vector<int>> held;  // by the joints of the group
         for (const int k : group)
@@ -438,6 +440,21 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
                            return Total{on, body, component};
                        });
         }
+    }
+    return list;
+}
+
+std::vector<bool> determined_channels(std::span<const Channel> channels, const Model& standing,
+                                      const std::vector<bool>& determined) {
+    std::vector<bool> stands(standing.joints.size(), false), list;
+    for (const auto& constraint : standing.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    for (const auto& channel : channels) {
+        const bool total = std::holds_alternative<Total>(channel.reads);
+        list.push_back(std::ranges::all_of(channel.joints(), [&](int k) {
+            const auto j = static_cast<std::size_t>(k);
+            return stands[j] && (total || determined[j]);
+        }));
     }
     return list;
 }

@@ -1,4 +1,5 @@
-// Outputs: what is read off a configuration, the same for every leg and independent of all of them.
+// Output channels: quantities computed from a configuration, the same for every leg and independent
+// of all legs.
 #pragma once
 
 #include <array>
@@ -21,7 +22,7 @@ enum class Unit {
     newton,
     newton_metre,
     none,
-    // Of rates, which are characteristics (characteristics.hpp).
+    // Units of rates, which are characteristics (characteristics.hpp).
     deg_per_m,
     deg_per_100mm,
     mm_per_100mm,
@@ -47,10 +48,10 @@ inline constexpr std::array all_units{Unit::mm,
                                       Unit::deg_per_100Nm,
                                       Unit::percent};
 const char* symbol(Unit unit);     // "mm", ..., "-", "deg/kN"
-double in_unit(Unit unit);         // how many of them one m, rad, N, N·m or 1 is
-Unit unit_of(ParameterUnit unit);  // in which a branch's parameter is shown
+double in_unit(Unit unit);         // factor from SI (m, rad, N, N·m, 1) to this unit
+Unit unit_of(ParameterUnit unit);  // display unit of a branch parameter
 
-// ---- What a channel reads.
+// ---- What a channel reads, one type each.
 
 // sign (p_axis - counted_from)
 struct Coordinate {
@@ -65,51 +66,57 @@ struct Toe {
 struct Camber {
     std::size_t wheel = 0;
 };
-// What the steering axis of a wheel is to the wheel, in the plane of the road, a horizontal one through the contact patch.
-// With u from the lower to the upper end of the axis, c the patch, e the spin axis pointing outboard, h and n horizontal
-// unit vectors along the wheel and across it, outboard, p where the axis meets the road (side +1 left, -1 right):
+// Position of a wheel's steering axis in the road plane, the horizontal plane through the contact
+// patch. With u from the lower to the upper end of the axis, c the patch, e the spin axis pointing
+// outboard, h and n horizontal unit vectors along the wheel and across it (outboard), p the
+// intersection of the axis with the road plane (side +1 left, -1 right):
 //
 //   caster               atan(-u_x / u_z)             n = (e_x, e_y, 0) / |(e_x, e_y, 0)|
 //   kingpin inclination  atan(-side u_y / u_z)        h = side n × z
 //   scrub radius         -n · (p - c)                 p = l + u (c_z - l_z) / u_z,  l the lower end
 //   mechanical trail      h · (p - c)
 //
-// An axis that lies flatter than 0.1 rad stands on no road: all four are undefined (NaN) there.
+// All four are undefined (NaN) for an axis within 0.1 rad of the road plane.
 struct Steering {
     enum class Figure { caster, kingpin_inclination, scrub_radius, mechanical_trail } figure = Figure::caster;
     std::size_t wheel = 0;  // position in Model::wheels, with a steering axis
 };
-// y of the one contact patch less that of the other.
+// Track: y of the left contact patch minus that of the right.
 struct Track {
     std::size_t left = 0, right = 0;  // positions in Model::wheels
 };
-// How nearly the perpendiculars to two steered wheels meet on the line of the other axle. With δ the angles of the wheels,
-// positive to the left, δ = -side · toe:   (cot δ_right - cot δ_left) l / j,   1 where they meet on it, 0 where the wheels are
-// parallel. Undefined (NaN) unless both turn the same way by 2 deg or more: 0/0 straight ahead.
+// Ackermann fraction: how nearly the perpendiculars to two steered wheels meet on the line of the
+// other axle. With δ the steer angles, positive to the left, δ = -side · toe:
+//
+//   (cot δ_right - cot δ_left) l / j      1 where they meet on it, 0 for parallel wheels
+//
+// Undefined (NaN) unless both wheels turn the same way by 2 deg or more: 0/0 straight ahead.
 struct Ackermann {
     std::size_t left = 0, right = 0;
-    double wheelbase_by_pivots =
-        0;  // l / j, j the distance across between where the steering axes meet the road as drawn,
-            // of the patches where a wheel has none
+    // wheelbase l over j: lateral distance between the points where the steering axes meet the road
+    // in the design position, or between the patches for a wheel without an axis
+    double wheelbase_by_pivots = 0;
 };
-// How much nearer two points are than as drawn.
+// Reduction of the distance between two points since the design position.
 struct Compression {
     Point i, j;
-    double drawn = 0;  // [m]
+    double drawn = 0;  // distance in the design position [m]
 };
-// What an element is deformed by, or bears, in its own axes; read by compare/elements.hpp alone, as it takes the branch.
+// Deformation, or elastic force, of an element in its own axes; evaluated only by
+// compare/elements.hpp, which needs the branch.
 struct OfElement {
     int element = 0;  // position in Model::elastics
     int component =
-        0;  // 0-5 along and about x y z, of a spring 0; then 6-11 the forces and moments against these
+        0;  // 0-5 along and about x y z, of a spring 0; then 6-11 the conjugate forces and moments
 };
-// Of a joint that keeps two points apart, positive in tension: F · (p_j - p_i) / |p_j - p_i|, F on its body i.
+// Axial force of a joint that fixes the distance of two points, positive in tension:
+// F · (p_j - p_i) / |p_j - p_i|, F on its body i.
 struct AxialForce {
     int joint = 0;       // position in Model::joints
     int constraint = 0;  // position in Model::constraints, a DistanceBetween
 };
-// What the driver of a joint exerts along the offset that it moves, such that effort · d(offset) is the work
-// that the driver does: with the wrench (F, M) of the joint on its body i,
+// Driver effort of a joint, work-conjugate to the driven offset: effort · d(offset) is the work of
+// the driver. With the wrench (F, M) of the joint on its body i:
 //   distance between p_i and p_j    F · (p_i - p_j) / |p_i - p_j|     pushes them apart
 //   point i above plane j           F · n_j                           pushes i along the normal
 //   direction i at an angle in j    M · (x_j × y_j)                   turns i from x_j towards y_j
@@ -121,65 +128,78 @@ struct Reaction {
     int joint = 0;
     int component = 0;
 };
-// The same of several joints on one body, added up about the point of the first: what stays determined where
-// they share a load in a way that nothing decides.
+// Total wrench of several joints on one body about the point of the first: it stays determined
+// where redundant joints share a load in an undetermined way.
 struct Total {
     std::vector<int> joints;
     BodyId on = ground;
     int component = 0;
 };
-// Of a state and how it answers small changes (characteristics.hpp).
+// Kinematics or compliance characteristic of a state and its response (characteristics.hpp).
 struct Characteristic {
-    std::size_t entry = 0;  // which it is
-    std::size_t of = 0;     // whose: of which wheel, spring, damper
+    std::size_t entry = 0;  // position in the list of characteristics
+    std::size_t of = 0;     // index of the wheel, spring or damper
 };
 using Reads = std::variant<Coordinate, Toe, Camber, Steering, Track, Ackermann, Compression, Effort, Reaction,
                            Total, OfElement, AxialForce, Characteristic>;
 
-// The value of an output where it has none: the length of an arm whose end is nowhere. NaN is a failure.
+// Value of an output that is undefined, for example the length of an arm whose end is at infinity.
+// NaN means a failure.
 inline constexpr double undefined = std::numeric_limits<double>::infinity();
 
 struct Channel {
-    std::string
-        name;  // "toe", "left.travel", "wheel_centre_y", "tip_z", "tie_rod.force_x", "rack.drive_force"
+    std::string name;  // "toe", "left.travel", "tie_rod.force_x", "rack.drive_force"
     Unit unit = Unit::mm;
-    bool main = true;  // false: joint forces, and what is the wheel's position and angles told otherwise
+    bool main = true;  // false: joint forces, and other forms of the wheel's position and angles
     Reads reads = {};
-    std::string definition = {};  // one line with its sign: the only place where it is written
-    std::string undefined = {};   // what it means where it has no value; empty where it always has one
+    std::string definition = {};  // one line with its sign convention; written only here
+    // meaning of an undefined value; empty where the channel always has a value
+    std::string undefined = {};
 
-    bool kinematic() const;           // of the configuration alone: a position or an angle
-    bool may_be_undefined() const;    // a quotient: `undefined` where it says nothing, and large beside
-    std::vector<int> joints() const;  // whose wrenches it reads
+    bool kinematic() const;  // of the configuration alone: a position or an angle
+    // a quotient: `undefined` at a zero of its denominator, and large beside it
+    bool may_be_undefined() const;
+    std::vector<int> joints() const;  // joints whose wrenches it reads
 };
 
 // The channels of a model, in order; those of a wheel with a name as NAME.toe and so on:
 //   wheel_centre_x, _y, _z   position of the wheel centre, ground axes
-//   toe      = atan2(e_x, side·e_y), positive toe-in            e = unit spin axis pointing outboard
-//   camber   = -asin(e_z), positive when the top leans out      side = +1 left, -1 right; never the axle total
-//   travel                   z of the wheel centre from its design position, positive in jounce
-//   contact_patch_x, _y, _z  position of the point of the wheel's body that is the contact patch as drawn
-//   track_change             of this wheel's patch, positive outwards;   wheelbase_change where the scene has a vehicle
-//   caster, kingpin_inclination, scrub_radius, mechanical_trail      of wheels with a steering axis
-//   track                    of two wheels that are opposite;   ackermann where they are the front ones of a vehicle
+//   toe      = atan2(e_x, side·e_y), positive toe-in          e = unit spin axis pointing outboard
+//   camber   = -asin(e_z), positive when the top leans out    side = +1 left, -1 right
+//                            of each wheel, never the axle total
+//   travel                   z of the wheel centre minus its design value, positive in jounce
+//   contact_patch_x, _y, _z  position of the body point that is the contact patch in the design
+//                            position
+//   track_change             of this wheel's patch, positive outwards
+//   wheelbase_change         likewise, where the scene has a vehicle
+//   caster, kingpin_inclination, scrub_radius, mechanical_trail   of wheels with a steering axis
+//   track                    of two opposite wheels
+//   ackermann                of two opposite wheels at the front of a vehicle
 //   PROBE_x, _y, _z          position of a probe
 //   NAME.compression         of every spring and damper
-//   JOINT.drive_force or .drive_moment          effort of the driver, of every joint that some branch moves
-//   JOINT.force_x ... moment_z                  wrench of a joint on its first body
+//   JOINT.drive_force or .drive_moment   effort of the driver, of every joint moved by some branch
+//   JOINT.force_x ... moment_z           wrench of a joint on its first body
 std::vector<Channel> channels(const Model& model);
 
-// For every group of joints that share a load without anything deciding how (positions in Model::joints):
-// what they exert together on each body that two or more of them hold, "A+B.force_x" ... "A+B.moment_z".
+// For every group of joints that share a load in an undetermined way (positions in Model::joints):
+// their total wrench on each body that two or more of them hold, "A+B.force_x" ... "A+B.moment_z".
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups);
+
+// Per channel, whether the wrenches that it reads are determined on a branch: the joints have
+// constraints in `standing`, the model of that branch, and no redundant joint shares their load
+// (`determined`, per joint; not required for a total).
+std::vector<bool> determined_channels(std::span<const Channel> channels, const Model& standing,
+                                      const std::vector<bool>& determined);
 
 // Position of a channel by its name, or -1.
 int find_channel(std::span<const Channel> channels, std::string_view name);
 
-// Their values at one equilibrium, same order. What a characteristic is, the state alone does not tell: NaN.
+// Channel values at one equilibrium, in the same order. NaN for a characteristic, which needs more
+// than the state.
 std::vector<double> evaluate(const Model& model, std::span<const Channel> channels, const Equilibrium& state);
 std::vector<double> evaluate(const Model& model, const Equilibrium& state);  // of channels(model)
 
-// The scene as drawn, nothing acting.
+// The scene in its design position, no load acting.
 Equilibrium design_state(const Model& model);
 
 }  // namespace elastocheck::compare

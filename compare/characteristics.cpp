@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Farther than this, arms and centres are said to be nowhere, and stiffer than this, a joint is rigid: behind it lies
-// the round-off of something that does not turn, or does not give.
+// Arms and centres farther than this are at infinity, and joints stiffer than this are rigid:
+// beyond, the quotient is round-off of a part that does not rotate or deform.
 constexpr double nowhere = 1e4;  // [m]
 constexpr double rigid = 1e12;   // [N/m]
 
@@ -29,7 +29,7 @@ double ratio(double value, double by, double limit) {
     return std::abs(value) <= limit * std::abs(by) && by != 0 ? value / by : undefined;
 }
 
-// ---- How a wheel moves.
+// ---- Motions of a wheel.
 
 struct Wheels {
     const Model& model;
@@ -54,7 +54,7 @@ struct Wheels {
     }
 };
 
-// Several causes at once, each with its weight.
+// Weighted sum of several causes.
 Motions sum(std::span<const Motions> causes, std::span<const double> weights) {
     Motions total(causes.front().size());
     for (std::size_t k = 0; k < causes.size(); ++k)
@@ -65,8 +65,8 @@ Motions sum(std::span<const Motions> causes, std::span<const double> weights) {
     return total;
 }
 
-// All wheels raised alike by 1 m; where they are tied, as they move, and this one by 1 m. The wheels of an axle against
-// each other, the left up, which tied ones never are.
+// Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
+// rises by 1 m. Roll: the wheels of an axle in opposition, the left up; not for tied wheels.
 Motions raised(const Wheels& wheels, std::size_t w) {
     const auto& first = wheels.answers.travel.front();
     const double whole = wheels.answers.tied ? 1 / moved(wheels.state, first, wheels.centre(w)).z() : 1;
@@ -85,12 +85,13 @@ bool is_axle(const Model& model) {
 
 // ---- Centres and axes.
 
-// Seen from the front, the patch of a wheel moves square to the line through its instant centre. The roll centre lies on
-// that line: of an axle that rolls, where both lines meet; of one wheel, above the middle of the vehicle, y = 0.
+// Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
+// instant centre. The roll centre lies on that line: for an axle in roll at the intersection of
+// both lines; for one wheel at the middle of the vehicle, y = 0.
 //
 //   (P - c) · (dy, dz) = 0      h = P_z - c_z
 //
-// Two lines that are one (arms that only carry the wheels up and down) meet halfway between the wheels.
+// Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
 double roll_centre(const Wheels& wheels) {
     const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
     if (!is_axle(wheels.model)) {
@@ -118,11 +119,12 @@ double roll_centre(const Wheels& wheels) {
     return P.y();
 }
 
-// Where the carrier, seen along an axis, turns about: from the wheel centre, for a velocity v of it and a rate ω,
+// Instant centre of the carrier in side and front view, from the wheel centre, with velocity v and
+// rate ω:
 //   from the side   (x, z): (v_z, -v_x) / ω_y      from the front   (y, z): (-v_z, v_y) / ω_x
 
-// The axis that a wheel is steered about: of the screw that the carrier does when the rack moves and the wheel centre
-// keeps its height. n upward, through  c + ω × v / ω².
+// Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre
+// height. n upward, through  c + ω × v / ω².
 struct Axis {
     Vector3d n, through;
 };
@@ -135,12 +137,13 @@ std::optional<Axis> steering_axis(const Wheels& wheels, std::size_t w) {
     return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
                 wheels.at(wheels.centre(w)) + omega.cross(v) / omega.squaredNorm()};
 }
-// From the patch to where the axis meets the road.
+// Vector from the patch to the intersection of the axis with the road.
 Vector3d on_the_road(const Wheels& wheels, std::size_t w, const Axis& axis) {
     const Vector3d patch = wheels.at(wheels.patch(w));
     return axis.through + axis.n * (patch.z() - axis.through.z()) / axis.n.z() - patch;
 }
-// Across the wheel, outwards, and along it, forwards: both on the road, turned as the wheel is steered.
+// Unit vectors in the road plane that follow the steered wheel: across it outwards, and along it
+// forwards.
 Vector3d across(const Wheels& wheels, std::size_t w) {
     const Vector3d e = wheels.spin(w);
     return Vector3d(e.x(), e.y(), 0).normalized();
@@ -149,8 +152,8 @@ Vector3d along(const Wheels& wheels, std::size_t w) {
     return wheels.side(w) * across(wheels, w).cross(Vector3d::UnitZ());
 }
 
-// The car body rolls by 1 rad towards this wheel of an axle, the wheels on the road: this one rises by half the track,
-// the other goes down by as much.
+// Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by
+// half the track, the other one goes down by as much.
 Motions rolled_towards(const Wheels& wheels, std::size_t w) {
     Motions roll = rolled(wheels);
     const double half =
@@ -161,7 +164,7 @@ Motions rolled_towards(const Wheels& wheels, std::size_t w) {
 
 // ---- Stiffness and rates.
 
-// 1 N up on the patch of every wheel, or of an axle's against each other, this wheel's up; free.
+// 1 N up on the patch of every wheel; or on an axle in opposition, this wheel's up; model `free`.
 enum class Pattern { alike, opposite };
 double wheel_rate(const Wheels& wheels, std::size_t w, Pattern pattern) {
     if (wheels.answers.free.empty()) return wheels.answers.nothing_resists ? undefined : nan;
@@ -178,32 +181,34 @@ double ride_rate(const Wheels& wheels, std::size_t w) {
     return std::isinf(k_w) ? undefined : k_w * k_t / (k_w + k_t);
 }
 
-// Towards the middle of the vehicle, so that a wheel and its mirror image answer alike; at the patch, the wheels held.
+// Sign towards the middle of the vehicle, for equal values of a wheel and its mirror image; at the
+// patch, wheels held.
 double inward(const Wheels& wheels, std::size_t w) { return -wheels.side(w); }
 
 const Motions& held(const Wheels& wheels, std::size_t w, int cause) {
     return wheels.answers.held[w][static_cast<std::size_t>(cause)];
 }
 
-// The displacement of the point at which the force of this cause acts, along it, is a compliance.
+// The displacement of the loaded point along the load is a compliance.
 double stiffness(const Wheels& wheels, std::size_t w, int cause) {
     const Point at = cause < moment_on ? wheels.centre(w) : wheels.patch(w);
     return ratio(1, moved(wheels.state, held(wheels, w, cause), at)[cause % 3], rigid);
 }
 
-// How fast the point goes forward as all wheels rise alike: the tangent of the angle at which a force along the road is
-// carried by the links instead of by the springs.
+// Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
+// angle at which the links, not the springs, carry a longitudinal force.
 double forward_per_travel(const Wheels& wheels, const Point& at) {
     const Vector3d d = moved(wheels.state, raised(wheels, 0), at);
     return ratio(d.x(), d.z(), nowhere);
 }
-// The point at which a driving force acts on the links: an axle housing bears the torque itself, a wheel on a shaft leaves
-// it to the car body.
+// Point at which a driving force acts on the links: the patch where an axle housing carries the
+// drive torque, the wheel centre where the car body carries it through a shaft.
 Point driven_at(const Wheels& wheels, std::size_t w) {
     const bool housing = is_axle(wheels.model) && wheels[0].body == wheels[1].body;
     return housing ? wheels.patch(w) : wheels.centre(w);
 }
-// Milliken, Race Car Vehicle Dynamics, ch. 17: share of the axle · tan φ · wheelbase / height of the centre of gravity.
+// Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17: axle share · tan
+// φ · wheelbase / height of the centre of gravity.
 double anti(const Wheels& wheels, const Point& at, double share, double sign) {
     const Vehicle& vehicle = *wheels.model.vehicle;
     return sign * share * forward_per_travel(wheels, at) * vehicle.wheelbase / vehicle.cg_height;
@@ -220,19 +225,19 @@ double shortening(const Wheels& wheels, const Point& i, const Point& j) {
                 .dot(moved(wheels.state, by, j) - moved(wheels.state, by, i));
 }
 
-// ---- All of them: of what, name, unit, definition with its sign, what it means to be undefined, formula.
+// ---- Catalogue: owner, name, unit, definition with its sign, meaning of undefined, formula.
 
-// What there is one of; those after the wheels only where a scene has what they need.
+// Owner of a characteristic; those after the wheels only where a scene has what they need.
 enum class Of {
     every_wheel,
     wheel_on_tyre,
-    steered_wheel,    // some branch drives a joint that is no jack, ...
-    wheel_on_rack,    // ... along an axis
-    wheel_on_column,  // ... about one
-    front_wheel,      // of a scene that says `vehicle`
+    steered_wheel,    // some branch drives a joint other than a jack, ...
+    wheel_on_rack,    // ... a translation
+    wheel_on_column,  // ... a rotation
+    front_wheel,      // of a scene with a `vehicle`
     rear_wheel,
     wheel_of_axle,  // one of a left and a right one
-    wheels,         // all together
+    wheels,         // all wheels together
     spring,
     damper,
 };
@@ -253,7 +258,8 @@ constexpr const char* does_not_steer = "the steering does not turn the wheel abo
 constexpr const char* gives_nothing = "rigid: nothing gives";
 constexpr const char* not_steered = "the steering does not stand on this branch";
 constexpr const char* does_not_roll = "its wheels move only as one: the axle does not roll";
-constexpr const char* no_rate = "nothing resists the travel of the wheel, or nothing lets it travel";
+constexpr const char* no_rate =
+    "nothing resists the travel of the wheel, nothing lets it travel, or it stands at a corner of a law";
 
 const std::array table{
     Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
@@ -465,7 +471,7 @@ bool turns(const Model& model, int joint) {
            std::holds_alternative<DirectionAtAngle>(model.constraints[static_cast<std::size_t>(driven)].kind);
 }
 
-// How many there are of it.
+// Number of owners of a kind.
 std::size_t count(const Model& model, Of of) {
     const auto if_so = [&](bool so) { return so ? model.wheels.size() : 0; };
     switch (of) {
@@ -486,7 +492,7 @@ std::size_t count(const Model& model, Of of) {
     return 0;
 }
 
-// The name of the k-th of it; nothing where that one has no such characteristic.
+// Name of the k-th owner; empty where this one has no such characteristic.
 std::optional<std::string> owner(const Model& model, Of of, std::size_t k) {
     switch (of) {
         case Of::wheel_on_tyre:

@@ -20,8 +20,8 @@ Residuals worse(const Residuals& a, const Residuals& b) {
             compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
 }
 
-// Of a walk on which nobody looks at the points. Steps as short as the recursion's take half as long again where what
-// they need is displaced from the caches in between.
+// Time of a run that ignores its points. Steps as short as the recursion's take half as long again
+// when other work evicts their data from the caches.
 double seconds_alone(const std::vector<Way>& ways, Gait gait) {
     gait.account = false;
     using clock = std::chrono::steady_clock;
@@ -54,7 +54,7 @@ std::vector<Compliance> compliance_of(const Model& model, const Way& way, const 
     return list;
 }
 
-// Of a path that ended too early the points that there are: they are none the less equilibria, or not.
+// The points of a path that ended early are still checked: each is an equilibrium or not.
 Tally proved(const Way& way, const LegRun& run) {
     Tally tally;
     std::vector<double> done;
@@ -68,14 +68,15 @@ Tally proved(const Way& way, const LegRun& run) {
     return tally;
 }
 
-// What the method that is asked about promises of every point. The series that stands in for the energy leg is a reference.
+// Tolerance of the judged method at every point. The series in place of the energy leg is a
+// reference and has none here.
 std::optional<ErrorBound> promise_of(const Model& standing, const Gait& gait) {
     if (gait.leg != Leg::recursive) return std::nullopt;
     return promised(gait.recursion.method, recursive::diagnose(standing).length);
 }
 
-// Account is asked of whoever promises something, and of the equilibrium leg, for the stiffness that is left: that costs it
-// a thirtieth.
+// Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
+// remaining stiffness, which costs the leg a thirtieth of its time.
 Gait with_account(const Model& standing, Gait gait) {
     gait.account = gait.leg == Leg::equilibrium || promise_of(standing, gait);
     return gait;
@@ -99,7 +100,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
             worst = worse(worst, judge(by, way, state));
         }
         run.scale = larger(run.scale, scale_of(way.model, branch, {&state, 1}));
-        // The farthest on either side comes last.
+        // The farthest point on either side comes last.
         if (state.load == 0)
             marks.start = state;
         else if (both_ways && state.load * way.branch.to > 0)
@@ -122,7 +123,7 @@ const LegRun& run_of(const BranchComparison& branch, Leg leg) {
     return branch.runs[static_cast<std::size_t>(leg)];
 }
 
-// Over its bound; more than 1 is too much, and so is what is no number.
+// Ratio to the bound; above 1 is a violation, and so is a value that is not finite.
 double share(double value, double bound) {
     const double part = bound > 0 ? value / bound : value > 0 ? INFINITY : 0;
     return std::isfinite(value) && std::isfinite(bound) ? part : INFINITY;
@@ -135,12 +136,13 @@ double bound_of(Unit unit, const Bounds& bounds) {
         case Unit::newton: return bounds.force;
         case Unit::newton_metre: return bounds.moment;
         case Unit::percent:
-            return 6e3 * bounds.angle;  // of two cotangents at 2 deg, of a wheelbase of two tracks
-        default: return 0;              // of a characteristic: apart
+            return 6e3 * bounds.angle;  // two cotangents at 2 deg, for a wheelbase of two tracks
+        default: return 0;              // characteristics are bounded separately
     }
 }
 
-// By which rates may be apart: a share of the largest on the branch, and of a thousandth of their unit where they are nothing.
+// Allowed difference of rates: a share of the largest on the branch, at least of a thousandth of
+// their unit.
 double bound_of_characteristic(const std::vector<double>& values) {
     constexpr double share = 1e-6;
     double largest = 1e-3;
@@ -155,28 +157,11 @@ int count(const Reading& reading, const std::vector<bool>& determined) {
     return sum;
 }
 
-// Per joint, whether it holds anything on the branch.
-std::vector<bool> stand(const Model& standing) {
-    std::vector<bool> stands(standing.joints.size(), false);
-    for (const auto& constraint : standing.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
-    return stands;
-}
-
-// Whether a channel reads wrenches that are there and determined; a total is there to be.
-bool is_determined(const Channel& channel, const std::vector<bool>& determined,
-                   const std::vector<bool>& stands) {
-    const bool total = std::holds_alternative<Total>(channel.reads);
-    return std::ranges::all_of(channel.joints(), [&](int k) {
-        const auto j = static_cast<std::size_t>(k);
-        return stands[j] && (total || determined[j]);
-    });
-}
-
-// Whether the legs are on two branches, each at an equilibrium of its own: then how far their outputs are apart says nothing
-// of either. Each state is proved, and the two boxes have nothing in common. "the energy leg is on another equilibrium than
-// the equilibrium leg at -120 N, each proved: body 'a' is 160 mm away"; empty where this is not so. What an idle motion
-// moves is anywhere along it.
+// Message where the two legs are at two different equilibria, at a landmark where both states are
+// proved and the boxes of the proofs are disjoint: the distance of their outputs then says nothing
+// about the error of either. Bodies with an idle motion are not compared, as their position along
+// it is arbitrary. "the energy leg is on another equilibrium than the equilibrium leg at -120 N,
+// each proved: body 'a' is 160 mm away"; empty if there is none.
 std::string on_two_branches(const Model& model, const Branch& asked, const LegRun& truth,
                             const LegRun& other) {
     using namespace reference::certificate;
@@ -216,6 +201,15 @@ std::string on_two_branches(const Model& model, const Branch& asked, const LegRu
     return {};
 }
 
+// Message on the proofs of the other leg, where one leg is disproved; empty if they do not decide.
+std::string which_is_right(const LegRun& other) {
+    const Tally& t = other.proved;
+    if (t.excluded > 0 || t.points == 0) return {};
+    if (t.proved == t.points) return fmt::format("; the {} leg is right, by proof", name(other.leg));
+    return fmt::format("; of the {} leg's points {} of {} are proved and none is excluded", name(other.leg),
+                       t.proved, t.points);
+}
+
 bool is_undefined_somewhere(const Channel& channel, std::size_t c, const std::vector<LegRun>& runs) {
     return channel.may_be_undefined() && std::ranges::any_of(runs, [&](const LegRun& run) {
                return std::ranges::any_of(run.curve.values,
@@ -223,7 +217,7 @@ bool is_undefined_somewhere(const Channel& channel, std::size_t c, const std::ve
            });
 }
 
-// The first point at which an output has a value by one of the two only; empty where there is none.
+// First point at which only one of the two runs has a value for an output; empty if none.
 std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one, const LegRun& other) {
     if (!channel.may_be_undefined()) return {};
     for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
@@ -265,7 +259,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     for (const auto& run : branch.runs) {
         if (run.leg == Leg::recursive && of == Of::references) continue;
         if (run.leg == Leg::energy && branch.second != Leg::energy)
-            continue;  // is not asked, and need not be
+            continue;  // does not apply, and is not needed
         if (run.outcome != Outcome::converged)
             objections.add(
                 fmt::format("{} leg: {}: {}", name(run.leg), elastocheck::name(run.outcome), run.detail));
@@ -295,15 +289,15 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
             objections.add(two), apart = {};
     for (const auto& one : apart.worst) objections.add(one.what, one.share);
     objections.count += apart.count - static_cast<int>(apart.worst.size());
-    for (const LegRun* run : {&equilibrium, &second})
+    for (const auto& [run, other] : {std::pair(&equilibrium, &second), std::pair(&second, &equilibrium)})
         if (run->proved.excluded > 0)
-            objections.add(fmt::format("the {} leg's point is provably no equilibrium: {}", name(run->leg),
-                                       run->proved.not_proved));
-    // Whether an output has a value at a point is part of the answer.
+            objections.add(fmt::format("the {} leg's point is provably no equilibrium: {}{}", name(run->leg),
+                                       run->proved.not_proved, which_is_right(*other)));
+    // The references must also agree on where an output is undefined.
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (const auto where = defined_by_one(channels[c], c, equilibrium, second); !where.empty())
             objections.add(where);
-    // Whoever can judge states without having made them: the series is of the recursive leg's equations.
+    // A judge needs no states of its own: the series uses the equations of the recursive leg.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge}, {&second, Leg::equilibrium}};
     if (energy_bears_witness(branch)) judgements.emplace_back(&equilibrium, Leg::energy);
@@ -360,11 +354,9 @@ Comparison compare(const Model& model, const Options& options) {
         BranchComparison b;
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
-        const auto stands = stand(ways[k].front().model);
         for (const auto& way : ways[k]) b.steps += way.branch.steps;
         b.every = options.every;
-        for (const auto& channel : result.channels)
-            b.determined.push_back(is_determined(channel, determined[k], stands));
+        b.determined = determined_channels(result.channels, ways[k].front().model, determined[k]);
         for (const Leg leg : legs) {
             if (options.progress) options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(
@@ -397,11 +389,19 @@ Comparison compare(const Model& model, const Options& options) {
         b.cross_check = pair(b.second, Leg::recursive);
         b.uncertainty = pair(Leg::equilibrium, b.second);
         b.bounds = bounds_of(options.agreement, truth.scale);
+        b.extents = extents_of(result.channels, truth.curve, truth.scale);
         b.inconclusive = disagreements(model, result.channels, branch, b);
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
             result.compared +=
                 count(p->equal_parameter, b.determined) + count(p->equal_abscissa, b.determined);
         result.branches.push_back(std::move(b));
+    }
+    for (std::size_t c = 0; c < result.channels.size(); ++c) {
+        if (!std::holds_alternative<Characteristic>(result.channels[c].reads)) continue;
+        double largest = 0;
+        for (const auto& branch : result.branches)
+            if (std::isfinite(branch.extents[c])) largest = std::max(largest, branch.extents[c]);
+        for (auto& branch : result.branches) branch.extents[c] = largest;
     }
     return result;
 }

@@ -33,23 +33,24 @@ double spread(Levels levels) {
     return high->value - low->value;
 }
 
-// ---- the fit ----
+// ---- Fit
 //
 // With x = h / h_finest >= 1 and l = ln x the law value = L + C h^p is written
 //
 //     value = a + b φ,   φ = (x^p - 1) / p,   L = a - b/p,   C x^p = (b/p) x^p,
 //
-// which stays regular at p = 0 (φ = l: logarithmic drift) and passes on to p < 0 (divergence): the order
-// keeps its sign. For a given p it is a straight line (variable projection), so only p is searched for:
+// which is regular at p = 0 (φ = l: logarithmic drift) and continues to p < 0 (divergence), so the
+// order keeps its sign. For given p the fit is linear (variable projection), so only p is searched:
 //
 //     R(p) = Σ r²,   r = value - a - b φ,     dR/dp = -2 b Σ r ψ,   ψ = ∂φ/∂p = (l x^p - φ) / p,
 //
 // because Σ r = Σ r φ = 0. With ψ⊥ the part of ψ orthogonal to 1 and φ, the standard error of p is
-// σ / (|b| |ψ⊥|). That of L: at given p the one of a straight line at φ = -1/p, and p's share through dL/dp.
+// σ / (|b| |ψ⊥|). That of L: at given p, the one of a straight line at φ = -1/p, plus the part of p
+// through dL/dp.
 struct Line {
     double limit = 0, C = 0;                    // C: error of the finest level
     double R = 0, slope = 0;                    // slope: dR/dp, but for a factor 2
-    double p_variance = 0, limit_variance = 0;  // for σ = 1; that of L at given p
+    double p_variance = 0, limit_variance = 0;  // for σ = 1; limit_variance at given p
 };
 
 Line line(Levels levels, double p) {
@@ -108,17 +109,19 @@ Fit fit(Levels levels) {
     return result;
 }
 
-// ---- behaviour and window ----
+// ---- Behaviour and window
 
-// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p > 0, in any ratio
-// of steps. True if it grows by more than the floor explains from levels k, k+1 to k+1, k+2.
+// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p > 0, in
+// any ratio of steps. True if it grows by more than the floor explains from levels k, k+1 to k+1,
+// k+2.
 bool grows(Levels levels, std::size_t k, double floor) {
     const auto difference = [&](std::size_t j) { return std::abs(levels[j + 1].value - levels[j].value); };
     const auto stretch = [&](std::size_t j) { return std::log(levels[j + 1].steps / levels[j].steps); };
     return (difference(k + 1) - floor) / stretch(k + 1) > (difference(k) + floor) / stretch(k);
 }
 
-// First level of the stretch that goes one way to the finest level, and how often the sequence turned before.
+// First level of the monotonic stretch that ends at the finest level, and the number of turns
+// before it.
 struct Monotone {
     std::size_t first = 0;
     int turns = 0;
@@ -136,8 +139,9 @@ Monotone monotone_end(Levels levels, double floor) {
     return result;
 }
 
-// Coarse levels are not yet asymptotic. They are left out as long as every one left out at least halves the
-// scatter about the law, four levels remain (three always fit) and the floor does not explain the scatter.
+// Excludes coarse levels that are not yet asymptotic, as long as each excluded level at least
+// halves the scatter about the law, four levels remain (three always fit) and the floor does not
+// explain the scatter.
 std::size_t asymptotic_start(Levels levels, double floor) {
     if (levels.size() <= 4) return 0;
     std::size_t first = 0;
@@ -184,8 +188,8 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     for (const Level& level : levels) largest = std::max(largest, std::abs(level.value));
     const double floor = std::max(4 * std::numeric_limits<double>::epsilon() * largest, floors.round_off);
 
-    // The finest levels are left out as long as they differ by round-off only. Three that do are a limit,
-    // even if what came before is no convergence.
+    // Excludes the finest levels while they differ by round-off only. Three such levels give a
+    // limit, even if the levels before do not converge.
     std::size_t used = levels.size();
     while (used > 1 && std::abs(levels[used - 1].value - levels[used - 2].value) <= floor) --used;
     const auto at_round_off = [&] { return at_floor(Behaviour::round_off_floor, levels, used - 1, floor); };
@@ -196,7 +200,8 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     if (spread(levels) <= floors.reference)
         return at_floor(Behaviour::reference_floor, levels, 0, floors.reference);
 
-    // A turn is common where coarse errors cancel; what turns more than once must then go one way for longer.
+    // One turn is common where coarse errors cancel; after several turns a longer monotonic stretch
+    // is required.
     const auto [turn, turns] = monotone_end(levels.first(used), floor);
     if (used - turn < (turns > 1 ? 4u : 3u)) return without_order(Behaviour::oscillating);
     std::size_t first = turn;
@@ -213,22 +218,23 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     result.first = static_cast<int>(first);
     result.count = static_cast<int>(used - first);
 
-    // As formal: within a tenth or two standard errors, but never more than a quarter of an order off.
+    // The order agrees with the formal one within a tenth or two standard errors, at most a quarter
+    // of an order.
     const double two_errors = std::isfinite(result.order_error) ? 2 * result.order_error : 0;
     result.as_formal =
         std::abs(law.p - formal_order) <= std::min(0.25, std::max(0.1 * formal_order, two_errors));
 
-    // What the law leaves at the very finest level; the finest value may lie
-    // on the fitted limit by luck, so the larger counts. Once levels lie at
-    // round-off the finest is the limit, better than extrapolation could be.
+    // Error of the law at the finest level. The finest value may lie on the fitted limit by chance,
+    // so the larger of both counts. Where levels lie at round-off, the finest value is the limit,
+    // better than an extrapolation.
     const bool extrapolated = used == levels.size();
     const double law_error = std::abs(law.C) * std::pow(levels[used - 1].steps / levels.back().steps, law.p);
     result.limit = extrapolated ? law.limit : levels.back().value;
     result.finest_error = std::max({law_error, std::abs(levels.back().value - result.limit), floor});
 
-    // Band: the grid convergence index (Roache), and beside it the scatter about the law. An order above the
-    // formal one may be higher terms hiding the leading one, which has yet to take over: then the finest
-    // three levels are read at the formal order as well.
+    // Band: the grid convergence index (Roache 1994), and the scatter about the law. An order above
+    // the formal one may mean that higher-order terms still dominate the leading one; then the
+    // finest three levels are also evaluated at the formal order.
     const double safety = result.as_formal && result.count >= 4 ? 1.25 : 3;
     const double scatter = std::isfinite(law.limit_error) ? 2 * law.limit_error : 0;
     double hidden = 0;

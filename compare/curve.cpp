@@ -9,7 +9,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// Shorter than what double precision leaves of metres: no movement.
+// A smaller movement is rounding of coordinates in metres.
 constexpr double still = 1e-9;  // [mm], [deg], [N], [N·m]
 
 double range_of(const std::vector<double>& x) {

@@ -1,4 +1,4 @@
-// One leg's outputs along one branch, and over what they can be read.
+// Output curves of one leg along one branch, and the channels that can serve as abscissa.
 #pragma once
 
 #include <span>
@@ -18,31 +18,32 @@ struct Curve {
     std::vector<double> channel(std::size_t c) const;
 };
 
-// One point more, its parameter in SI.
+// Appends one point; `load` in SI.
 void append(Curve& curve, double load, std::vector<double> values);
 
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
             const std::vector<Equilibrium>& points);
 
-// Which way a sequence goes. Only one that rises or falls throughout can be read the other way round.
+// Direction of a sequence. Only a rising or falling sequence can be inverted.
 enum class Course { rising, falling, still, turning, not_finite, too_short };
 struct Trend {
     Course course = Course::too_short;
-    std::size_t at = 0;  // where it first turns back, or is no number
+    std::size_t at = 0;  // index where it first reverses, or is not finite
     bool monotonic() const { return course == Course::rising || course == Course::falling; }
 };
 Trend trend(std::span<const double> x);
 
-// Over what else than the parameter curves are compared: a channel that is monotonic on both.
+// Abscissa of a comparison other than the parameter: a channel that is monotonic on both curves.
 struct Abscissa {
-    int channel = -1;     // -1: there is none
-    std::string why_not;  // "travel turns back at 1230 N (at 35.2 mm)", "travel does not move"; empty where
-                          // it can be read
+    int channel = -1;  // -1: there is none
+    // reason why not, "travel turns back at 1230 N (at 35.2 mm)", "travel does not move"; empty if
+    // usable
+    std::string why_not;
 };
-// The first wheel's travel; without a wheel the position among the main channels that moves farthest. -1
-// where there is no position.
+// Default abscissa: the first wheel's travel; without a wheel the main position channel with the
+// largest range; -1 without a position.
 int default_abscissa(std::span<const Channel> channels, const Curve& curve);
-// Whether both curves can be read over this channel.
+// Whether both curves are monotonic in this channel.
 Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b);
 
 }  // namespace elastocheck::compare

@@ -18,12 +18,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Vector3d rotation_vector(const Eigen::Quaterniond& B) {
-    const Eigen::AngleAxisd turn(B);  // the shorter way round
+    const Eigen::AngleAxisd turn(B);  // the shorter rotation
     return turn.angle() * turn.axis();
 }
 
-// The three angles θ of B. With B = R_x R_y R_z its last column is (sin θ_y, -sin θ_x cos θ_y, cos θ_x cos θ_y), its
-// first row (cos θ_y cos θ_z, -cos θ_y sin θ_z, sin θ_y).
+// The three angles θ of B. With B = R_x R_y R_z its last column is
+// (sin θ_y, -sin θ_x cos θ_y, cos θ_x cos θ_y), its first row
+// (cos θ_y cos θ_z, -cos θ_y sin θ_z, sin θ_y).
 Vector3d angles(const Eigen::Quaterniond& B, Formulation::Angles kind) {
     const Matrix3d R = B.toRotationMatrix();
     switch (kind) {
@@ -38,7 +39,7 @@ Vector3d angles(const Eigen::Quaterniond& B, Formulation::Angles kind) {
     return Vector3d::Constant(std::nan(""));
 }
 
-// The piece of the curve that x lies on, and x from its knot.
+// Piece of the curve that contains x, and x relative to its knot.
 std::pair<const std::array<double, 4>*, double> piece_at(const elastocheck::Curve& curve, double x) {
     const auto behind =
         static_cast<std::size_t>(std::ranges::upper_bound(curve.knots, x) - curve.knots.begin());
@@ -47,13 +48,28 @@ std::pair<const std::array<double, 4>*, double> piece_at(const elastocheck::Curv
 
 double slope(const std::array<double, 4>& c, double h) { return c[1] + h * (2 * c[2] + h * 3 * c[3]); }
 
-// Which end of the table x is beyond, or NaN.
+// The end of the table that x exceeds, or NaN.
 double end_passed(const ScalarLaw& law, double x) {
     const auto* curve = std::get_if<elastocheck::Curve>(&law);
     if (curve == nullptr || curve->known_outside) return std::nan("");
     if (x < curve->knots.front()) return curve->knots.front();
     if (x > curve->knots.back()) return curve->knots.back();
     return std::nan("");
+}
+
+constexpr double at_a_knot = 1e-9;    // [m, rad], larger than the error of a state
+constexpr double slopes_jump = 1e-6;  // of the steeper slope: beyond rounding
+
+bool is_corner(const ScalarLaw& law, double x) {
+    const auto* curve = std::get_if<elastocheck::Curve>(&law);
+    if (curve == nullptr) return false;
+    const auto& knots = curve->knots;
+    const auto near =
+        static_cast<std::size_t>(std::ranges::lower_bound(knots, x - at_a_knot) - knots.begin());
+    if (near == knots.size() || knots[near] > x + at_a_knot) return false;
+    const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
+    const double before = slope(curve->pieces[near], h), behind = slope(curve->pieces[near + 1], 0);
+    return std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind));
 }
 
 constexpr std::array axes{"x", "y", "z"};
@@ -107,7 +123,7 @@ double steepest(const ScalarLaw& law) {
                        for (std::size_t n = 0; n < u.pieces.size(); ++n) {
                            const auto& c = u.pieces[n];
                            k = std::max(k,
-                                        std::abs(c[1]));  // at its knot; a straight piece has no other slope
+                                        std::abs(c[1]));  // slope at the knot; constant if linear
                            if (n == 0 || n == u.knots.size()) continue;
                            const double h = u.knots[n] - u.knots[n - 1], top = -c[2] / (3 * c[3]);
                            k = std::max(k, std::abs(slope(c, h)));
@@ -116,6 +132,28 @@ double steepest(const ScalarLaw& law) {
                        return k;
                    }},
         law);
+}
+
+bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state) {
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const bool found =
+            std::visit(overloaded{[&](const AxialSpring& e) {
+                                      return std::holds_alternative<elastocheck::Curve>(e.law) &&
+                                             is_corner(e.law, deformation(e, k, branch, state));
+                                  },
+                                  [&](const Bushing& e) {
+                                      const auto* law = std::get_if<PerAxis>(&e.law);
+                                      if (law == nullptr) return false;
+                                      const Vector6 x = deformation(e, state);
+                                      for (std::size_t axis = 0; axis < 6; ++axis)
+                                          if (is_corner(law->axis[axis], x[static_cast<Eigen::Index>(axis)]))
+                                              return true;
+                                      return false;
+                                  }},
+                       model.elastics[k].kind);
+        if (found) return true;
+    }
+    return false;
 }
 
 std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state) {

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/tolerance.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// One channel's deviation, number by number. A difference that is not finite poisons max and rms for good.
+// Accumulates the deviation of one channel. A difference that is not finite makes max and rms NaN
+// for good.
 struct Tally {
     Deviation deviation;
     double squares = 0;
@@ -59,13 +62,18 @@ Reading nothing(std::string why) {
     return reading;
 }
 
-// The same parameter as two divisions write it.
+// Whether two parameters are equal up to rounding of a division.
 bool same(double a, double b, const Curve& of) {
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(of.a.front()), std::abs(of.a.back()));
 }
 
-void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst) {
-    if (!channels[c].main) return;
+void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst,
+           const std::vector<double>& extents = {}) {
+    if (!channels[c].main) {
+        if (!extents.empty() && !is_motion(channels[c]) && std::isfinite(extents[c]))
+            worst.share = worse(worst.share, std::abs(difference) / extents[c]);
+        return;
+    }
     double& side = channels[c].unit == Unit::deg ? worst.deg : worst.mm;
     side = worse(side, std::abs(difference));
 }
@@ -73,7 +81,9 @@ void raise(const std::vector<Channel>& channels, std::size_t c, double differenc
 }  // namespace
 
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
-Accuracy worse(const Accuracy& a, const Accuracy& b) { return {worse(a.mm, b.mm), worse(a.deg, b.deg)}; }
+Accuracy worse(const Accuracy& a, const Accuracy& b) {
+    return {worse(a.mm, b.mm), worse(a.deg, b.deg), worse(a.share, b.share)};
+}
 
 Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
                        const std::vector<double>& at) {
@@ -85,7 +95,8 @@ Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& 
 Reading at_equal_parameter(const Curve& a, const Curve& b) {
     if (a.values.empty() || b.values.empty()) return nothing("a curve is empty");
     std::vector<Tally> tallies(a.values.front().size());
-    // Two-way curves that broke off early begin at different ends: what they share is around their start.
+    // Two-sided curves that ended early begin at different points; their common range lies around
+    // their start.
     const std::size_t before = std::min(a.start, b.start);
     const std::size_t after = std::min(a.a.size() - a.start, b.a.size() - b.start);
     for (std::size_t k = 0; k < before + after; ++k) {
@@ -118,12 +129,12 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
 
 namespace {
 
-// Calls sink(point of a, channel, b - a, uncertainty of it) where b reaches the abscissa of a; returns how
-// many points it does not reach.
+// Calls sink(point of a, channel, b - a, its uncertainty) where b reaches the abscissa of a;
+// returns the number of points out of reach.
 template <class Sink>
 int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink) {
     const auto at = a.channel(abscissa), x = b.channel(abscissa);
-    // Both are held at the same travel at an end that is driven, and meet it to their rounding.
+    // A driven end has the same travel in both up to rounding.
     const double rounding = 1e-9 * std::abs(x.back() - x.front());
     const double low = std::min(x.front(), x.back()) - rounding,
                  high = std::max(x.front(), x.back()) + rounding;
@@ -156,7 +167,8 @@ Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by) {
     return reading;
 }
 
-Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const Curve& a, const Curve& b) {
+Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const Curve& a, const Curve& b,
+                                   const std::vector<double>& extents) {
     Profile profile{a.unit, {}, {}};
     if (a.a.empty() || b.a.empty()) return profile;
     const std::size_t before = std::min(a.start, b.start);
@@ -165,7 +177,8 @@ Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const C
         const std::size_t i = a.start - before + k, j = b.start - before + k;
         Accuracy apart{};
         for (std::size_t c = 0; c < channels.size(); ++c)
-            raise(channels, c, same(a.a[i], b.a[j], a) ? b.values[j][c] - a.values[i][c] : nan, apart);
+            raise(channels, c, same(a.a[i], b.a[j], a) ? b.values[j][c] - a.values[i][c] : nan, apart,
+                  extents);
         profile.a.push_back(a.a[i]);
         profile.apart.push_back(apart);
     }
@@ -189,18 +202,22 @@ Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Cu
     return profile;
 }
 
-Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b) {
-    if (a.a.empty() || a.a.size() != b.a.size() || a.start != b.start) return {nan, nan};
+Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b,
+                  const std::vector<double>& extents) {
+    if (a.a.empty() || a.a.size() != b.a.size() || a.start != b.start)
+        return {nan, nan, extents.empty() ? 0 : nan};
     Accuracy worst{};
-    for (const auto& apart : profile_at_equal_parameter(channels, a, b).apart) worst = worse(worst, apart);
+    for (const auto& apart : profile_at_equal_parameter(channels, a, b, extents).apart)
+        worst = worse(worst, apart);
     return worst;
 }
 
-Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve) {
+Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve,
+                     const std::vector<double>& extents) {
     Accuracy largest{};
     for (const auto& values : curve.values)
         for (std::size_t c = 0; c < channels.size(); ++c)
-            raise(channels, c, 16 * std::numeric_limits<double>::epsilon() * values[c], largest);
+            raise(channels, c, 16 * std::numeric_limits<double>::epsilon() * values[c], largest, extents);
     return largest;
 }
 

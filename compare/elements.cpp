@@ -17,11 +17,11 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array axes{"x", "y", "z"};
-constexpr double nothing = 1e-6;  // [mm], [deg], [N], [N·m]: less is the arithmetic's
+constexpr double nothing = 1e-6;  // [mm], [deg], [N], [N·m]: smaller values are rounding
 
 const Elastic& elastic_of(const Model& model, int k) { return model.elastics[static_cast<std::size_t>(k)]; }
 
-// ---- What they read
+// ---- Evaluation
 
 bool stands(const Elastic& elastic, int k, const Branch& branch) {
     return !elastic.only_where_driven || std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
@@ -32,7 +32,7 @@ bool stands(const Elastic& elastic, int k, const Branch& branch) {
     });
 }
 
-// s = ∂u/∂e + preload, with what the branch drives.
+// s = ∂u/∂e + preload, with the driven part of the branch.
 Vector6 stress(const Bushing& bushing, int k, const Branch& branch, const Equilibrium& state,
                const Vector6& e) {
     Vector6 s = std::visit(overloaded{[&](const LinearStiffness& u) { return Vector6(u.K * e); },
@@ -51,7 +51,7 @@ Vector6 stress(const Bushing& bushing, int k, const Branch& branch, const Equili
     return s;
 }
 
-// With s_z = k d_z - P - k h the tyre pushes the wheel up by -s_z, and is as flat as that makes it.
+// With s_z = k d_z - P - k h the tyre pushes the wheel up by -s_z, and its deflection is -s_z / k.
 double of_tyre(const Bushing& tyre, double s_z, bool is_force) {
     const auto* law = std::get_if<LinearStiffness>(&tyre.law);
     return is_force ? -s_z : law != nullptr && law->K(2, 2) > 0 ? -s_z / law->K(2, 2) : nan;
@@ -76,7 +76,7 @@ double read(const Model& model, const Branch& branch, const Equilibrium& state, 
         elastic.kind);
 }
 
-// ---- What they are called
+// ---- Names
 
 std::vector<int> components(const Elastic& elastic) {
     if (std::holds_alternative<AxialSpring>(elastic.kind)) return {0, 6};
@@ -186,7 +186,7 @@ std::vector<ElementValue> element_values(const Model& model, const Comparison& c
         };
         for (const auto end : {&Landmarks::front, &Landmarks::back}) {
             const auto &truth = landmarks(Leg::equilibrium).*end, &reached = landmarks(Leg::recursive).*end;
-            // A branch that goes one way has its start in front; a leg that broke off is elsewhere.
+            // A one-sided branch starts at its front; a leg that ended early is at another load.
             if (!truth || !reached || truth->load == 0 ||
                 !(std::abs(truth->load - reached->load) <= 1e-9 * std::abs(truth->load)))
                 continue;
@@ -194,7 +194,7 @@ std::vector<ElementValue> element_values(const Model& model, const Comparison& c
                        others = evaluate(model, model.branches[b], channels, *reached);
             for (std::size_t c = 0; c < channels.size(); ++c) {
                 const double off = others[c] - values[c], size = std::abs(values[c]);
-                if (std::isnan(values[c])) continue;  // does not stand here
+                if (std::isnan(values[c])) continue;  // inactive here
                 list.push_back({.branch = branch.branch,
                                 .a = in_unit(branch.unit) * truth->load,
                                 .a_unit = branch.unit,

@@ -8,6 +8,7 @@
 #include <deque>
 #include <random>
 #include <ranges>
+#include <span>
 #include <utility>
 
 #include "compare/legs.hpp"
@@ -20,23 +21,26 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using reference::certificate::Answer;
 
-// Two states are one within this share of the scene's size, or of a radian.
+// Two states are the same within this share of the scene's size, or of a radian.
 constexpr double one_state = 1e-6;
 
-// How far along a soft motion a start lies, as a share of the scene's size, or of a radian.
+// Distance of a start along a soft motion, as a share of the scene's size, or of a radian.
 constexpr std::array along{0.03, 0.3, 1.0};
 
-// Another try from the same start, with more states known, is worth it this often.
+// Larger models are not searched: `beside` has no motions for them, and the many starts take long.
+constexpr std::size_t most_bodies = 100;
+
+// Attempts from one start, each with the newly found states deflated.
 constexpr int tries = 4;
 
-// The way of the branch on which a lies.
+// The branch side that contains a.
 Way way_to(const Model& model, const Branch& branch, double a) {
     auto all = ways_of(model, branch);
     const auto there = std::ranges::find_if(all, [&](const Way& way) { return way.branch.to * a > 0; });
     return there != all.end() ? *there : all.back();
 }
 
-// Reproducible, whatever the library.
+// Uniform in [-1, 1], reproducible with any standard library.
 double draw(std::minstd_rand& random) { return 2 * static_cast<double>(random()) / 2147483647 - 1; }
 
 std::vector<Pose> drawn(const Model& model) {
@@ -45,7 +49,7 @@ std::vector<Pose> drawn(const Model& model) {
     return poses;
 }
 
-// Every body as far on the other side of its design position.
+// Mirrors every body's displacement about its design position.
 std::vector<Pose> mirrored(const Model& model, const std::vector<Pose>& poses) {
     std::vector<Pose> other;
     for (std::size_t b = 0; b < poses.size(); ++b) {
@@ -77,7 +81,8 @@ void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium
     }
 }
 
-// Whether the boxes of two proofs have nothing in common: some body is in another place in each.
+// Whether the boxes of two proofs are disjoint: some body's poses are separated by more than both
+// bounds.
 bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
     for (std::size_t k = 0; k < a.state.poses.size(); ++k) {
         const Pose &p = a.state.poses[k], &q = b.state.poses[k];
@@ -87,8 +92,9 @@ bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
     return false;
 }
 
-// Whether a joint is put together the other way round. Two perpendicular directions u_i ⟂ v_j, w_j keep the axis u_i along
-// ±v_j × w_j, three keep the bodies from turning at all, but for half turns; what is drawn says which.
+// Whether a joint is assembled in reverse. Two perpendicular directions u_i ⟂ v_j, w_j keep the
+// axis u_i along ±v_j × w_j, and three fix the rotation up to half turns; the design position
+// selects the sign.
 bool is_other_way_round(const Model& model, const Equilibrium& state) {
     const auto axes = [&](BodyId body, bool drawn) {
         if (body == ground) return Quaterniond::Identity();
@@ -142,7 +148,14 @@ AllEquilibria find_all(const Model& model, const Branch& branch, double a, const
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what));
     };
 
-    // As it is walked.
+    if (model.bodies.size() > most_bodies) {
+        all.outcome = Outcome::too_large;
+        all.detail =
+            fmt::format("{} bodies, equilibria are searched for up to {}", model.bodies.size(), most_bodies);
+        return all;
+    }
+
+    // The equilibria on the branch as it is traced.
     say("the branch");
     std::vector<double> values;
     constexpr int pieces = 8;
@@ -191,11 +204,14 @@ AllEquilibria find_all(const Model& model, const Branch& branch, double a, const
     for (int k = 0; k < options.at_random; ++k) starts.push_back(at_random(reached, size, random));
     for (; !starts.empty(); starts.pop_front()) {
         const auto start = starts.front();
+        // The first attempt is without deflation, which lengthens steps, possibly across the knot
+        // of a stop and away.
         for (int k = 0; k < tries; ++k) {
             const std::size_t before = known.size();
             ++all.starts;
-            add(leg::solve_from(way.model, way.branch, a, start, known), false);
-            if (known.size() == before) break;
+            const std::span<const Equilibrium> away_from(known.data(), k == 0 ? 0 : known.size());
+            add(leg::solve_from(way.model, way.branch, a, start, away_from), false);
+            if (k > 0 && known.size() == before) break;
         }
     }
 

@@ -1,14 +1,16 @@
-// All equilibria that can be found at one value of a branch's parameter: each proved, and what it means for the branch.
+// Multiple equilibria at one value of a branch parameter: multi-start search with deflation, each
+// equilibrium proved by interval arithmetic.
 //
-// A branch is one curve. At its end, and beside it, there may be others: a suspension that snaps over has two stable
-// equilibria at one load, and an unstable one between them. They are looked for by the equilibrium leg, from the points of
-// the branch, from both sides of every equilibrium along its softest motions, from the mirror image of how far the branch
-// has moved, and from poses at random; what is known is taken out of the equations (deflation), so that Newton's method
-// comes to others. What is found is there, by proof; that there is no other is not said.
+// A branch is one curve. Other equilibria may exist at its end and beside it: at snap-through a
+// suspension has two stable equilibria at one load and an unstable one between them. The
+// equilibrium leg starts from the points of the branch, from both sides of every equilibrium along
+// its softest motions, from the mirror image of the branch's displacement, and from random poses.
+// Deflation removes the known equilibria from the equations, so that Newton's method converges to
+// others. Every listed equilibrium is proved; completeness of the list is not claimed.
 //
-// The constraints that a joint is made of also hold with an axis or a slide turned round by half a turn. Nobody puts it
-// together that way: such states are counted and left out. So are those with a body turned over, of which rigid bodies on
-// springs have hundreds.
+// The constraints of a joint also hold with an axis or a slide reversed by half a turn. Such
+// assemblies are not built: these states are counted and left out. So are states with a body turned
+// over, of which rigid bodies on springs have hundreds.
 #pragma once
 
 #include <functional>
@@ -24,24 +26,26 @@
 namespace elastocheck::compare {
 
 struct FindOptions {
-    double turn = 1.5707963267948966;  // [rad] a body turned further than this is no suspension any more
-    int at_random = 24;                // poses at random
-    int motions = 3;                   // softest ones of every equilibrium
-    unsigned long seed = 1;            // of the poses at random
+    // [rad] states with a body rotated further than this are left out
+    double turn = 1.5707963267948966;
+    int at_random = 24;      // number of random poses
+    int motions = 3;         // number of softest motions tried per equilibrium
+    unsigned long seed = 1;  // of the random poses
     std::function<void(std::string_view)> progress = {};
 };
 
 struct FoundEquilibrium {
     Equilibrium state;
     reference::certificate::Certificate proof;
-    bool stable = false;     // by the sign of its least stiffness
-    double stiffness = 0;    // the least of what is free and resisted, scaled by the leg
-    bool on_branch = false;  // as it is walked from the design position
-    // From the branch's own equilibrium, or from the last before its end, or, where none begins, from the drawing: the
-    // place that is farthest.
+    bool stable = false;  // by the sign of its smallest stiffness
+    // smallest stiffness of the motions that are free and resisted, scaled by the leg
+    double stiffness = 0;
+    bool on_branch = false;  // lies on the branch as it is continued from the design position
+    // Largest displacement of any body from the branch's own equilibrium; from the last one before
+    // the branch's end; or, if no branch starts, from the design position.
     double length = 0;      // [m]
     double angle = 0;       // [rad]
-    std::string body = {};  // that moves so far
+    std::string body = {};  // body with that displacement
     std::string meaning = {};
 };
 
@@ -49,14 +53,15 @@ struct AllEquilibria {
     std::string branch;
     Unit unit = Unit::newton;
     double a = 0;                          // SI
-    Outcome outcome = Outcome::converged;  // of the branch on its way to a, by the equilibrium leg
+    Outcome outcome = Outcome::converged;  // outcome of the equilibrium leg on the branch up to a
     std::string detail = {};
-    bool begins = true;                       // the branch: its first point is a stable equilibrium
-    std::vector<FoundEquilibrium> list = {};  // that of the branch first, then the nearest
-    int other_way_round = 0;  // equilibria with a joint put together the other way round: not in the list
-    int turned_over = 0;      // ... with a body turned by more than FindOptions::turn: neither
-    int starts = 0;           // poses that were started from
-    bool proved = false;      // every one, and every two to be two
+    bool begins = true;                       // the first point of the branch is a stable equilibrium
+    std::vector<FoundEquilibrium> list = {};  // the branch's own first, then by distance
+    int other_way_round = 0;                  // equilibria with a reversed joint: not in the list
+    // equilibria with a body rotated by more than FindOptions::turn: not in the list
+    int turned_over = 0;
+    int starts = 0;       // number of start poses
+    bool proved = false;  // every equilibrium is proved, and every two are proved distinct
 
     int stable() const;
 };

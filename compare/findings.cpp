@@ -9,7 +9,7 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are the arithmetic's
+constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are rounding
 
 const LegRun& run_of(const BranchComparison& branch, Leg leg) {
     return branch.runs[static_cast<std::size_t>(leg)];
@@ -24,21 +24,15 @@ std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& re
             if (!channel.main || channel.unit != unit) continue;
             const Deviation& d = found.channels[c];
             if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
-            worst = Worst{branch.branch, channel.name, unit, d.max, d.end, d.range};
+            worst = Worst{.branch = branch.branch,
+                          .channel = channel.name,
+                          .unit = unit,
+                          .max = d.max,
+                          .end = d.end,
+                          .range = d.range};
         }
     }
     return worst;
-}
-
-bool readable(const Comparison& comparison, const BranchComparison& branch) {
-    if (branch.abscissa < 0) return false;
-    const auto c = static_cast<std::size_t>(branch.abscissa);
-    if (comparison.channels[c].main) return true;  // of a mechanism, which may be small; not a wheel's travel
-    const Curve& truth = run_of(branch, Leg::equilibrium).curve;
-    if (truth.values.empty()) return false;
-    const auto x = truth.channel(c);
-    const auto [low, high] = std::ranges::minmax(x);
-    return high - low >= least_travel;
 }
 
 // ---- What a branch does to a wheel.
@@ -54,11 +48,11 @@ struct Lifted {
     Lift by = Lift::none;
     int joint = -1;     // of the jack
     double force = 0;   // of the load, per unit of the parameter [N]
-    double height = 0;  // of the road, likewise [m]
+    double height = 0;  // of the road per unit of the parameter [m]
 };
 
-// The height of the road per unit of what drives the preload, if the element is the tyre under this wheel, which pushes
-// it up by P - k_t (d_z - h): its preload is -P - k_t h.
+// Road height per unit of the driven preload, if the element is the tyre under this wheel, which
+// pushes the wheel up by P - k_t (d_z - h): its preload is -P - k_t h.
 double road_height(const Elastic& elastic, const Preload& driven, const Wheel& wheel) {
     const auto* tyre = std::get_if<Bushing>(&elastic.kind);
     const bool is_tyre = tyre != nullptr && elastic.only_where_driven && wheel.tyre_rate > 0 &&
@@ -67,7 +61,7 @@ double road_height(const Elastic& elastic, const Preload& driven, const Wheel& w
     return is_tyre ? -driven.direction[2] / wheel.tyre_rate : 0;
 }
 
-// The one thing that moves, if it is vertical and takes hold of this wheel's body.
+// The only driver that moves, if it is vertical and acts on this wheel's body.
 Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
     Lifted found;
     for (const auto& driver : branch.drivers) {
@@ -75,7 +69,7 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
             const auto* road = std::get_if<Preload>(&driver.what);
             if (road != nullptr &&
                 road_height(model.elastics[static_cast<std::size_t>(road->elastic)], *road, wheel) != 0)
-                return {};  // what lifts the wheel off its tyre has to bear that too
+                return {};  // a wheel lifted off its tyre also carries the tyre force
             continue;
         }
         const Lifted one = std::visit(
@@ -113,10 +107,22 @@ const Reading& reading_of(const Pair& pair, ReadingKind kind) {
     return kind == ReadingKind::equal_parameter ? pair.equal_parameter : pair.equal_abscissa;
 }
 
+bool is_readable(const Comparison& comparison, const BranchComparison& branch) {
+    if (branch.abscissa < 0) return false;
+    const auto c = static_cast<std::size_t>(branch.abscissa);
+    // an output of a mechanism, whose range may be small; not a wheel's travel
+    if (comparison.channels[c].main) return true;
+    const Curve& truth = run_of(branch, Leg::equilibrium).curve;
+    if (truth.values.empty()) return false;
+    const auto x = truth.channel(c);
+    const auto [low, high] = std::ranges::minmax(x);
+    return high - low >= least_travel;
+}
+
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
     static const Reading none{};
     return worst_of(comparison, unit, [&](const BranchComparison& branch) -> const Reading& {
-        return kind == ReadingKind::equal_parameter || readable(comparison, branch)
+        return kind == ReadingKind::equal_parameter || is_readable(comparison, branch)
                    ? reading_of(branch.deviation, kind)
                    : none;
     });
@@ -160,7 +166,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 if (std::abs(error.over) < least_travel) continue;
                 error.travel = fast.values[end][travel] - truth.values[end][travel];
                 const double change = (truth.a[end] - truth.a[truth.start]) / in_unit(branch.unit);
-                // [N]: of the load, of the jack, of the tyre on the road: k_t (Δh - Δz), z of the contact patch
+                // Lifting force [N]: of the load; of the jack; of the tyre on the road, k_t
+                // (Δh - Δz) with z of the patch
                 const auto lifting = [&](const LegRun& run) {
                     if (by.by == Lift::load) return by.force * change;
                     if (by.by == Lift::jack) return gained(run.curve, force, end);
@@ -170,7 +177,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                     const auto& [front, start, middle, back] = run.landmarks;
                     return wheel.tyre_rate * (by.height * change - (z(end == 0 ? front : back) - z(start)));
                 };
-                // [N/mm]: under a load the same force over travels that differ, on a jack forces that differ
+                // [N/mm]: under a load, equal force over different travel; on a jack, different
+                // forces
                 const auto rate = [&](const LegRun& run) {
                     return lifting(run) / gained(run.curve, travel, end);
                 };
@@ -196,7 +204,7 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
 std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study, const std::string& method) {
     std::optional<GapPart> found;
     for (const auto& branch : comparison.branches) {
-        const BranchStudy* way = nullptr;  // the one that ends where the branch does
+        const BranchStudy* way = nullptr;  // the study of the branch side with the same end
         for (const auto& candidate : study.branches)
             if (candidate.belongs_to == branch.branch) way = &candidate;
         if (way == nullptr) continue;

@@ -7,17 +7,17 @@
 
 #include "compare/deformation.hpp"
 #include "models/compile.hpp"
+#include "models/curve.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing =
-    1e-9;  // [mm], [deg]: less than this is the arithmetic's, whichever formulation it is of
+constexpr double nothing = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
 bool is_zero(const ScalarLaw& law) { return !(steepest(law) > 0); }
 
-// How many of the six deformations it resists.
+// Number of the six deformations that have a stiffness.
 int axes_resisted(const SpatialLaw& law) {
     return std::visit(
         overloaded{[](const LinearStiffness& u) {
@@ -37,7 +37,7 @@ struct Solved {
 
 std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::size_t channel) {
     FormulationSpread found{.channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
-    // What every curve reaches, around where they begin.
+    // Range that every curve reaches, around the start points.
     std::size_t before = all.front().curve.start, after = all.front().curve.a.size();
     for (const auto& one : all) {
         before = std::min(before, one.curve.start);
@@ -76,18 +76,11 @@ Scene reformulated(const Scene& scene, const Formulation& formulation) {
     return result;
 }
 
-FormulationStudy formulation_study(const Scene& scene, int steps, int every,
-                                   const std::function<void(std::string_view)>& progress) {
+FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& scenes, int steps, int every,
+                              const std::function<void(std::string_view)>& progress) {
     FormulationStudy study;
-    for (const auto& elastic : scene.elastics)
-        if (is_reformulated(elastic)) study.bushings.push_back(elastic.name);
-    if (study.bushings.empty()) {
-        study.inconclusive.emplace_back("the scene has no bushing that leaves a choice");
-        return study;
-    }
     std::vector<std::pair<std::string, Model>> models;
-    for (const auto& [name, formulation] : formulations)
-        models.emplace_back(name, compile(formulation ? reformulated(scene, *formulation) : scene));
+    for (const auto& [name, scene] : scenes) models.emplace_back(name, compile(scene));
     for (const auto& channel : channels(models.front().second))
         if (channel.main) study.channels.push_back(channel);
 
@@ -126,6 +119,38 @@ FormulationStudy formulation_study(const Scene& scene, int steps, int every,
         study.branches.push_back(std::move(spread));
     }
     return study;
+}
+
+FormulationStudy formulation_study(const Scene& scene, int steps, int every,
+                                   const std::function<void(std::string_view)>& progress) {
+    std::vector<std::string> bushings;
+    for (const auto& elastic : scene.elastics)
+        if (is_reformulated(elastic)) bushings.push_back(elastic.name);
+    if (bushings.empty()) {
+        FormulationStudy none;
+        none.inconclusive.emplace_back("the scene has no bushing that leaves a choice");
+        return none;
+    }
+    std::vector<std::pair<std::string, Scene>> scenes;
+    for (const auto& [name, formulation] : formulations)
+        scenes.emplace_back(name, formulation ? reformulated(scene, *formulation) : scene);
+    FormulationStudy study = spread_among(scenes, steps, every, progress);
+    study.bushings = std::move(bushings);
+    return study;
+}
+
+Conversion converted(const Scene& scene, const Formulation& formulation) {
+    Conversion result{scene, {}};
+    for (Elastic& elastic : result.scene.elastics) {
+        auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr || elastic.only_where_driven ||
+            elastic.written_as == WrittenAs::torsion_spring || bushing->formulation == formulation ||
+            turned_round(*bushing).formulation == formulation)
+            continue;
+        bushing->formulation = formulation;
+        result.bushings.push_back(elastic.name);
+    }
+    return result;
 }
 
 }  // namespace elastocheck::compare

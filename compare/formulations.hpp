@@ -1,12 +1,13 @@
-// How much the outputs depend on what a bushing is taken to measure (models/mechanism.hpp: Formulation): the choice in
-// which tools differ, and all are right.
+// Spread of the outputs over bushing formulations (models/mechanism.hpp: Formulation), the
+// modelling choice in which tools differ legitimately.
 //
-// One scene, solved by the equilibrium leg once for every formulation on a list, with the same numbers in it. The
-// spread of an output at a value of the parameter is the largest less the smallest of its values. A tool that is
-// compared with this one may be off by that, and be right.
+// The equilibrium leg solves one scene with the same numbers once per listed formulation. The
+// spread of an output at a parameter value is the largest minus the smallest of its values. Another
+// tool may deviate from this one by that spread and be correct.
 //
-// Every bushing is reformulated but those that leave no choice: what resists along or about one axis alone, a tyre or
-// a torsion spring; and what is written with its frame in the middle, as a beam is, whose stiffness is meant there.
+// Every bushing is reformulated except those without a choice: elements that act along or about one
+// axis only, tyres, torsion springs, and elements with their frame in the middle, such as beams,
+// whose stiffness is defined in that frame.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compare/compare.hpp"
@@ -23,7 +25,7 @@ namespace elastocheck::compare {
 
 struct NamedFormulation {
     std::string_view name;
-    std::optional<Formulation> formulation;  // none: each bushing's own
+    std::optional<Formulation> formulation;  // none: each bushing keeps its own
 };
 inline constexpr std::array formulations{
     NamedFormulation{"as written", std::nullopt},
@@ -32,43 +34,58 @@ inline constexpr std::array formulations{
     NamedFormulation{"frame in the middle", Formulation{.frame = Formulation::Frame::middle}},
     NamedFormulation{"Cardan angles", Formulation{.angles = Formulation::Angles::cardan}},
     NamedFormulation{"projected angles", Formulation{.angles = Formulation::Angles::projected}},
-    // A commercial code's: forces straight along the axes of the second marker.
+    // Convention of a commercial code: forces along the axes of the second marker.
     NamedFormulation{"commercial", Formulation{.frame = Formulation::Frame::on_j,
                                                .angles = Formulation::Angles::projected,
                                                .conjugate = false}},
     NamedFormulation{"without offset moment", Formulation{.offset_moment = false}},
 };
 
-// Whether the element leaves a choice, as above.
+// Whether the element is reformulated, by the rule above.
 bool is_reformulated(const Elastic& elastic);
 Scene reformulated(const Scene& scene, const Formulation& formulation);
 
 // One output over one branch.
 struct FormulationSpread {
-    std::size_t channel = 0;      // position in FormulationStudy::channels
-    double spread = 0;            // in the channel's unit, where it is largest
-    double at = 0;                // there: the parameter in the branch's unit
-    std::string lowest, highest;  // whose values they are; empty where there is no spread
+    std::size_t channel = 0;  // position in FormulationStudy::channels
+    double spread = 0;        // in the channel's unit, where it is largest
+    double at = 0;            // parameter of the largest spread, in the branch's unit
+    // formulations with the lowest and highest value; empty without a spread
+    std::string lowest, highest;
 };
 struct BranchSpread {
     std::string branch;
     Unit unit = Unit::newton;             // of its parameter
-    std::vector<std::string> solved;      // formulations that the spread is over
-    std::vector<std::string> not_solved;  // those that are not in it, with the reason
+    std::vector<std::string> solved;      // formulations included in the spread
+    std::vector<std::string> not_solved;  // formulations that failed, with the reason
     std::vector<FormulationSpread> outputs;
 };
 struct FormulationStudy {
     std::vector<Channel> channels;      // the main ones
-    std::vector<std::string> bushings;  // that were reformulated
+    std::vector<std::string> bushings;  // names of the reformulated bushings
     std::vector<BranchSpread> branches;
-    std::vector<std::string>
-        inconclusive;  // why there is no spread: no bushing to reformulate, fewer than two solved
+    // reason why there is no spread: no bushing to reformulate, fewer than two solved
+    std::vector<std::string> inconclusive;
 
     bool conclusive() const { return inconclusive.empty(); }
 };
 
-// `scene` as it is solved: trimmed already. Curves are read at `steps` equal increments of a branch (0: as many as it
-// says), or at every so-many-th of them, of all formulations up to the first value that one of them does not reach.
+// Converts every bushing to one formulation, that of another program, for `export`. Not converted:
+// torsion springs, tyres, and bushings that have this formulation already, also with their markers
+// exchanged. Rates, preloads and curves keep their values, so the law differs under rotation.
+struct Conversion {
+    Scene scene;
+    std::vector<std::string> bushings;  // names of the converted bushings
+};
+Conversion converted(const Scene& scene, const Formulation& formulation);
+
+// Spread of the outputs over scenes with the same branches, as below; `bushings` stays empty.
+FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& scenes, int steps = 0,
+                              int every = 1, const std::function<void(std::string_view)>& progress = {});
+
+// Spread over the listed formulations. `scene` is the scene as it is solved, already trimmed. Each
+// branch has `steps` equal increments (0: its own number), of which every `every`-th is compared,
+// up to the first value that one of the formulations does not reach.
 FormulationStudy formulation_study(const Scene& scene, int steps = 0, int every = 1,
                                    const std::function<void(std::string_view)>& progress = {});
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int points_per_branch = 11;
 
-// A baseline is read by people, and to them the round-off of a build is no news: nine decimals. Adding zero
-// turns -0 into 0.
+// Rounds to nine decimals, so that round-off of a build does not change the text of a baseline.
+// Adding zero turns -0 into 0.
 double rounded(double value) {
     constexpr double digits = 1e9;  // mm, deg, N, N·m
     return std::round(value * digits) / digits + 0.0;
@@ -49,7 +49,7 @@ bool is_compliance(Quantity q) {
     return q == Quantity::compliance_recursive || q == Quantity::compliance_equilibrium;
 }
 
-// Where a characteristic is kept: at the first of the parameters, at the one nearest to 0, at the last.
+// Indices at which a characteristic is kept: the first parameter, the one nearest to 0, the last.
 std::vector<std::size_t> landmarks(const std::vector<double>& a) {
     const auto nearest = std::ranges::min_element(a, {}, [](double x) { return std::abs(x); });
     std::vector<std::size_t> at;
@@ -90,7 +90,8 @@ const Allowance* tolerance_of(const Tolerances& tolerances, const Series& s) {
 bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
 bool sane(const Allowance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
 
-// By how much a number of the series has to move until an engineer notices: as the baseline says, else as usual.
+// Smallest change of a number of the series that an engineer notices: from the baseline, else the
+// default.
 double noticeable(const Baseline& baseline, const Series& s) {
     static const Tolerances usual = default_tolerances(ToleranceClass::physical);
     const auto own = baseline.tolerances.find(ToleranceClass::physical);
@@ -99,7 +100,7 @@ double noticeable(const Baseline& baseline, const Series& s) {
     return t == nullptr ? 0 : t->atol + t->rtol * scale(baseline.accepted, s);
 }
 
-// What is within the suspension, or within the solver, and not what it does to the wheel.
+// Forces within the suspension and counters of the solver, in contrast to wheel outputs.
 bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.unit == "count"; }
 
 int rank(const Offence& o) {
@@ -107,7 +108,7 @@ int rank(const Offence& o) {
     return (o.noticed() > 1 ? 1 : 3) + (is_inner(o) ? 1 : 0);
 }
 
-// One accepted series against what was measured of it.
+// Judges one accepted series against its measurement.
 void judge_series(const Baseline& baseline, const Tolerances& tolerances, const Series& was,
                   const Measurement& measurement, Verdict& verdict) {
     const auto cannot = [&](const std::string& why) {
@@ -183,8 +184,8 @@ std::string described(const GatedBranch& branch) {
                        branch.unit);
 }
 
-// The branches that can be compared: there are both, at the same parameters. Numbers elsewhere answer another
-// question, so the series of the rest are not looked at.
+// Branches present on both sides at the same parameters. Series of the other branches are not
+// compared, since numbers at other parameters are not comparable.
 std::vector<std::string> common_branches(const Baseline& baseline, const Measurement& measurement,
                                          Verdict& verdict) {
     std::vector<std::string> common;
@@ -209,7 +210,7 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
     return common;
 }
 
-// The matrices where the first branch begins, a row a series.
+// Compliance matrices at the start of the first branch, one series per row.
 void add_compliance(const Model& model, const Comparison& comparison, std::vector<Series>& series) {
     if (comparison.branches.empty()) return;
     const auto& branch = comparison.branches.front();
@@ -312,7 +313,8 @@ Tolerances default_tolerances(ToleranceClass kind) {
                     {"deg", {5e-9, 0}},
                     {"N", {7e-8, 0}},
                     {"N·m", {5e-9, 0}},
-                    {"%", {2e-5, 0}},  // of a cotangent at 2 deg: 5e-9 deg are 800 times as much, in percent
+                    // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
+                    {"%", {2e-5, 0}},
                     {"count", {1, 0.012}},
                     {"characteristic", {1e-8, 1e-8}},
                     {"compliance", {1e-8, 1e-8}}};
@@ -339,7 +341,7 @@ Measurement measure(const Model& model, const Comparison& comparison) {
         const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
         const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
 
-        // What both reached, around where they begin.
+        // Range that both runs reached, around their start.
         const Curve &of_r = recursive.curve, &of_e = equilibrium.curve;
         const std::size_t before = std::min(of_r.start, of_e.start);
         const std::size_t points = before + std::min(of_r.a.size() - of_r.start, of_e.a.size() - of_e.start);
@@ -399,7 +401,8 @@ Verdict judge(const Baseline& baseline, const Measurement& measurement, Toleranc
         verdict.reasons.push_back(fmt::format("the baseline is of scene '{}', this is '{}'",
                                               baseline.accepted.scene, measurement.scene));
     const auto common = common_branches(baseline, measurement, verdict);
-    // A series of a branch that neither side lists is looked at too: nothing may slip through.
+    // A series of a branch that neither side lists is compared too, so that none is skipped
+    // silently.
     const auto looked_at = [&](const std::string& branch) {
         return std::ranges::find(common, branch) != common.end() ||
                (find(baseline.accepted, branch) == nullptr && find(measurement, branch) == nullptr);

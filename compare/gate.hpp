@@ -1,7 +1,8 @@
-// The gate: what one run of a scene measured, against what was accepted before.
+// Regression gate: compares the measurement of one run of a scene with its accepted baseline.
 //
-// Both are lists of series of numbers with a key. Everything that was accepted must be there again, nothing
-// else may be, and every number must lie within its tolerance. What cannot be compared is never a pass.
+// Both are lists of series of numbers with a key. Every accepted series must be present again, no
+// other series may be present, and every number must lie within its tolerance. A series that cannot
+// be compared is never a pass.
 #pragma once
 
 #include <map>
@@ -13,27 +14,30 @@
 
 namespace elastocheck::compare {
 
-// How alike the build that was accepted and the one that is judged are.
+// Similarity of the build that made the baseline and the judged build.
 enum class ToleranceClass {
-    same_build,   // compiler, flags, libraries and CPU are the same: only rounding of the file
+    same_build,   // same compiler, flags, libraries and CPU: only rounding of the file
     cross_build,  // any of them differs: round-off, measured over compilers and flags
-    physical,     // other methods or libraries: what an engineer would notice
+    physical,     // other methods or libraries: differences that an engineer would notice
 };
 inline constexpr std::array tolerance_classes{ToleranceClass::same_build, ToleranceClass::cross_build,
                                               ToleranceClass::physical};
 const char* name(ToleranceClass kind);  // "same-build", ...
 
-// What a series tells about a branch.
+// Quantity of a series on a branch.
 enum class Quantity {
-    recursive,                 // a channel of the recursion along the branch
-    equilibrium,               // ... of the equilibrium leg
-    characteristic_recursive,  // kinematics and compliance at the start and the ends of the branch, by the recursion
+    recursive,    // a channel of the recursion along the branch
+    equilibrium,  // ... of the equilibrium leg
+    // kinematics and compliance at the start and the ends of the branch, by the recursion
+    characteristic_recursive,
     characteristic_equilibrium,  // ... by the equilibrium leg
-    compliance_recursive,        // a row of the compliance matrix at the start of the first branch, likewise
+    // row of the compliance matrix at the start of the first branch, by the recursion
+    compliance_recursive,
     compliance_equilibrium,
-    deviation_at_equal_parameter,  // the largest |recursion - equilibrium leg| over all points, one number
-    deviation_at_equal_abscissa,   // likewise
-    work_recursive,                // counters of a leg: steps, factorisations, iterations, evaluations
+    // the largest |recursion - equilibrium leg| over all points, one number
+    deviation_at_equal_parameter,
+    deviation_at_equal_abscissa,  // likewise
+    work_recursive,               // counters of a leg: steps, factorisations, iterations, evaluations
     work_equilibrium,
     work_energy,
 };
@@ -48,48 +52,51 @@ inline constexpr std::array quantities{Quantity::recursive,
                                        Quantity::work_recursive,
                                        Quantity::work_equilibrium,
                                        Quantity::work_energy};
-const char* name(Quantity quantity);  // "recursive", "deviation at equal parameter", "work of recursive", ...
+// "recursive", "deviation at equal parameter", "work of recursive", ...
+const char* name(Quantity quantity);
 
 struct Series {
     std::string branch;
     Quantity quantity = Quantity::recursive;
-    std::string channel;  // or counter
+    std::string channel;  // or name of the counter
     std::string unit;     // "mm", "deg", "N", "N·m", "count"
-    std::vector<double>
-        values;  // one per kept parameter of the branch for a channel; of a characteristic at the
-                 // first of them, at the one nearest to 0 and at the last; a row of a matrix; else one
+    // per kept parameter of the branch for a channel; for a characteristic at the first, the one
+    // nearest to 0 and the last; a row of a matrix; else one value
+    std::vector<double> values;
 };
 
 struct GatedBranch {
     std::string name;
     std::string unit;       // of the parameter: "N", "mm", ...
-    std::vector<double> a;  // parameters at which channels are kept
+    std::vector<double> a;  // parameters at which channel values are kept
 };
 
 struct Measurement {
     std::string scene;
     std::vector<GatedBranch> branches;
-    std::vector<Series> series;             // sorted by branch, quantity, channel
-    std::vector<std::string> inconclusive;  // why the run itself proves nothing; empty when it does. The
-                                            // worst three of a branch and how many more
+    std::vector<Series> series;  // sorted by branch, quantity, channel
+    // reasons why the run itself is inconclusive, else empty: per branch the worst three and the
+    // number of the others
+    std::vector<std::string> inconclusive;
 };
 
-// Up to eleven points a branch, evenly spread, both ends included. Values are rounded to what a baseline
-// file holds.
+// Keeps up to eleven evenly spaced points per branch, both ends included. Values are rounded to the
+// digits of a baseline file.
 Measurement measure(const Model& model, const Comparison& comparison);
 
-// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve; the largest entry of a characteristic or of a
-// row of compliances; of the equilibrium leg's curve
-// for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
+// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve for a channel; the
+// largest entry for a characteristic or a row of compliances; the range of the equilibrium leg's
+// curve for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
 struct Allowance {
     double atol = 0, rtol = 0;
 };
 
-// By channel where it is listed, else "characteristic", "compliance", else by unit.
+// Keys: the channel where listed, else "characteristic", "compliance", else the unit.
 using Tolerances = std::map<std::string, Allowance>;
 Tolerances default_tolerances(ToleranceClass kind);
 
-// An absolute bound on a deviation, in the channel's unit, over every branch: it gates accuracy, not change.
+// Absolute bound on a deviation over every branch, in the channel's unit: it limits the error, not
+// the change.
 struct Limit {
     Quantity deviation = Quantity::deviation_at_equal_abscissa;
     std::string channel;
@@ -100,28 +107,30 @@ struct Baseline {
     Measurement accepted;
     std::map<ToleranceClass, Tolerances> tolerances;
     std::vector<Limit> limits;
-    std::string reason;  // of the last acceptance, in the words of who accepted it
+    std::string reason;  // reason given by the user for the last acceptance
 };
 
 struct Offence {
     std::string branch;
     Quantity quantity = Quantity::recursive;
     std::string channel, unit;
-    std::optional<double> a = {};  // where on the branch, for a channel, ...
-    std::string a_unit = {};       // ... in the unit of its parameter
-    bool of_limit = false;         // an absolute limit is broken; `was` is then the limit
+    std::optional<double> a = {};  // parameter of a channel value, ...
+    std::string a_unit = {};       // ... in the unit of the branch parameter
+    bool of_limit = false;         // an absolute limit is exceeded; `was` is that limit
     double was = 0, is = 0;        // accepted, measured
     double tolerance = 0;
-    double noticeable = 0;  // its tolerance in the class physical: by so much an engineer notices
+    // tolerance in class `physical`: the smallest change that an engineer notices
+    double noticeable = 0;
 
     double difference() const { return is - was; }
-    double share() const;    // of the tolerance, or of the limit; infinite where nothing is tolerated
-    double noticed() const;  // of what is noticeable, or of the limit
+    double share() const;    // ratio to the tolerance, or to the limit; infinite for tolerance zero
+    double noticed() const;  // ratio to `noticeable`, or to the limit
 };
 
-// Which of two offences a reader is told first. Round-off is judged in tolerances, but 0.18 N of a joint's reaction may
-// be 10⁸ of them and no news: a broken limit, then what an engineer would notice, then what he would not; of each, the
-// outputs before forces within the suspension and counters of work; of those, the larger share of what is noticeable.
+// Report order of two offences: exceeded limits first, then changes above `noticeable`, then the
+// others; within each class, wheel outputs before inner forces and counters of work; then the
+// larger ratio to `noticeable`. The ratio to the tolerance does not decide: 0.18 N of a joint
+// reaction may be 10⁸ round-off tolerances and still be irrelevant.
 bool comes_before(const Offence& a, const Offence& b);
 
 enum class Judgement { passed, failed, could_not_judge };
@@ -131,9 +140,9 @@ struct Verdict {
     ToleranceClass kind = ToleranceClass::same_build;
     int compared = 0;                  // numbers compared
     std::vector<Offence> offences;     // in the order of comes_before
-    std::vector<std::string> reasons;  // why (a part) could not be judged
+    std::vector<std::string> reasons;  // reasons why all or part of it could not be judged
 
-    // A broken limit is broken whatever else could not be judged; nothing compared is not a pass.
+    // An exceeded limit fails whatever else could not be judged; nothing compared is not a pass.
     Judgement judgement() const;
 };
 

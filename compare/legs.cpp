@@ -14,7 +14,9 @@
 #include "compare/characteristics.hpp"
 #include "compare/deformation.hpp"
 #include "compare/elements.hpp"
+#include "compare/tolerance.hpp"
 #include "models/branch.hpp"
+#include "recursive/diagnosis.hpp"
 #include "reference/energy/solve.hpp"
 #include "reference/equilibrium/solve.hpp"
 
@@ -23,10 +25,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Whether the k-th recorded point of a way is asked for.
+// Whether the k-th recorded point of a branch side is requested.
 bool is_asked_for(const Branch& way, int k, int every) { return k % every == 0 || k == way.steps; }
 
-// The parameters that are asked for on a way.
+// Requested parameters of a branch side.
 std::vector<double> grid(const Branch& way, int every) {
     std::vector<double> a;
     for (int k = 0; k <= way.steps; ++k)
@@ -44,7 +46,7 @@ EquilibriumPath recursion(const Way& way, recursive::Options options, int refine
     });
 }
 
-// Where curves go on for ever.
+// Runs the leg with extrapolated curves, without a check of their ends.
 EquilibriumPath walk_anywhere(const Way& way, const Gait& gait, const Visit& visit) {
     const auto& [model, branch] = std::tie(way.model, way.branch);
     switch (gait.leg) {
@@ -67,7 +69,8 @@ EquilibriumPath walk_anywhere(const Way& way, const Gait& gait, const Visit& vis
     return {};
 }
 
-// Both ways joined. Of what comes reversed a `Row` is kept until it may be handed over.
+// Joins both sides. The points of the reversed side are buffered as `Row` until they can be handed
+// over.
 template <class Row, class Read, class HandOver>
 EquilibriumPath join(const std::vector<Way>& ways, const Gait& gait, const Read& read,
                      const HandOver& hand_over) {
@@ -77,7 +80,8 @@ EquilibriumPath join(const std::vector<Way>& ways, const Gait& gait, const Read&
     const auto tell = [](const Way& way, const std::string& detail) {
         return fmt::format("{}: {}", way.name, detail);
     };
-    // Both begin at a = 0, where the same state settles: the second way's stands for both, if it has any.
+    // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
+    // has one.
     std::optional<Equilibrium> start;
     std::vector<Row> reversed;
     EquilibriumPath joined = walk(ways.front(), gait, [&](const Equilibrium& state) {
@@ -92,7 +96,7 @@ EquilibriumPath join(const std::vector<Way>& ways, const Gait& gait, const Read&
         hand_over(read(state));
     });
     if (start) hand_over(read(*start));
-    // What is not asked is asked on neither way.
+    // A leg that does not apply to one side does not apply to either.
     if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
     if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
     if (second.outcome != Outcome::converged) {
@@ -176,9 +180,18 @@ Row row_of(const Model& model, std::span<const Channel> channels, const Way& way
            const Equilibrium& state, Analyses& analyses) {
     Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
     std::optional<Answers> answers;
+    std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
         if (characteristic == nullptr) continue;
+        // At the corner of a law a stiffness has two values; rounding would select one of them.
+        if (channels[c].unit == Unit::newton_per_mm && channels[c].may_be_undefined()) {
+            if (!corner) corner = at_corner(way.model, way.branch, state);
+            if (*corner) {
+                row.values[c] = undefined;
+                continue;
+            }
+        }
         if (!answers) answers = answer(way, gait, steering_joint(model), state, analyses);
         row.values[c] = in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
     }
@@ -236,8 +249,8 @@ EquilibriumPath rest(const Way& way, Leg leg) {
     }
     if (!start) return path;
     path.detail = ends_at_table(way.model, way.branch, *start);
-    path.outcome = path.detail.empty() ? Outcome::converged  // how the rest of the way ends does not matter
-                                       : Outcome::outside_table;
+    // the outcome beyond this point is irrelevant
+    path.outcome = path.detail.empty() ? Outcome::converged : Outcome::outside_table;
     if (path.outcome == Outcome::converged) path.points.push_back(std::move(*start));
     return path;
 }
@@ -261,8 +274,8 @@ std::string nothing_moves(const Model& model, const std::vector<Channel>& channe
                 why += fmt::format("{}{}: {}", why.empty() ? ": " : "; ", omission.what, omission.why);
         return fmt::format("nothing drives branch '{}'{}", branch.name, why);
     }
-    // What an output may wander by when nothing moves it: a few units of the rounding of what the legs solve
-    // for.
+    // Movement that rounding can cause without a driver: a few units in the last place of the
+    // solved coordinates.
     double size = 0;
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (channels[c].main && channels[c].unit == Unit::mm)
@@ -302,10 +315,14 @@ References references(const Model& model, const std::vector<Channel>& channels, 
     result.truth_ended = equilibrium.outcome;
     result.truth = std::move(equilibrium.curve);
     result.other = std::move(second.curve);
-    result.uncertainty = {nan, nan};
+    result.uncertainty = {nan, nan, nan};
     if (!result.failures.empty()) return result;
-    result.uncertainty =
-        worse(distance(channels, result.truth, result.other), rounding_of(channels, result.truth));
+    result.extents = extents_of(channels, result.truth, result.scale);
+    const auto determined = determined_channels(channels, standing, recursive::diagnose(standing).determined);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!determined[c]) result.extents[c] = std::numeric_limits<double>::infinity();
+    result.uncertainty = worse(distance(channels, result.truth, result.other, result.extents),
+                               rounding_of(channels, result.truth, result.extents));
     if (const auto why = nothing_moves(model, channels, branch, result.truth); !why.empty())
         result.failures.push_back(why);
     return result;

@@ -21,7 +21,7 @@ std::size_t place_of(std::vector<std::string>& list, const std::string& word) {
     return place;
 }
 
-// What all the cells of one group come to.
+// Worst result over all cells of one group.
 struct Worst {
     bool wrong = false, honest = false, unknown = false;
     std::optional<double> digits;

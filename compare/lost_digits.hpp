@@ -1,6 +1,10 @@
-// What other arithmetic costs: of the sweep compare::other_arithmetic, how many of a double's sixteen digits of an answer
-// differ from those of the scene as it is, 16 + log10(distance of both / range), of each scene and each group of solvers the
-// most of all ways. They are lost to rounding, whether they were right or not; of those that were right, StressCell::lost.
+// Loss of digits under other floating-point arithmetic: evaluation of the sweep
+// compare::other_arithmetic.
+//
+// Counts how many of the sixteen digits of an answer differ from those of the unchanged scene,
+// 16 + log10(distance of both / range); per scene and solver group the largest over all branch
+// sides. Changed digits count whether they were correct or not; StressCell::lost counts the correct
+// ones.
 #pragma once
 
 #include <string>
@@ -10,28 +14,31 @@
 
 namespace elastocheck::compare {
 
-// "1.2"; or why there is no number:
+// "1.2"; or a sign where there is no number:
 //
-//   X  wrong      !  an honest outcome, by all that were asked      ?  converged, and not with the scene as it is      .  not asked
+//   X  wrong        !  reported failure of all requested solvers
+//   ?  converged here, but not with the unchanged scene        .  not requested
 using Loss = std::string;
 
 struct LostDigits {
-    std::vector<std::string> groups;    // "steps", all methods of the recursion that take them; "series", ...
+    // "steps", all methods of the recursion with steps; "series", ...
+    std::vector<std::string> groups;
     std::vector<std::string> variants;  // "rounded up"
     struct Row {
         std::string scene;
         std::vector<std::vector<Loss>> lost;  // per variant, per group
     };
     std::vector<Row> rows;
-    const StressCell* worst = nullptr;        // the one that loses most digits; none where nobody loses any
-    const StressCell* worst_right = nullptr;  // ... that were right
-    std::vector<const StressCell*> gave_up;   // honest here, converged with the scene as it is
+    const StressCell* worst = nullptr;        // the cell with the largest loss; null without a loss
+    const StressCell* worst_right = nullptr;  // ... of correct digits
+    // reported failure here, converged with the unchanged scene
+    std::vector<const StressCell*> gave_up;
 };
 
-// Of an answer that was told otherwise; NaN where either did not converge.
+// For the answer to a transformed scene; NaN where either solve did not converge.
 double digits_lost(const StressCell& cell);
 
-// Points into `survival`.
+// The result points into `survival`.
 LostDigits lost_digits(const Survival& survival);
 
 }  // namespace elastocheck::compare

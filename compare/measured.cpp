@@ -14,10 +14,10 @@ const Curve& curve_of(const BranchComparison& branch, Leg leg) {
     return branch.runs[static_cast<std::size_t>(leg)].curve;
 }
 
-// A leg's curve along one branch as it is read; made once, for points may be many.
+// Curve of a leg along one branch in one reading; built once for all points.
 struct Line {
-    std::vector<double> over;     // what points are placed by; empty where it turns back
-    std::vector<double> channel;  // the output that is asked for
+    std::vector<double> over;     // values that place points; empty where not monotonic
+    std::vector<double> channel;  // the requested output
 
     double at(double x) const { return reaches(over, x) ? interpolate(over, channel, x, 6) : nan; }
 };

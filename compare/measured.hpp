@@ -1,4 +1,4 @@
-// Measured points beside the calculated curves.
+// Comparison of the calculated curves with measured points.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace elastocheck::compare {
 
-// Leg less measurement. NaN where nothing was compared.
+// Leg minus measurement. NaN where nothing was compared.
 struct MeasuredDeviation {
     double signed_max = 0, rms = 0;
 };
@@ -23,14 +23,15 @@ struct MeasuredReading {
     std::vector<MeasuredRow> rows;
 };
 struct MeasuredComparison {
-    std::vector<std::string> branch;   // that each point was compared with; empty where none reaches it
-    std::vector<PointColumn> columns;  // as positions and angles, no longer as changes
+    // branch that each point was compared with; empty where no branch reaches the point
+    std::vector<std::string> branch;
+    std::vector<PointColumn> columns;  // as absolute positions and angles, no longer as changes
     std::vector<MeasuredReading> readings;
-    int compared = 0;  // numbers in all
+    int compared = 0;  // total of the compared numbers
 };
 
-// A point is compared with the branch it names and with no other. Throws std::invalid_argument where a branch
-// is not one of the comparison, or without names two branches lie on the same side.
+// A point is compared only with the branch it names. Throws std::invalid_argument for a branch that
+// is not in the comparison, or, for points without names, if two branches lie on the same side.
 MeasuredComparison compare_measured(const Model& model, const Comparison& comparison, const Points& measured);
 
 }  // namespace elastocheck::compare

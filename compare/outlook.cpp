@@ -10,7 +10,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Of a quantity at three places: where the line through the last two is zero, and how far the first is off it, as a share.
+// For a quantity at three points: zero of the line through the last two, and relative misfit of the
+// first.
 struct Line {
     double zero = 0, off = 0;
 };
@@ -36,7 +37,7 @@ std::optional<double> stiffness_gone_near(std::span<const Equilibrium> points) {
 
 namespace {
 
-// None farther ahead than the way behind.
+// Empty where the prediction is farther ahead than the path is long.
 std::optional<double> announced(std::span<const Equilibrium> points) {
     const auto gone = stiffness_gone_near(points);
     if (!gone || !(std::abs(*gone - points.back().load) <= std::abs(points.back().load))) return std::nullopt;

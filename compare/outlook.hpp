@@ -1,5 +1,5 @@
-// What a path whose points give account of themselves comes to: where the stiffness that is left will be gone, and whether
-// what its method promises is kept.
+// Extrapolates the remaining stiffness along a path to the next singular point, and checks the
+// points' error bounds against the tolerance of the method.
 #pragma once
 
 #include <optional>
@@ -13,29 +13,33 @@
 
 namespace elastocheck::compare {
 
-// The value of the parameter near which the stiffness is gone if it goes on falling as over the last three points: as a
-// straight line where the branch will divide, as the root of one where it will turn back (towards a limit point a* it is
-// √(a* - a)); whichever of both the three points fit. None where it does not fall, or nobody has given account.
+// Parameter value at which the stiffness, extrapolated from the last three points, vanishes. The
+// extrapolation is a straight line towards a bifurcation, and the root of a line towards a limit
+// point a*, where the stiffness falls as √(a* - a); the law that fits the three points better is
+// used. Empty where the stiffness does not fall, or the points have no estimate of it.
 std::optional<double> stiffness_gone_near(std::span<const Equilibrium> points);
 
-// "at this rate the stiffness is gone near -211.5 N"; empty where there is nothing to announce: no such value, or one
-// farther ahead than the way behind.
+// "at this rate the stiffness is gone near -211.5 N"; empty without a singular point ahead, or if
+// it is farther away than the path is long.
 std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit);
 
-// Since when the last points have announced it: the load of the first of those from which on each has.
+// Load of the first point from which on every point predicts the singular point; empty if the last
+// does not.
 std::optional<double> announced_from(std::span<const Equilibrium> points);
 
-// What a method promises of every point on its own: `adaptive` its tolerances; the series to be exact but for its own
-// tolerance and rounding, 1e-9 of the length of the scene [m] and 1e-9 rad. Of the others none.
+// Tolerance of a method at every point: `adaptive` has its tolerances; the series has its own
+// tolerance plus rounding, 1e-9 of the length of the scene [m] and 1e-9 rad. Empty for the other
+// methods.
 std::optional<ErrorBound> promised(const recursive::Method& method, double length);
 
-// Where the bounds of the points do not hold what is promised, in words; empty where all do.
+// Message about the points whose error bound exceeds the tolerance; empty if none does.
 std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise, ParameterUnit unit);
 
-// The same of points that come one after the other, however many: what is said of them, and the last three.
+// Running summary of the error bounds for a sequence of points of any length, with the last three
+// points.
 struct Accounts {
     int points = 0, beyond = 0, unbounded = 0;
-    double share = 1;  // of the promise, the most that one has
+    double share = 1;  // largest ratio of a bound to the tolerance
     ErrorBound worst_bound = {};
     double worst_load = 0;
     std::vector<Equilibrium> last = {};  // without poses
@@ -44,14 +48,15 @@ struct Accounts {
 void add(Accounts& accounts, const Equilibrium& point, const std::optional<ErrorBound>& promise);
 std::string unkept(const Accounts& accounts, const ErrorBound& promise, ParameterUnit unit);
 
-// Those of the ways of a branch, one way after the other, each from a = 0 on.
+// Summaries of the sides of a branch, one after the other, each from a = 0 on.
 struct BranchAccount {
     std::optional<ErrorBound> promise = {};
     std::vector<Accounts> ways = {};
 };
 void add(BranchAccount& account, const Equilibrium& point);
 
-// One line each: what is promised and not kept, where the stiffness will be gone and since when that is announced.
+// Messages, one line each: exceeded tolerances, predicted singular points and since when they are
+// predicted.
 std::vector<std::string> told(const BranchAccount& account, ParameterUnit unit);
 
 }  // namespace elastocheck::compare

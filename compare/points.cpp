@@ -8,7 +8,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Whether two branches go to different sides of a = 0: then a point without a name belongs to one at most.
+// Whether two branches lie on different sides of a = 0, so that an unnamed point belongs to at most
+// one.
 bool apart(const Branch& a, const Branch& b) {
     const auto low = [](const Branch& x) { return std::min(x.from, x.to); };
     const auto high = [](const Branch& x) { return std::max(x.from, x.to); };

@@ -1,4 +1,5 @@
-// Points that somebody else found, measured or computed: where each is on which branch, and what was found there.
+// External points, measured or computed: their branches, their positions on them, and their output
+// values.
 #pragma once
 
 #include <optional>
@@ -11,36 +12,38 @@ namespace elastocheck::compare {
 
 struct PointColumn {
     std::size_t channel = 0;  // position in Comparison::channels
-    bool change = false;      // counted from the design position
-    std::vector<double>
-        values;  // per point, in the channel's unit; NaN where nothing is said, infinite where what
-                 // is said is no number
+    bool change = false;      // relative to the design position
+    // per point, in the channel's unit; NaN for a missing value, infinite for a value that is not a
+    // number
+    std::vector<double> values;
 };
 
-// All vectors have one entry a point, or none.
+// All vectors have one entry per point, or none.
 struct Points {
-    std::vector<std::string> branch;  // on which branch; empty: of those on different sides of a = 0, the one
-                                      // that reaches the point
-    std::vector<double> a;            // parameter, in the branch's unit
-    std::optional<std::size_t> abscissa;  // a channel that says where a point is ...
-    std::vector<double> at;               // ... by its value
+    // name of the branch; empty: of branches on different sides of a = 0, the one that reaches the
+    // point
+    std::vector<std::string> branch;
+    std::vector<double> a;                // parameter, in the branch's unit
+    std::optional<std::size_t> abscissa;  // a channel that places the points ...
+    std::vector<double> at;               // ... by its values
     std::vector<PointColumn> columns;
 };
 
-// As positions and angles, no longer as changes.
+// Converts changes to absolute positions and angles.
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
                                        std::vector<PointColumn> columns);
 
-// Position in Comparison::branches of each point's branch, or -1 where none reaches it; `x` places the points, by the
-// parameter or by the channel. Throws std::invalid_argument where a branch is not one of the comparison, or without names
-// two branches lie on the same side.
+// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `x` places
+// the points, by the parameter or by the channel. Throws std::invalid_argument for a branch that is
+// not in the comparison, or, without names, if two branches lie on the same side.
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel);
 
-// What the points of a leg are placed by: the parameter, or a channel; empty where that turns back.
+// Values of a leg that place points: its parameter, or a channel; empty where the channel is not
+// monotonic.
 std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
-// Whether a sequence that rises or falls throughout reaches x.
+// Whether x lies within the range of a monotonic sequence.
 bool reaches(const std::vector<double>& over, double x);
 
 }  // namespace elastocheck::compare

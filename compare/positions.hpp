@@ -1,4 +1,4 @@
-// Where things are in a state, as compare/ sees it.
+// Positions of bodies and points in a state, as computed by compare/.
 #pragma once
 
 #include <vector>

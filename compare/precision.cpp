@@ -12,7 +12,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// The end of a curve alone: what more steps are judged by.
+// The last point of a curve, at which step counts are compared.
 Curve end_of(const Curve& curve) {
     if (curve.a.empty()) return {};
     return {.unit = curve.unit, .a = {curve.a.back()}, .start = 0, .values = {curve.values.back()}};
@@ -34,10 +34,10 @@ Floor floor_of(const std::vector<int>& steps, const std::vector<double>& values,
     for (std::size_t k = 0; k < values.size(); ++k)
         if (std::isfinite(values[k])) finite.push_back(k);
     if (finite.empty()) return {.least = nan};
-    // Below the uncertainty nothing is better than anything else.
+    // Values below the uncertainty count as equal.
     const auto value = [&](std::size_t i) { return std::max(values[finite[i]], uncertainty); };
-    // A third for four times the steps, and not by the luck of a single rounding: the next must stay there,
-    // or, at the finest, the one before have fallen as well.
+    // An improvement is a third for four times the steps. To exclude chance, the next level must
+    // keep it, or, at the finest level, the one before must have improved as well.
     const auto helps = [&](std::size_t i, double before) { return value(i) < before / 3; };
     Floor floor{.least = values[finite.front()]};
     std::size_t useful = 0;
@@ -61,7 +61,7 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
     constexpr int points = 10;  // of the references
     const Way way = ways_of(model, model.branches.front(), points).back();
     const Branch& branch = way.branch;
-    Way whole = way;  // of whose points the first and last are recorded
+    Way whole = way;  // only its first and last points are recorded
     whole.branch.steps = 1;
     study.branch = way.name;
     const auto all_channels = channels(model);

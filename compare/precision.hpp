@@ -1,12 +1,14 @@
-// The arithmetic as a part of the price: float, double, long double over the step count.
+// Floating-point precision study: errors in float, double and long double over the step count.
 //
-// More steps shrink the step error until round-off is all that is left; a method that adds up increments then
-// gets worse again, one that starts each step from the true residual stays where it is. Read at the end of
-// the first branch (of its last way, where it has two):
+// More steps reduce the step error until round-off dominates. A method that adds up increments then
+// gets worse again; one that starts each step from the true residual keeps its error. Evaluated at
+// the end of the first branch (of its last side, if it has two):
 //
-//   constraint  |Φ| of eq. (31), the constraint error, formed in the arithmetic itself. It needs no reference,
-//               so nothing but the arithmetic bounds it; for the published method it is the paper's own norm
-//   error       from the equilibrium leg, bounded by its uncertainty; for the published method by its gap
+//   constraint  |Φ| of eq. (31), the constraint error, computed in the arithmetic itself. It needs
+//               no reference, so only the arithmetic bounds it; for the published method it is the
+//               paper's own norm
+//   error       from the equilibrium leg, bounded by the reference uncertainty; for the published
+//               method by its formulation gap
 #pragma once
 
 #include <functional>
@@ -28,13 +30,15 @@ struct PrecisionLevel {
     Accuracy error;         // NaN unless converged
 };
 
-// Where more steps stop helping.
+// Step count beyond which more steps do not reduce the value.
 struct Floor {
-    double least = 0;  // smallest value over the steps; NaN of none
-    // No finer step count brings the value below a third of that here and keeps it there. 0: no number.
+    double least = 0;  // smallest value over the steps; NaN without values
+    // Smallest step count after which no finer one brings the value below a third and keeps it
+    // there. 0: none.
     int useful_steps = 0;
-    bool reached = false;    // there were finer ones
-    bool reference = false;  // the value there lies within the reference uncertainty, which explains it
+    bool reached = false;  // finer step counts were run
+    // the value there lies within the reference uncertainty, which explains the floor
+    bool reference = false;
 };
 
 struct PrecisionSeries {
@@ -47,24 +51,24 @@ struct PrecisionSeries {
 struct PrecisionOptions {
     std::vector<std::string> methods{"published", "tangent", "chord"};
     int fewest_steps = 10;
-    int most_steps = 1'000'000;  // in factors of four
+    int most_steps = 1'000'000;  // increased by factors of four
     double work_budget = 1e9;    // of one level: steps · (unknowns)³
     std::function<void(std::string_view)> progress = {};
 };
 
 struct PrecisionStudy {
-    std::string branch;  // or its way
+    std::string branch;  // or one side of it
     bool angles = false;
-    Accuracy uncertainty;  // of the reference there; NaN when one failed
+    Accuracy uncertainty;  // of the reference at the end; NaN when one leg failed
     std::vector<PrecisionSeries> series;
     std::vector<std::string> inconclusive;
 };
 
-// Throws std::invalid_argument for a method that is unknown or chooses its own steps.
+// Throws std::invalid_argument for an unknown method or one that chooses its own steps.
 PrecisionStudy precision_study(const Model& model, const PrecisionOptions& options = {});
 
-// Of values over steps, fewest first; those that are not finite
-// are passed over, those below the uncertainty are equal.
+// Floor of values over increasing steps. Values that are not finite are skipped; those below the
+// uncertainty count as equal.
 Floor floor_of(const std::vector<int>& steps, const std::vector<double>& values, double uncertainty = 0);
 
 }  // namespace elastocheck::compare

@@ -10,7 +10,7 @@ struct ConfigurationProfile {
     Outcome outcome = Outcome::converged;
 };
 
-// At every step of the configuration, or at the branch's own steps where it chooses its steps itself.
+// At every step of the configuration, or at the branch's own steps for an adaptive method.
 ConfigurationProfile profile(const Model& model, const Branch& branch, const TradePoint& configuration);
 
 }  // namespace elastocheck::compare

@@ -1,4 +1,5 @@
-// How many points of a path are proved to be equilibria (reference/certificate), and how well.
+// Counts of proved equilibria among the points of a path (reference/certificate), and their error
+// bounds.
 #pragma once
 
 #include <string>
@@ -11,15 +12,17 @@ namespace elastocheck::compare {
 using reference::certificate::Answer;
 using reference::certificate::Certificate;
 
-// Of some points of a path: how many are proved, and the worst that was proved.
+// Counts over some points of a path, and the largest proved error bounds.
 struct Tally {
     int points = 0, proved = 0, excluded = 0, open = 0;
-    int stable = 0;  // of the proved
-    // Of the proved: at most this far from the true equilibrium, which is alone at least this far. [m, rad, N, N·m]
+    int stable = 0;  // of the proved points
+    // Of the proved points: largest distance to the true equilibrium, and smallest radius within
+    // which it is unique. [m, rad, N, N·m]
     reference::certificate::Extent error{0, 0, 0, 0}, unique;
-    double held = 0, gap = 0;     // Certificate
-    std::string theorem = {};     // what it says beyond the equations, of the last point; empty: nothing
-    std::string not_proved = {};  // of the first point that is not: where, and why
+    double held = 0, gap = 0;  // as in Certificate
+    // additional statement of the certificate at the last point; empty: none
+    std::string theorem = {};
+    std::string not_proved = {};  // of the first point without a proof: place and reason
 
     void add(double load, Unit unit, const Certificate& certificate);
 };

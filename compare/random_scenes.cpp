@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// SplitMix64 (Steele, Lea and Flood 2014): the distributions of the standard library differ between libraries.
+// SplitMix64 (Steele, Lea & Flood 2014): the distributions of the standard library differ between
+// platforms.
 struct Random {
     std::uint64_t state = 0;
 
@@ -29,7 +30,7 @@ struct Random {
     double between(double low, double high) { return low + (high - low) * unit(); }
     int below(int n) { return static_cast<int>(unit() * n); }
     bool chance(double share) { return unit() < share; }
-    // How many of these come true.
+    // Number of successful draws.
     int count(std::initializer_list<double> chances) {
         int true_ones = 0;
         for (const double share : chances) true_ones += chance(share);
@@ -41,9 +42,10 @@ struct Random {
     }
 };
 
-// Nothing below draws twice among the arguments of one call: compilers take these in different orders.
+// Draw order: no call below draws twice among its arguments, since compilers evaluate arguments in
+// different orders.
 
-// What a branch may drive or hold, and how far it may sensibly go.
+// Something that a branch may drive or hold, and its sensible range.
 struct Drivable {
     std::string name;
     double range;  // SI
@@ -59,7 +61,9 @@ struct Builder {
     Random random;
     bool in_one_plane = false;
     double decade = 4;  // of the rates, about which most lie
-    double force = 0;   // what moves most things by a centimetre [N]
+    double force = 0;   // moves most parts by about a centimetre [N]
+    // Probabilities: a law is a curve, a spring has a bump stop, a branch moves a load.
+    double curves = 0.25, stopped = 0.2, loads = 0.5;
     std::vector<At> points;
     std::vector<std::string> bodies;  // their names
     std::vector<Drivable> drivables;
@@ -67,11 +71,11 @@ struct Builder {
         std::string points, bodies, joints, bushings, springs, stops, torsion_springs, beams, tyres,
             static_loads, loads, branches, wheels, probes;
     } text;
-    int count = 0;  // of names given
+    int count = 0;  // number of names given
 
     // ---- Numbers, as text
 
-    // Three digits of what `std::pow` makes: its last bit is the library's.
+    // Three digits of `std::pow`, whose last bit depends on the library.
     std::string decades(double low, double high) {
         return fmt::format("{:.2e}", std::pow(10, random.between(low, high)));
     }
@@ -91,7 +95,7 @@ struct Builder {
 
     std::string name(const char* kind) { return fmt::format("{}{}", kind, ++count); }
 
-    // In a cube of 0.8 m, on its millimetres; now and then where another one is.
+    // In a cube of 0.8 m on integer millimetres; sometimes at an existing point.
     At point() {
         if (!points.empty() && random.chance(0.1)) return random.one_of(points);
         const auto coordinate = [&] { return random.below(801) - 400; };
@@ -152,35 +156,36 @@ struct Builder {
                            symmetric ? ", symmetric: true" : "", unknown ? ", outside: unknown" : "", scale);
     }
     std::string rate_or_curve(double reach, double lever) {
-        return random.chance(0.25) ? "curve: " + curve(reach, lever) : "rate: " + rate(lever);
+        return random.chance(curves) ? "curve: " + curve(reach, lever) : "rate: " + rate(lever);
     }
-    // Open, just touching as drawn, or closed there.
+    // Open, just touching or closed in the design position.
     std::string stop() {
         const double clearance = random.chance(0.2) ? 0 : random.between(-0.005, 0.04);
         const std::string k = rate();
         return fmt::format("{{clearance: {:.3g}, rate: {}}}", clearance, k);
     }
 
-    // ---- What stands between two bodies
+    // ---- Joints and elements between two bodies
 
-    void joint(const std::string& i, const std::string& j) {
+    enum Kind { any = -1, distance = 7, in_plane = 8 };
+    void joint(const std::string& i, const std::string& j, Kind kind = any) {
         const std::string joint = name("j"), both = pair(i, j);
         const At p = point();
         const auto write = [&](const std::string& type, const std::string& fields) {
             text.joints += fmt::format("  {}: {{type: {}, {}, {}}}\n", joint, type, both, fields);
         };
         const auto at = [&] { return "at: " + p.name; };
-        // Hinges that may be driven, or held.
+        // Joints with one axis that may be driven or held.
         const auto hinge = [&](const std::string& type, double range) {
             const std::string fields = fmt::format("{}, axis: {}", at(), axis(p));
             write(type, fields + (random.chance(0.1) ? ", held: true" : ""));
             drivables.push_back({"joints." + joint, range});
-            // The same once more beside it on its axis, as a door has them.
+            // A duplicate beside it on the same axis, like the hinges of a door.
             if (random.chance(0.08)) {
                 text.joints += fmt::format("  {}: {{type: {}, {}, {}}}\n", name("j"), type, both, fields);
             }
         };
-        switch (random.below(12)) {
+        switch (kind == any ? random.below(12) : static_cast<int>(kind)) {
             case 0:
             case 1: write("spherical", at()); break;
             case 2: hinge("revolute", 0.6); break;
@@ -193,10 +198,11 @@ struct Builder {
                 break;
             }
             case 6: write("planar", fmt::format("{}, normal: {}", at(), axis(p))); break;
-            case 7: {
+            case distance: {
                 const At q = other_than(p);
                 const double drawn = (q.position - p.position).norm();  // [m]
-                // Now and then of another length than drawn, to be assembled first.
+                // Sometimes of a length other than in the design position, so that the scene has to
+                // be assembled first.
                 const double off = random.chance(0.1) ? random.between(-0.02, 0.02) : 0;
                 write("distance",
                       fmt::format("from: {}, to: {}{}", p.name, q.name,
@@ -204,7 +210,7 @@ struct Builder {
                 drivables.push_back({"joints." + joint, 0.2 * drawn});
                 break;
             }
-            case 8:
+            case in_plane:
                 write("in_plane", fmt::format("{}, normal: {}", at(), axis(p)));
                 drivables.push_back({"joints." + joint, 0.05});
                 break;
@@ -223,13 +229,13 @@ struct Builder {
         const std::string bushing = name("b");
         const At p = point();
         std::string fields;
-        // Any frame; of the one that is given by one axis a bushing has to be the same all round it.
+        // Any frame; a frame given by one axis would require a bushing symmetric about that axis.
         if (random.chance(0.5)) {
             const Vector3d z = direction();
             fields += fmt::format(", frame: {{z: {}, x: {}}}", list(z), list(z.unitOrthogonal()));
         }
         if (random.chance(0.1)) {
-            // K = Σ r rᵀ over some rows: symmetric, positive semidefinite, its axes coupled.
+            // K = Σ r rᵀ over some rows: symmetric, positive semidefinite, with coupled axes.
             Eigen::Matrix<double, 6, 6> K = Eigen::Matrix<double, 6, 6>::Zero();
             const double size = std::pow(10, std::floor(decade));
             for (int k = 3 + random.below(4); k > 0; --k) {
@@ -284,7 +290,7 @@ struct Builder {
         const At p = point(), q = other_than(p);
         const std::string law = rate_or_curve(0.05, 0);
         const bool is_curve = law.starts_with("curve");
-        // What leaves a free length.
+        // Preload that leaves a positive free length.
         const double length = (q.position - p.position).norm(),
                      most = is_curve ? 0 : std::min(force, 0.3 * length * std::stod(law.substr(6)));
         std::string fields = law;
@@ -293,7 +299,7 @@ struct Builder {
         else if (random.chance(0.1))
             fields += fmt::format(", free_length: {:.4f}",
                                   (q.position - p.position).norm() * random.between(0.8, 1.2));
-        if (random.chance(0.2)) fields += ", bump_stop: " + stop();
+        if (random.chance(stopped)) fields += ", bump_stop: " + stop();
         if (random.chance(0.1)) fields += ", rebound_stop: " + stop();
         text.springs +=
             fmt::format("  {}: {{{}, from: {}, to: {}, {}}}\n", spring, pair(i, j), p.name, q.name, fields);
@@ -345,7 +351,7 @@ struct Builder {
 
     // ---- Loads, outputs, branches
 
-    // In newtons where it is held, else per newton of a branch; likewise a moment.
+    // In newtons for a static load, else per newton of the branch; likewise a moment.
     std::string load(const std::string& on, bool held) {
         const bool moment = random.chance(0.25);
         const double scale = held     ? force * std::pow(10, random.between(-1.5, 0)) * (moment ? 0.1 : 1)
@@ -369,7 +375,7 @@ struct Builder {
             std::swap(order[k - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
         std::size_t used = 0;
         double size = 0;
-        if (order.empty() || random.chance(0.5)) {
+        if (order.empty() || random.chance(loads)) {
             const std::string first = name("l");
             const At p = point();
             const Vector3d u = (direction() * 1000).array().round() / 1000;
@@ -404,7 +410,7 @@ struct Builder {
     }
 };
 
-// Many small ones, in which more is found and which cost less.
+// Mostly small scenes, which find more faults per time.
 int bodies_of(Random& random) {
     const double u = random.unit();
     return u < 0.85 ? 1 + random.below(5) : u < 0.97 ? 6 + random.below(7) : 13 + random.below(28);
@@ -412,11 +418,13 @@ int bodies_of(Random& random) {
 
 }  // namespace
 
-std::string random_scene(std::uint64_t seed) {
+std::string random_scene(std::uint64_t seed, Family family) {
+    const bool driven = family == Family::driven;
     Builder at;
     Random& random = at.random;
     random.state = seed;
-    const int nb = bodies_of(random);
+    const int nb = driven ? 1 + random.below(4) : bodies_of(random);
+    if (driven) at.curves = 0.5, at.stopped = 0.5, at.loads = 0;
     at.in_one_plane = random.chance(0.07);
     at.decade = random.between(3, 6);
     at.force = std::pow(10, at.decade - 2);
@@ -428,13 +436,17 @@ std::string random_scene(std::uint64_t seed) {
                         has_gravity ? fmt::format(", mass: {:.3g}", random.between(1, 50)) : "");
         const std::string body = fmt::format("body{}", b);
         const int before = at.count;
-        for (int k = random.count({0.65, 0.3}); k > 0; --k) at.joint(body, at.earlier(b));
-        if (random.chance(0.75)) at.bushing(body, at.earlier(b));
+        for (int k = driven ? random.count({0.3}) : random.count({0.65, 0.3}); k > 0; --k)
+            at.joint(body, at.earlier(b));
+        if (driven && (b == 0 || random.chance(0.5))) at.joint(body, at.earlier(b), Builder::distance);
+        if (driven && random.chance(0.3)) at.joint(body, at.earlier(b), Builder::in_plane);
+        if (random.chance(driven ? 0.9 : 0.75)) at.bushing(body, at.earlier(b));
+        if (driven && random.chance(0.6)) at.spring(body, at.earlier(b));
         for (int k = random.count({0.5, 0.3}); k > 0; --k) at.element(body, at.earlier(b));
         if (at.count == before) at.bushing(body, at.earlier(b));
         at.bodies.push_back(body);
     }
-    // Across the tree: loops, some of which hold twice.
+    // Across the tree: closed loops, some of them redundant.
     for (int k = random.chance(0.3) + nb / 8; k > 0 && nb > 1; --k) {
         const int b = 1 + random.below(nb - 1);
         const std::string body = at.bodies[static_cast<std::size_t>(b)];
@@ -458,6 +470,10 @@ std::string random_scene(std::uint64_t seed) {
         const std::string on = random.one_of(at.bodies);
         at.text.static_loads += fmt::format("  {}: {}\n", at.name("w"), at.load(on, true));
     }
+    if (driven)
+        std::erase_if(at.drivables, [](const Drivable& one) {
+            return !one.name.starts_with("joints.") && !one.name.starts_with("wheel.");
+        });
     const std::string last = at.bodies.back();
     for (int k = 1 + random.count({0.15}); k > 0; --k) at.branch(last);
     for (const auto& body : at.bodies)
@@ -465,7 +481,8 @@ std::string random_scene(std::uint64_t seed) {
             at.text.probes += fmt::format("  at_{}: {{on: {}, at: {}}}\n", body, body, at.point().name);
 
     std::string text =
-        fmt::format("elastocheck: 1\nname: random {}\nunits: {{length: m, angle: rad, force: N}}\n", seed);
+        fmt::format("elastocheck: 1\nname: random {}{}\nunits: {{length: m, angle: rad, force: N}}\n",
+                    driven ? "driven " : "", seed);
     if (has_gravity) text += "gravity: [0, 0, -9.81]\n";
     const auto section = [&](const char* name, const std::string& lines) {
         if (!lines.empty()) text += fmt::format("{}:\n{}", name, lines);

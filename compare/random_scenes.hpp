@@ -1,9 +1,10 @@
-// Mechanisms nobody designed, for whoever wants to know what a solver makes of them.
+// Random mechanisms for robustness tests of solvers.
 //
-// One to forty bodies on joints, bushings, springs, stops, curves, beams, torsion springs and tyres, some preloaded, some
-// standing under loads, driven by loads, jacks, angles, lengths and preloads. Most fit as drawn; some contradict
-// themselves, repeat what holds already, have parts that nothing resists or that do nothing, lie in one plane, or have
-// rates ten decades apart, on purpose.
+// One to forty bodies on joints, bushings, springs, stops, curves, beams, torsion springs and
+// tyres, some preloaded, some under static loads, driven by loads, jacks, angles, lengths and
+// preloads. Most are consistent in the design position. On purpose, some have inconsistent or
+// redundant joints, unresisted or irrelevant parts, planar geometry, or rates that differ by ten
+// decades.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,15 @@
 
 namespace elastocheck::compare {
 
-// The text of a scene file (models/scenes/README.md), which the reader takes. It is the same for one seed wherever it is
-// made: the numbers are drawn from integers, by operations that IEEE 754 rounds one way, and written with few digits
-// where a library has a part in them. One entry a line, so that lines can be taken out by hand.
-std::string random_scene(std::uint64_t seed);
+// Text of a random scene file (models/scenes/README.md) that the reader accepts. It depends on the
+// seed alone, on every platform: numbers are drawn from integers by operations that IEEE 754 rounds
+// uniquely, and written with few digits where a library function is involved. One entry per line,
+// so that lines can be removed by hand.
+//
+// Family `driven`: one to four bodies, nearly all on bushings, with links of fixed length, points
+// on planes, springs with curves and stops. Each branch moves the length of a link, a jack, a wheel
+// or the offset of another joint, so that the reactions depend on the elastic elements.
+enum class Family { any, driven };
+std::string random_scene(std::uint64_t seed, Family family = Family::any);
 
 }  // namespace elastocheck::compare

@@ -17,7 +17,7 @@ using recursive::series::Rates;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Velocity of a vector of the body that has the components u in ground axes.
+// Rate of a vector fixed to the body with components u in ground axes.
 Vector3d turn(const Rates& rates, BodyId body, const Vector3d& u) {
     return body == ground ? Vector3d::Zero() : Vector3d(rates.omega[static_cast<std::size_t>(body)].cross(u));
 }
@@ -37,7 +37,7 @@ Spin spin(const Model& model, const Equilibrium& state, const Rates& rates, std:
     return {e, turn(rates, wheel.body, e), static_cast<double>(wheel.side)};
 }
 
-// Of the angle of e to the x axis seen from above.
+// Rate of the angle of e to the x axis in top view.
 double heading_rate(const Vector3d& e, const Vector3d& de) {
     return (e.x() * de.y() - e.y() * de.x()) / (e.x() * e.x() + e.y() * e.y());
 }
@@ -69,7 +69,8 @@ double rate(const Model& model, const Equilibrium& state, const Rates& rates, co
 
 double rate(const Model& model, const Equilibrium& state, const Rates& rates, const Ackermann& c) {
     if (std::isinf(evaluate(model, {{Channel{.name = {}, .reads = c}}}, state).front())) return nan;
-    const auto cot = [&](std::size_t w) {  // d cot δ = -dδ / sin² δ, e = side (-sin δ, cos δ) in the plane
+    // d cot δ = -dδ / sin² δ, e = side (-sin δ, cos δ) in the plane
+    const auto cot = [&](std::size_t w) {
         const auto [e, de, side] = spin(model, state, rates, w);
         const double sine = e.x() / std::hypot(e.x(), e.y());
         return -heading_rate(e, de) / (sine * sine);
@@ -142,7 +143,8 @@ std::optional<Place> place_at(const Model& model, const Channel& channel, const 
         ((miss < 0) == (final > first) ? from : to) = a;
         const double slope = rate(model, channel, evaluate(model, branch, path, here), rates(path, here));
         double next = a - miss / slope;
-        if (!((next - from) * (next - to) <= 0)) next = from + (to - from) / 2;  // bisect where Newton leaves
+        // bisect where Newton leaves
+        if (!((next - from) * (next - to) <= 0)) next = from + (to - from) / 2;
         if (next == a || std::abs(next - a) <= 1e-15 * std::abs(branch.to)) break;
         a = next;
     }

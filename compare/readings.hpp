@@ -1,4 +1,4 @@
-// What the two readings of a curve are called.
+// Names of the two readings of a curve.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace elastocheck::compare {
 
-// "load" of a parameter in N or N·m, "parameter" of another.
+// "load" for a parameter in N or N·m, else "parameter".
 inline std::string parameter_word(std::string_view unit) {
     return unit == "N" || unit == "N·m" ? "load" : "parameter";
 }

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// All that says where something is on a body or on ground.
+// All points, directions and markers of bodies or ground.
 struct Features {
     std::vector<Point*> points;
     std::vector<Direction*> directions;
@@ -83,7 +83,8 @@ void for_each_load(Scene& scene, F&& f) {
             if (auto* load = std::get_if<Load>(&driver.what)) f(load->kind);
 }
 
-// The law of a deformation `stretch` times as large, its force times `force`:  f'(x) = force · f(x / stretch).
+// Law of a deformation `stretch` times as large and a force `force` times as large:
+// f'(x) = force · f(x / stretch).
 ScalarLaw scaled(const ScalarLaw& law, double stretch, double force) {
     return std::visit(overloaded{[&](LinearRate rate) -> ScalarLaw {
                                      rate.k *= force / stretch;
@@ -100,13 +101,13 @@ ScalarLaw scaled(const ScalarLaw& law, double stretch, double force) {
                       law);
 }
 
-// Of e = (d, θ), d · length and θ as it is; its stress (F, M) becomes (F · force, M · moment).
+// For e = (d, θ): d times length, θ unchanged; its stress (F, M) becomes (F · force, M · moment).
 SpatialLaw scaled(const SpatialLaw& law, double length, double force, double moment) {
     Vector6 stretch, stress;
     stretch << length, length, length, 1, 1, 1;
     stress << force, force, force, moment, moment, moment;
     return std::visit(overloaded{[&](LinearStiffness linear) -> SpatialLaw {
-                                     // symmetric as it was, also where only moments grow
+                                     // remains symmetric, also where only moments are scaled
                                      const Vector6 root = stress.cwiseQuotient(stretch).cwiseSqrt();
                                      linear.K = root.asDiagonal() * linear.K * root.asDiagonal();
                                      return linear;
@@ -188,8 +189,8 @@ Scene with_body_axes(const Scene& original, const std::vector<Quaterniond>& turn
 }
 
 Scene mirrored(const Scene& original) {
-    // Positions and forces are reflected by S; rotation vectors and moments, being axial, by -S. Axes A
-    // become S A S, so that a stiffness in local axes becomes diag(S, -S) K diag(S, -S).
+    // Positions and forces are reflected by S; rotation vectors and moments, being axial, by -S.
+    // Axes A become S A S, so that a stiffness in local axes becomes diag(S, -S) K diag(S, -S).
     const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
     const auto rotation = [&](const Quaterniond& p) {
         return Quaterniond(Eigen::Matrix3d(S * p.toRotationMatrix() * S));
@@ -306,7 +307,8 @@ Scene scaled(const Scene& original, double length, double force) {
                               [&](FollowerMoment& l) { l.m_local *= moment; }},
                    load.kind);
     }
-    // (start + rate a) times what is driven: the first factor takes all of the change, and a that of its unit.
+    // (start + rate a) times the driven quantity: start and rate take its change, and the rate also
+    // that of a's unit.
     for (auto& branch : scene.branches) {
         const double parameter = factor_of(branch.unit, length, force);
         branch.from *= parameter, branch.to *= parameter;

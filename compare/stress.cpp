@@ -13,6 +13,7 @@
 
 #include "compare/agreement.hpp"
 #include "compare/positions.hpp"
+#include "compare/reactions.hpp"
 #include "models/compile.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis.hpp"
@@ -29,7 +30,7 @@ using Construction = Variant::Construction;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// ---- Where a state stands: what is looked at of it.
+// ---- Observed places of a state.
 
 struct Place {
     std::string name;
@@ -37,8 +38,8 @@ struct Place {
 };
 
 struct Stand {
-    std::vector<Vector3d> p;         // of every place
-    std::vector<Quaterniond> turns;  // of its body, since it was drawn
+    std::vector<Vector3d> p;         // per place
+    std::vector<Quaterniond> turns;  // rotation of its body since the design position
 };
 
 std::vector<Place> places_of(const Model& model, const recursive::Diagnosis& diagnosis) {
@@ -67,18 +68,41 @@ Stand stand(const Model& model, const std::vector<Place>& places, const Equilibr
     return where;
 }
 
+// Joints whose reaction is determined: no redundant joint shares the load, and no body of the joint
+// has an idle mode.
+std::vector<std::size_t> joints_of(const Model& model, const recursive::Diagnosis& diagnosis,
+                                   const std::vector<Place>& places) {
+    std::vector<bool> stands(model.joints.size()), known(model.bodies.size());
+    for (const auto& constraint : model.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    for (const auto& place : places) known[static_cast<std::size_t>(place.at.body)] = true;
+    const auto is_known = [&](BodyId b) { return b == ground || known[static_cast<std::size_t>(b)]; };
+    std::vector<std::size_t> joints;
+    for (std::size_t j = 0; j < model.joints.size(); ++j)
+        if (stands[j] && diagnosis.determined[j] && is_known(model.joints[j].i) &&
+            is_known(model.joints[j].j))
+            joints.push_back(j);
+    return joints;
+}
+
+std::vector<Wrench> reactions_of(const std::vector<std::size_t>& joints, const Equilibrium& state) {
+    std::vector<Wrench> reactions;
+    for (const std::size_t j : joints) reactions.push_back(state.reactions[j]);
+    return reactions;
+}
+
 bool is_finite(const Stand& where) {
     return std::ranges::all_of(where.p, [](const auto& p) { return p.allFinite(); }) &&
            std::ranges::all_of(where.turns, [](const auto& q) { return q.coeffs().allFinite(); });
 }
 
-// How far a place may be off where the origin and the orientation of its body may be so far.
+// Error bound of a place from the bounds of its body's origin and orientation.
 double of_place(const ErrorBound& body, const Place& place) {
     const double lever = place.at.s_local.norm();
     return lever > 0 ? body.length + lever * body.angle : body.length;
 }
 
-// The largest over all places; NaN where a number is none.
+// Largest distance over all places; NaN if any number is NaN.
 ErrorBound apart(const Stand& a, const Stand& b) {
     ErrorBound most{0, 0};
     for (std::size_t k = 0; k < a.p.size(); ++k) {
@@ -97,28 +121,31 @@ Stand retold(const Stand& where, const Retelling& how) {
     return told;
 }
 
-// ---- What everybody found on one way.
+// ---- Results of all solvers on one branch side.
 
 struct Found {
     Outcome outcome = Outcome::converged;
     std::string detail;
-    bool threw = false;  // a bug, told in `detail`
+    bool threw = false;  // an exception, which is a bug; its text is in `detail`
     std::vector<Stand> stands;
-    std::vector<ErrorBound> accounts;  // as given, per point
-    std::vector<bool> elsewhere;       // per point: off, and itself proved
+    std::vector<std::vector<Wrench>> reactions;  // per point, of WayRun::joints
+    std::vector<ErrorBound> accounts;            // error bounds as given, per point
+    std::vector<bool> elsewhere;                 // per point: off, but proved
 };
 
-// What is known of one point: x_T and e.
+// True state of one point: x_T and e.
 struct Known {
     Knowledge how = Knowledge::none;
     Stand where;
     ErrorBound within;
-    bool of_bodies = false;  // whether that is of the bodies, or of the places
-    bool stable = false;     // shown to be: of what is proved alone
-    bool idle = false;       // whether something was held for the proof, as nothing resists it
+    bool of_bodies = false;              // whether the bound is of the bodies or of the places
+    bool stable = false;                 // proved to be stable; only for a proved state
+    bool idle = false;                   // whether the proof held an idle motion
+    std::vector<Wrench> reactions = {};  // of WayRun::joints; empty where they are unknown
+    double force = 0, moment = 0;        // error bounds of `reactions` [N], [N·m]
 
     double length(const Place& place) const { return of_bodies ? of_place(within, place) : within.length; }
-    double length(const std::vector<Place>& places) const {  // of all of them
+    double length(const std::vector<Place>& places) const {  // largest over all places
         double most = 0;
         for (const auto& place : places) most = std::max(most, length(place));
         return most;
@@ -127,9 +154,13 @@ struct Known {
 
 struct WayRun {
     std::string name;
-    std::size_t points = 0;  // asked for
+    std::size_t points = 0;  // requested number
     std::vector<Place> places;
-    bool anything_idle = false;  // which then is in no place
+    // joints whose reactions are compared: determined, and between bodies that have a place
+    std::vector<std::size_t> joints;
+    std::vector<std::string> joint_names;
+    bool anything_idle = false;  // idle bodies have no place
+    Scale scale = {};            // of the acting forces
     double size = 1, reach = 1;  // L; the largest coordinate [m]
     std::vector<Found> found;    // per solver
     std::vector<Known> known;    // per point
@@ -137,30 +168,30 @@ struct WayRun {
 
 struct TrialRun {
     std::vector<WayRun> ways;
-    double seconds = 0;  // of processor time
+    double seconds = 0;  // processor time
 };
 
-// Of this thread. Other jobs of the machine do not count.
+// Processor time of this thread, independent of other jobs of the machine.
 double processor_time() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Exact but for rounding.
+// Exact except for rounding.
 ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
 
 bool is_reference(const Solver& solver) {
     return solver.gait.leg == Leg::equilibrium || solver.gait.leg == Leg::energy;
 }
 
-// What a solver claims of a state: of every body, or of every place.
+// Accuracy claimed for a state: of every body, or of every place.
 struct Claim {
     ErrorBound bound = {};
     bool of_bodies = true;
 
     double length(const Place& place) const { return of_bodies ? of_place(bound, place) : bound.length; }
-    // Of all places together.
+    // Largest over all places.
     ErrorBound most(const std::vector<Place>& places) const {
         ErrorBound worst{0, bound.angle};
         for (const auto& place : places) worst.length = std::max(worst.length, length(place));
@@ -172,7 +203,7 @@ Claim claim_of(const Solver& solver, const ErrorBound& account, double size) {
     if (std::isfinite(account.length) && std::isfinite(account.angle)) return {account};
     const ErrorBound rounding = exact(size);
     if (is_reference(solver)) return {rounding, false};
-    if (solver.gait.account) return {};  // of a point without one nothing is promised, and that is said
+    if (solver.gait.account) return {};  // a point without an error bound claims nothing
     return std::visit(overloaded{[&](const recursive::Adaptive& told) -> Claim {
                                      return {{std::max(told.length_tolerance, rounding.length),
                                               std::max(told.angle_tolerance, rounding.angle)}};
@@ -190,8 +221,8 @@ std::size_t index_of(const std::vector<Solver>& solvers, std::string_view name) 
     return static_cast<std::size_t>(std::ranges::find(solvers, name, &Solver::name) - solvers.begin());
 }
 
-// Where two that share no equation stand within their claims of each other. The series is asked last: it makes no
-// independent statement of what a bushing measures.
+// Agreement of two solvers without a common equation within their claims. The series is used last:
+// it is not independent in the definition of a bushing's deformation.
 Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t point) {
     std::vector<std::size_t> witnesses;
     for (const char* name : {"equilibrium", "energy", "series"}) witnesses.push_back(index_of(solvers, name));
@@ -204,19 +235,21 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
                          c_j = claim_of(solvers[j], other.accounts[point], run.size).most(run.places);
         if (!(distance.length <= c_i.length + c_j.length && distance.angle <= c_i.angle + c_j.angle))
             continue;
-        // By its account, of the one that says more; without, as near as two can be by chance.
+        // Uses the tighter error bound; without bounds, the distance of the two states.
         const bool first = c_i.length <= c_j.length;
         const Found& tighter = first ? one : other;
         const bool by_account = std::isfinite(tighter.accounts[point].length);
         const ErrorBound within = by_account ? (first ? c_i : c_j) : distance;
-        return {Knowledge::references,
-                tighter.stands[point],
-                {within.length + eps * run.reach, within.angle + eps}};
+        Known known{Knowledge::references,
+                    tighter.stands[point],
+                    {within.length + eps * run.reach, within.angle + eps}};
+        known.reactions = tighter.reactions[point];
+        return known;
     }
     return {};
 }
 
-// A state is proved to within a share of the scene and of what acts on it that says something, whatever its units.
+// Tolerance of a proof: a small share of the scene and of the acting forces, in any units.
 reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) {
     const double length = std::max(1e-9 * run.size, 1e3 * eps * run.reach),
                  share = 1e-6 * std::max(force, 1e-9);
@@ -228,14 +261,15 @@ reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) 
             .gap = length};
 }
 
-// By proof, from the first state of those that should be exact for which it succeeds.
+// Proof from the first of the accurate states for which it succeeds.
 Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Equilibrium>>& states,
              std::size_t point, const reference::certificate::Tolerance& tolerance) {
     for (const auto& path : states) {
         if (point >= path.size()) continue;
         const auto certificate =
             reference::certificate::certify(way.model, way.branch, path[point], tolerance);
-        // What is held though something resists it, weakly, is where the state has it, not where it is in equilibrium.
+        // A weakly resisted motion that is held for the proof stays at its value in the state, not
+        // at equilibrium.
         const bool weakly_resisted = certificate.held > 0 && !run.anything_idle;
         if (certificate.answer == reference::certificate::Answer::proved && !weakly_resisted)
             return {Knowledge::proved,
@@ -243,19 +277,23 @@ Known proved(const Way& way, const WayRun& run, const std::vector<std::vector<Eq
                     {certificate.error.length, certificate.error.angle},
                     true,
                     certificate.stable,
-                    certificate.held > 0};
+                    certificate.held > 0,
+                    reactions_of(run.joints, path[point]),
+                    certificate.error.force,
+                    certificate.error.moment};
     }
     return {};
 }
 
-// How far a state is off at least: by so much, where so much was claimed. All of it kept: 0 and 0.
+// Lower bound of the exceedance of a claim, and the claim; 0 and 0 if it holds.
 struct Breach {
     ErrorBound least{0, 0}, claimed{0, 0};
     std::string where;
     bool any() const { return !(least.length <= 0 && least.angle <= 0); }
 };
 
-// |x - x_T| less e, and less the rounding of both as they are written down: a place so far from the origin has so few digits.
+// |x - x_T| minus e, minus the rounding of the coordinates of both states, which grows with their
+// distance from the origin.
 Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const Known& known) {
     Breach worst;
     const double digits = 4 * eps;
@@ -272,13 +310,29 @@ Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const K
     return worst;
 }
 
+// Position tolerance from which the bound of the reactions follows (bound_of_reactions); NaN where
+// the solver claims none: the linear recursion with a fixed number of steps, and any claim of 1e-4
+// of the size or more. `adaptive` uses at least its tolerance, even where its error bound is
+// smaller.
+double length_promised(const Solver& solver, const WayRun& run, const ErrorBound& claim) {
+    constexpr double coarse = 1e-4;
+    const auto& method = solver.gait.recursion.method;
+    if (!(claim.length < coarse * run.size)) return nan;
+    if (solver.gait.leg != Leg::recursive) return claim.length;
+    if (recursive::has_steps(method)) return nan;
+    const auto* adaptive = std::get_if<recursive::Adaptive>(&method.kind);
+    return adaptive ? std::max(claim.length, adaptive->length_tolerance) : claim.length;
+}
+
 WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver>& solvers) {
     WayRun run;
     run.name = way.name;
     const auto diagnosis = recursive::diagnose(way.model);
     run.places = places_of(way.model, diagnosis);
     run.anything_idle = !diagnosis.idle.empty();
-    const int every = std::max(1, (way.branch.steps + 1) / 2);  // the start, about the middle, the end
+    run.joints = joints_of(way.model, diagnosis, run.places);
+    for (const std::size_t j : run.joints) run.joint_names.push_back(way.model.joints[j].name);
+    const int every = std::max(1, (way.branch.steps + 1) / 2);  // start, about the middle, end
     run.points = asked_for({way}, every).size();
     std::vector<std::vector<Equilibrium>> states(solvers.size());
     for (std::size_t s = 0; s < solvers.size(); ++s) {
@@ -295,6 +349,7 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
             const EquilibriumPath path = walk(way, gait, [&](const Equilibrium& state) {
                 found.stands.push_back(stand(way.model, run.places, state));
                 found.accounts.push_back(state.bound);
+                found.reactions.push_back(reactions_of(run.joints, state));
                 states[s].push_back(state);
             });
             found.outcome = path.outcome;
@@ -308,19 +363,20 @@ WayRun walk_all(const Variant& variant, const Way& way, const std::vector<Solver
     for (const char* name : {"equilibrium", "energy", "series"})
         exactly.push_back(states[index_of(solvers, name)]);
     const Equilibrium drawn = design_state(way.model);
-    const Scale scale = scale_of(
-        way.model, way.branch,
-        exactly.front().empty() ? std::span(&drawn, 1) : std::span<const Equilibrium>(exactly.front()));
-    run.size = scale.length;
+    const auto any = std::ranges::find_if(exactly, [](const auto& path) { return !path.empty(); });
+    run.scale = scale_of(way.model, way.branch,
+                         any == exactly.end() ? std::span(&drawn, 1) : std::span<const Equilibrium>(*any));
+    run.size = run.scale.length;
     run.reach = run.size;
     for (const auto& body : way.model.bodies)
         run.reach = std::max(run.reach, body.design.r.cwiseAbs().maxCoeff());
-    const auto tolerance = tolerance_of(run, scale.force);
+    const auto tolerance = tolerance_of(run, run.scale.force);
     for (std::size_t k = 0; k < run.points; ++k) {
         Known known;
         if (variant.known == Construction::nothing_moves)
             known = {Knowledge::construction, stand(way.model, run.places, drawn), {eps * run.reach, eps}};
-        const bool same_scene = variant.arithmetic != Arithmetic::nearest;  // what is known of that is lent
+        // then the truth is taken from the default arithmetic
+        const bool same_scene = variant.arithmetic != Arithmetic::nearest;
         if (known.how == Knowledge::none && !same_scene) known = proved(way, run, exactly, k, tolerance);
         if (known.how == Knowledge::none && !same_scene) known = agreed(solvers, run, k);
         run.known.push_back(known);
@@ -351,9 +407,9 @@ TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
     return result;
 }
 
-// ---- Judgement.
+// ---- Verdict.
 
-// The places of one told scene as they are numbered in the other; those that both have.
+// Index pairs of the places that the two versions of a scene share.
 struct Match {
     std::vector<std::size_t> here, there;
 };
@@ -373,7 +429,7 @@ Stand only(const Stand& where, const std::vector<std::size_t>& places) {
     return some;
 }
 
-// Outcomes that say something of the mechanism: that no equilibrium continues the branch.
+// Outcomes that claim that no equilibrium continues the branch.
 bool says_that_it_ends(Outcome outcome) {
     switch (outcome) {
         case Outcome::singular:
@@ -393,15 +449,16 @@ bool says_that_it_ends(Outcome outcome) {
     return false;
 }
 
-// A stable equilibrium at every point. What is idle at one and held by its load at the next has swung there at once: equilibria,
-// and no branch.
+// Whether every point is a proved stable equilibrium. A motion that is idle at one point and held
+// by its load at the next has jumped: these are equilibria, but no branch.
 bool all_proved(const WayRun& run) {
     return std::ranges::all_of(run.known, [&](const Known& known) {
         return known.how == Knowledge::proved && known.stable && known.idle == run.known.front().idle;
     });
 }
 
-// Where both references say that the branch ends, and no state past that is proved; empty where one does not.
+// Reason where both references report the end of the branch and no state beyond is proved; else
+// empty.
 std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
     if (all_proved(run)) return {};
     std::string why;
@@ -417,7 +474,7 @@ bool all_known(const WayRun& run) {
     return std::ranges::all_of(run.known, [](const Known& known) { return known.how != Knowledge::none; });
 }
 
-// How far the place that goes farthest goes over the known points.
+// Largest displacement of any place over the known points.
 double range_of(const WayRun& run) {
     double range = 0;
     const Known* start = nullptr;
@@ -457,6 +514,16 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
                 "{} is off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} rad",
                 broken.where, 1e3 * std::max(0.0, broken.least.length), std::max(0.0, broken.least.angle),
                 1e3 * broken.claimed.length, broken.claimed.angle);
+        } else if (const double length = length_promised(solver, run, claim); !std::isnan(length)) {
+            cell.reactions += static_cast<int>(known.reactions.size());
+            const ReactionBound bound = bound_of_reactions(length, run.scale);
+            if (std::string off =
+                    reaction_off(run.joint_names, found.reactions[k], known.reactions,
+                                 {bound.force + known.force, bound.moment + known.moment}, run.scale);
+                !off.empty()) {
+                breaks = true;
+                cell.why = std::move(off);
+            }
         }
     }
     if (cell.knowledge != Knowledge::none) {
@@ -478,10 +545,10 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         cell.verdict = promises ? Verdict::right : Verdict::unpromised;
 }
 
-// The same mechanism told otherwise has the same answer: to the digits that a solver claims, or of one that claims nothing
-// to a ten millionth of what moves and ten thousand roundings of the largest coordinate. The error of a step depends on the
-// point of a body that its increments are counted from, so that of one that claims nothing this is asked only where bodies
-// that are fixed to each other are told by the same one of them.
+// Invariance check: a transformed mechanism must give the same answer, within the claim of the
+// solver, or without a claim within 1e-7 of the movement and ten thousand roundings of the largest
+// coordinate. The step error depends on the reference point of a body's increments; without a claim
+// the check applies only where rigidly connected bodies use the same reference body.
 void judge_retold(const Solver& solver, const Found& found, const WayRun& run, const Found& base_found,
                   const WayRun& base, const Retelling& how, StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
@@ -507,7 +574,7 @@ void judge_retold(const Solver& solver, const Found& found, const WayRun& run, c
     }
 }
 
-// How far the answer is from that of the scene as it is, and what digits that costs.
+// Distance from the answer of the unchanged scene, and the lost digits.
 void count_lost(const Solver& solver, const Found& found, const WayRun& run, const Found& base_found,
                 const WayRun& base, const Retelling& how, StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
@@ -566,7 +633,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     return cell;
 }
 
-// What is not known of a scene told otherwise is known where it is known of the scene itself.
+// Truth of a transformed scene, taken from the unchanged scene where it is known only there.
 void lend(const WayRun& base, const Retelling& how, WayRun& run) {
     const Match both = match(run.places, base.places);
     if (both.here.size() != run.places.size()) return;
@@ -640,7 +707,7 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
     survival.sweeps = distinct(trials, &Trial::sweep);
     for (const auto& solver : who) survival.solvers.push_back(solver.name);
 
-    // Trials are independent of each other until they are judged.
+    // Trials run independently, in parallel, until they are judged.
     std::vector<TrialRun> runs(trials.size());
     std::atomic<std::size_t> next = 0;
     std::mutex telling;

@@ -1,19 +1,28 @@
-// What becomes of every leg and method at the extremes: right to so many digits, an honest outcome, or wrong.
+// Stress test of all legs and methods on extreme scenes: correct to a number of digits, a reported
+// failure, or wrong.
 //
-// A trial is a scene, varied; a cell is what one leg or method makes of one way of it. Whoever says "converged" claims
-// something, and is held to it:
+// A trial is a varied scene; a cell is the result of one leg or method on one side of its branch. A
+// converged result claims an accuracy and is judged by it:
 //
-//   the account it gives       Equilibrium::bound, where it is finite
-//   what it was told           the tolerance of `adaptive`, of `series`
-//   else, of a reference       exact but for rounding: 1e-9 of the scene's size, 1e-6 deg
-//   else                       nothing: its digits are told
+//   its error bound           Equilibrium::bound, where it is finite
+//   its tolerance             of `adaptive`, of `series`
+//   else, for a reference     exact except for rounding: 1e-9 of the scene's size, 1e-6 deg
+//   else                      no claim: its digits are reported
 //
-// The true error of a state lies between |x - x_T| - e and |x - x_T| + e, x_T a state that is known to within e. A claim is
-// broken where the lower end is above it. What is known, and how: Knowledge. Wrong is as well who converges where both
-// references say that the branch ends, who answers otherwise when the same mechanism is told otherwise, and a reference that
-// says that the branch ends where another's states are proved and stable at every point, or where it goes on when told otherwise.
+// The true error of a state lies between |x - x_T| - e and |x - x_T| + e, where x_T is a state
+// known to within e. A claim is broken where the lower end exceeds it. Knowledge lists the sources
+// of x_T. Also wrong are: a converged result where both references report the end of the branch; an
+// answer that changes under an invariance transform; and a reference that reports the end of the
+// branch where the states of another solver are proved and stable at every point, or that continues
+// beyond that end in the transformed scene.
 //
-// A body that an idle mode moves is anywhere along it, so such bodies are not looked at.
+// Joint reactions are judged too, for the solvers with a tolerance (the references, `adaptive`,
+// `series`), where they are determined. The true reactions come with the true state, from the proof
+// (its box contains them) or from the references. A claim of a share of the size implies one of a
+// thousand times that share of the largest acting force (reactions.hpp).
+//
+// The position of a body along an idle mode is arbitrary, so such bodies and their joints are not
+// compared.
 #pragma once
 
 #include <functional>
@@ -31,9 +40,9 @@
 
 namespace elastocheck::compare {
 
-// ---- What is asked.
+// ---- Input.
 
-// How the same mechanism is told: what was at p is at  length · M p + t.
+// Invariance transform of a scene: a point at p moves to  length · M p + t.
 struct Retelling {
     Eigen::Matrix3d M = Eigen::Matrix3d::Identity();  // a rotation or a mirror image
     Eigen::Vector3d t = Eigen::Vector3d::Zero();      // [m]
@@ -43,59 +52,63 @@ struct Retelling {
 struct Variant {
     std::string label;                     // "as it is", "rates of 'coil' times 1e+06"
     Scene scene;                           // without a trim
-    std::optional<Retelling> retold = {};  // of the scene as it is: whatever is found is the same
-    // What is known of it by construction, whoever solves it.
+    std::optional<Retelling> retold = {};  // of the unchanged scene: every result must be the same
+    // Properties known by construction, independent of any solver.
     enum class Construction { nothing, no_equilibrium, nothing_moves } known = Construction::nothing;
-    std::vector<std::string> asked = {};          // solvers beside the references; none: all
-    std::string skipped = {};                     // why nobody is asked
-    Arithmetic arithmetic = Arithmetic::nearest;  // that the solvers work with; what is true is known without
+    std::vector<std::string> asked = {};  // solvers to run beside the references; empty: all
+    std::string skipped = {};             // reason why no solver runs
+    // arithmetic of the solvers; the truth is known from the default arithmetic
+    Arithmetic arithmetic = Arithmetic::nearest;
 };
 
-// A name, and what it makes of a scene. Every branch of the scene as it is; of all else the first.
+// Named family of variants of a scene. The unchanged scene uses every branch, all variants only the
+// first.
 struct Sweep {
     std::string name;
     std::function<std::vector<Variant>(const Scene&)> variants;
 };
 
 struct Trial {
-    std::string scene;  // whose row of the map it is in
-    std::string sweep;  // ... and column; of the sweep `extreme` each variant has a row of its own
+    std::string scene;  // row of the map
+    // column of the map; in the sweep `extreme` each variant has a row of its own
+    std::string sweep;
     Variant variant;
 };
 
-inline constexpr std::string_view as_it_is = "as it is";  // the sweep that has only the scene itself
+// the sweep that contains only the unchanged scene
+inline constexpr std::string_view as_it_is = "as it is";
 inline constexpr std::string_view other_arithmetic =
-    "arithmetic";                                       // the sweep that the table of lost digits is of
-inline constexpr std::string_view extreme = "extreme";  // scenes that are so by their making
+    "arithmetic";                                       // the sweep behind the table of lost digits
+inline constexpr std::string_view extreme = "extreme";  // scenes that are extreme by construction
 std::vector<Trial> trials(const std::string& name, const Scene& scene, std::span<const Sweep> sweeps);
 
-// The sweeps that any scene stands: sweeps.cpp.
+// Sweeps that apply to any scene: sweeps.cpp.
 const std::vector<Sweep>& sweeps();
 
-// ---- Who is asked: every method of the recursion, and the references.
+// ---- Solvers: every method of the recursion, and the references.
 struct Solver {
     std::string name;  // "published", "equilibrium"
     Gait gait;
 };
 std::vector<Solver> solvers();
 
-// ---- What came of it.
+// ---- Results.
 
 enum class Knowledge {
     none,
-    construction,  // of the scene: Variant::known
-    proved,        // by the certificate, from the state of a reference or of the series
-    references,    // two that share no equation are within their claims of each other
-    retold,        // the same mechanism as it was drawn, whose state is known
+    construction,  // by construction of the scene: Variant::known
+    proved,        // proved by the certificate, from the state of a reference or of the series
+    references,    // two solvers without a common equation agree within their claims
+    retold,        // from the same mechanism without the transform, whose state is known
 };
 const char* name(Knowledge knowledge);
 
 enum class Verdict {
-    right,       // converged, within what is claimed
-    unpromised,  // converged, and claims nothing: its digits
-    honest,      // another outcome, or an account that says that no digit is right
-    elsewhere,   // converged, at another equilibrium of the same load that is proved as well
-    unjudged,    // converged, and nothing is known
+    right,       // converged, within its claim
+    unpromised,  // converged, without a claim: its digits are reported
+    honest,      // another outcome, or an error bound that states that no digit is correct
+    elsewhere,   // converged at another equilibrium of the same load, which is proved too
+    unjudged,    // converged, but the truth is unknown
     wrong,
 };
 const char* name(Verdict verdict);
@@ -103,36 +116,39 @@ const char* name(Verdict verdict);
 struct StressCell {
     std::string scene, sweep, variant, way, solver;
     Outcome outcome = Outcome::converged;
-    std::string detail;  // what the solver says
+    std::string detail;  // message of the solver
     Verdict verdict = Verdict::unjudged;
-    std::string why;  // of a verdict that needs a reason
+    std::string why;  // reason, for a verdict that needs one
     Knowledge knowledge = Knowledge::none;
-    double digits =
-        std::numeric_limits<double>::quiet_NaN();  // -log10(error / range); NaN where nothing is known
-    double error = std::numeric_limits<double>::quiet_NaN();  // of any place, at most [m]
+    // -log10(error / range); NaN where the truth is unknown
+    double digits = std::numeric_limits<double>::quiet_NaN();
+    double error = std::numeric_limits<double>::quiet_NaN();  // largest of all places [m]
+    int reactions = 0;                                        // number of judged joint reactions
     double claim = std::numeric_limits<double>::infinity();   // [m]
-    // Of a scene told otherwise: how far the answer is from that of the scene as it is, and how many of the digits that
-    // are right there are not the same here: max(0, digits there + log10(apart / range)). NaN where one did not converge.
-    double apart = std::numeric_limits<double>::quiet_NaN();  // [m], as the scene as it is is drawn
+    // For a transformed scene: distance of the answer from that of the unchanged scene, and the
+    // number of correct digits there that differ here: max(0, digits there + log10(apart / range)).
+    // NaN unless both converged.
+    // [m], in the frame of the unchanged scene
+    double apart = std::numeric_limits<double>::quiet_NaN();
     double lost = std::numeric_limits<double>::quiet_NaN();
-    double range =
-        0;  // how far the place that goes farthest goes, or the scene's size where nothing moves [m]
+    // largest displacement of any place, or the scene's size if nothing moves [m]
+    double range = 0;
 };
 
 struct Survival {
-    std::vector<std::string> scenes, sweeps, solvers;  // in the order in which they were asked
-    std::vector<StressCell> cells;                     // in the order of the trials, whoever came first
+    std::vector<std::string> scenes, sweeps, solvers;  // in the order of the run
+    std::vector<StressCell> cells;                     // in the order of the trials
     struct Skipped {
         std::string scene, sweep, variant, why;
     };
     std::vector<Skipped> skipped;
-    double seconds = 0;  // of processor time, all threads
+    double seconds = 0;  // processor time of all threads
     struct Dearest {
         std::string scene, variant;
         double seconds = 0;
-    } dearest;  // trial
+    } dearest;  // most expensive trial
     int count(Verdict verdict) const;
-    int judged() const;  // all but the unjudged
+    int judged() const;  // all cells except unjudged ones
 };
 
 struct StressOptions {
@@ -142,13 +158,13 @@ struct StressOptions {
 
 Survival stress(std::span<const Trial> trials, const StressOptions& options = {});
 
-// ---- The map: what a solver came to in all trials of a scene and a sweep, one sign.
+// ---- The map: one sign for the results of a solver in all trials of a scene and a sweep.
 //
-//   0 ... 9  digits of the worst that converged (9: nine or more)     !  every outcome was honest
-//   ~  another equilibrium than that of the branch                    .  not asked
-//   ?  converged, and nothing is known
+//   0 ... 9  digits of the worst converged result (9: nine or more)     !  only reported failures
+//   ~  another equilibrium than that of the branch                      .  not requested
+//   ?  converged, truth unknown
 //   X  wrong
 char sign(const Survival& survival, const std::string& scene, const std::string& sweep,
-          const std::string& solver, const std::string& variant = {});  // of one variant alone
+          const std::string& solver, const std::string& variant = {});  // for one variant
 
 }  // namespace elastocheck::compare

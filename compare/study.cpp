@@ -14,17 +14,17 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double round_off = 1e-9;  // [mm], [deg]: differences below are the arithmetic's
-constexpr int stations = 30;        // along a branch, where curves are read
+constexpr double round_off = 1e-9;  // [mm], [deg]: smaller differences are rounding
+constexpr int stations = 30;        // along a branch, where curves are compared
 constexpr int reference_points = 300;
 
-// What a curve is read over: its parameter, or a channel.
+// Abscissa of a curve: its parameter, or a channel.
 constexpr int parameter = -1;
 std::vector<double> over(const Curve& curve, int by) {
     return by == parameter ? curve.a : curve.channel(static_cast<std::size_t>(by));
 }
 
-// What every curve reaches.
+// Range that every curve reaches.
 struct Span {
     double from = nan, to = nan;
 };
@@ -51,7 +51,7 @@ std::vector<double> at_stations(const Curve& curve, std::size_t channel, int by,
     return values;
 }
 
-// The channel that all curves can be read over, or why there is none.
+// The channel in which all curves are monotonic, or the reason why there is none.
 Abscissa common_abscissa(const std::vector<Channel>& channels, const std::vector<const Curve*>& curves) {
     const int by = default_abscissa(channels, *curves.front());
     for (const Curve* curve : curves)
@@ -79,7 +79,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return d;
 }
 
-// The own limit at every station: Richardson's, of its own where the sequence there converges, else the
+// Own limit at every station: its Richardson limit where the sequence converges there, else the
 // finest value.
 std::vector<double> own_limit(const std::vector<int>& steps, const std::vector<std::vector<double>>& levels,
                               double formal) {
@@ -122,7 +122,7 @@ ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curv
     result.gap = gap.back();
     result.gap_max = largest(gap);
     result.gap_rms = rms(gap);
-    std::vector<Level> growth;  // of the far half, where it is largest
+    std::vector<Level> growth;  // on the far half of the branch, where it is largest
     for (int s = stations / 2; s < stations; ++s)
         growth.push_back({static_cast<double>(s + 1), gap[static_cast<std::size_t>(s)]});
     const double floor = std::max({10 * result.end.band, 10 * result.uncertainty, 10 * round_off});
@@ -148,7 +148,7 @@ Walked walk_with_steps(const Model& model, const std::vector<Channel>& channels,
     return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
 }
 
-// All levels of one method on one way.
+// All levels of one method on one branch side.
 MethodStudy study_method(const Model& model, const std::vector<Channel>& channels, const Way& way,
                          const References& references, const recursive::Method& method,
                          const std::vector<int>& steps,
@@ -261,7 +261,7 @@ Study study(const Model& model, const StudyOptions& options) {
             BranchStudy b{way.name, branch.name, unit_of(branch.unit), abscissa_name(all, known.truth),
                           steps,    {}};
             for (const auto& method : options.methods) {
-                if (!recursive::has_steps(method)) continue;  // has no step count
+                if (!recursive::has_steps(method)) continue;  // has no steps
                 b.methods.push_back(study_method(model, all, way, known, method, steps, options.progress));
             }
             result.branches.push_back(std::move(b));
@@ -271,7 +271,7 @@ Study study(const Model& model, const StudyOptions& options) {
 
 namespace {
 
-// What is left of the way's gap when some of the stored forces follow; bit 0 lever, 1 axis, 2 load.
+// Gaps of a branch side with every combination of following forces; bit 0 lever, 1 axis, 2 load.
 constexpr unsigned combinations = 8;
 
 BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& channels, const Way& way,
@@ -311,14 +311,15 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
             for (unsigned bits = 0; bits < combinations; ++bits) {
                 const auto s = study_channel(steps, levels[bits], known, c, 1, by, span);
                 share.combinations.push_back(s.gap);
-                // At the round-off floor the limit is the finest value; where nothing can be said the spread
-                // is the band.
+                // At the round-off floor the limit is the finest value; without a convergence
+                // estimate the spread is the band.
                 const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
                 share.band =
                     std::max(share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
             }
             const auto& g = share.combinations;
-            // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both (1/3).
+            // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both
+            // (1/3).
             const auto effect = [&](unsigned term) {
                 const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3), t = 1u << term;
                 return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 + (g[a | b] - g[7]) / 3;

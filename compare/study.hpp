@@ -1,13 +1,13 @@
-// Where the error of a stepping method comes from: its steps, its formulation, or the reference.
+// Error decomposition of a stepping method: step error, formulation gap and reference uncertainty.
 //
 //   value(N) - truth = [value(N) - own limit]  +  [own limit - reference]  +  [reference - truth]
 //                       step error                formulation gap             reference uncertainty
 //
-// The own limit is Richardson's, per channel (convergence.hpp). Read at equal parameter and at equal
-// abscissa (curve.hpp). |Φ|
-// of eq. (31) stands beside them: it falls with the steps whatever the method converges to.
+// The own limit is the Richardson limit per channel (convergence.hpp). Both readings are used:
+// equal parameter and equal abscissa (curve.hpp). |Φ| of eq. (31) is reported beside them: it falls
+// with the steps whatever the limit of the method is.
 //
-// A branch with two ways is studied as two: each has an end of its own.
+// The two sides of a branch are studied separately, since each has an end of its own.
 #pragma once
 
 #include <functional>
@@ -25,9 +25,9 @@
 namespace elastocheck::compare {
 
 struct StudyOptions {
-    std::vector<recursive::Method> methods{recursive::Method{}};  // fixed-step ones
-    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};  // per branch, shared by its ways; increasing, at
-                                                            // least five
+    std::vector<recursive::Method> methods{recursive::Method{}};  // with fixed steps
+    // per branch, shared by its sides; increasing, at least five
+    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};
     std::function<void(std::string_view)> progress = {};
 };
 
@@ -38,83 +38,89 @@ struct ChannelStudy {
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
     double gap = 0;                                      // own limit - reference at the end, signed
     double gap_max = 0, gap_rms = 0;                     // over the branch
-    double gap_exponent = 0;  // of |gap| over the parameter or abscissa; NaN where it is at its floor
+    double gap_exponent = 0;  // of |gap| over the parameter or abscissa; NaN at the floor
     double uncertainty = 0;   // largest difference of the references over the branch
     double range = 0;         // of the reference over the branch
 };
 
 struct MethodStudy {
     std::string method;
-    std::vector<Outcome> outcomes;              // per level
-    std::vector<double> constraint_error;       // |Φ| at the end, eq. (31), per level
-    OrderFit constraint_order;                  // at which it falls
-    std::vector<ChannelStudy> equal_parameter;  // one per main channel; empty when a level did not converge
-    std::vector<ChannelStudy> equal_abscissa;   // the same; empty where it cannot be read
-    std::string not_studied;                    // why there is nothing, empty when there is
-    std::string no_abscissa;                    // why there is nothing at equal abscissa
+    std::vector<Outcome> outcomes;         // per level
+    std::vector<double> constraint_error;  // |Φ| at the end, eq. (31), per level
+    OrderFit constraint_order;             // order at which it falls
+    // one per main channel; empty when a level did not converge
+    std::vector<ChannelStudy> equal_parameter;
+    std::vector<ChannelStudy> equal_abscissa;  // the same; empty without an abscissa
+    std::string not_studied;                   // reason why there is no study, else empty
+    std::string no_abscissa;                   // reason why there is no equal abscissa
 };
 
 struct BranchStudy {
-    std::string branch;      // its name, or of one way of it: "bounce to -80 mm"
+    std::string branch;      // name of the branch, or of one side: "bounce to -80 mm"
     std::string belongs_to;  // the name of the branch
-    Unit unit{};             // in which its parameter is shown
+    Unit unit{};             // display unit of the parameter
     std::string abscissa;    // name of the channel, empty where there is none
-    std::vector<int> steps;  // of this way
+    std::vector<int> steps;  // of this branch side
     std::vector<MethodStudy> methods;
 };
 
 struct Study {
     std::vector<int> steps;
-    std::vector<Channel> channels;  // the main ones
+    std::vector<Channel> channels;  // the main channels
     std::vector<BranchStudy> branches;
     std::vector<std::string> inconclusive;  // references that failed or disagree
 
-    bool conclusive() const;  // and something was studied
+    bool conclusive() const;  // also requires that something was studied
 };
 
 // Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
 Study study(const Model& model, const StudyOptions& options = {});
 
-// One method on one way whose levels are walked already, by whomever: curves of `all` channels, of which the main ones that
-// `studied` names (positions in `all`) are studied, in the order of `steps`. Formal order: NaN if unknown.
+// Studies one method on one branch side from given levels: curves of `all` channels in the order of
+// `steps`, made by any solver. `studied`: positions in `all` of the main channels to study. Formal
+// order: NaN if unknown.
 struct References;
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
                   const std::vector<std::size_t>& studied, const std::vector<int>& steps,
                   const std::vector<Curve>& levels, const References& references, double formal_order);
 
-// Why the references do not do for a study: they failed, or are further apart than is allowed.
+// Reasons why the references cannot be used in a study: a failure, or too large a distance between
+// them.
 std::vector<std::string> unfit(const References& references, const std::string& way);
 
-// The ways of a branch as the references of a study walk them, each with its share of every number of steps.
+// The branch sides as the references of a study run them, each with its share of every step count.
 struct Way;
 std::vector<std::pair<Way, std::vector<int>>> ways_with_steps(const Model& model, const Branch& branch,
                                                               const std::vector<int>& steps);
 
-// The channels that are studied: positions and angles, no reaction.
+// The studied channels: positions and angles, no reactions.
 std::vector<Channel> motion(const Model& model);
 
-// ---- What the formulation gap is made of.
+// ---- Attribution of the formulation gap.
 //
-// The published recursion never turns what is stored. Three things can be made to follow the bodies
-// (recursive/method.hpp): the lever of the stored elastic force, its axis and law, and the lever of the load.
-// Every combination has a limit of its own; with all three it is equilibrium. A term's contribution is its
-// mean effect over all orders of adding it (Shapley), so the three add up to the whole gap exactly.
+// The published recursion never rotates the stored forces. Three quantities can be made to follow
+// the bodies (recursive/method.hpp): the lever of the stored elastic force, its axis and law, and
+// the lever of the load. Every combination has its own limit; with all three the limit is
+// equilibrium. The contribution of a term is its mean effect over all orders of adding it (Shapley
+// value, 1953), so that the three contributions add up to the whole gap.
 
 struct GapShare {
-    double whole = 0;                      // gap of the recursion in which nothing follows, signed
+    double whole = 0;                      // gap of the recursion in which none of the three follows, signed
     double lever = 0, axis = 0, load = 0;  // contributions; whole = lever + axis + load + rest
-    double rest = 0;                       // what is left with all three: 0 within `band`
+    double rest = 0;                       // remainder with all three: 0 within `band`
     double band = 0;                       // uncertainty of the limits and the reference
-    std::vector<double> combinations;      // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
+    // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
+    std::vector<double> combinations;
 };
 
 struct BranchAttribution {
-    std::string branch, belongs_to;                         // as in BranchStudy
-    Unit unit{};                                            // likewise
-    std::string abscissa;                                   // likewise
-    std::vector<GapShare> equal_parameter, equal_abscissa;  // per main channel; empty where it cannot be read
-    std::string not_attributed;                             // why there is nothing
-    std::string no_abscissa;                                // why there is nothing at equal abscissa
+    std::string branch, belongs_to;  // as in BranchStudy
+    Unit unit{};                     // likewise
+    std::string abscissa;            // likewise
+    // per main channel; empty without an abscissa
+    std::vector<GapShare> equal_parameter, equal_abscissa;
+    std::string not_attributed;  // reason why there is none
+    std::string no_abscissa;     // reason why there is no equal abscissa
 };
 
 std::vector<BranchAttribution> attribute_gap(const Model& model,

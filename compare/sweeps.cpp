@@ -1,4 +1,4 @@
-// The sweeps that any scene stands. Few points each: both ends, and one between.
+// Stress-test sweeps that apply to any scene. Few points each: both ends and one in between.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ Scene first_branch(const Scene& scene) {
     return one;
 }
 
-// The first branch, `to` and `from` times a factor.
+// The first branch with `to` and `from` times a factor.
 Scene driven(const Scene& scene, double factor) {
     Scene farther = first_branch(scene);
     for (auto& branch : farther.branches) branch.from *= factor, branch.to *= factor;
@@ -38,8 +38,8 @@ double drawn_length(const Scene& scene, const AxialSpring& spring) {
     return (drawn(spring.j) - drawn(spring.i)).norm();
 }
 
-// One element much softer or stiffer than the others, the first; a spring bears as drawn what it bore: else a suspension
-// would be another one.
+// First element much softer or stiffer than the others; a spring keeps its force in the design
+// position, so that the equilibrium there is unchanged.
 std::vector<Variant> stiffness(const Scene& scene) {
     std::vector<Variant> variants;
     if (scene.elastics.empty()) return variants;
@@ -57,8 +57,8 @@ std::vector<Variant> stiffness(const Scene& scene) {
     return variants;
 }
 
-// Lengths and loads smaller or larger, translational rates with them as they are, so that it moves as far for its size; and
-// rotational rates as they are: the lever that they work on becomes nothing, or all.
+// Lengths and loads scaled together, translational rates unchanged, so that the relative movement
+// is the same; rotational rates unchanged, so that the lever arms become negligible or dominant.
 std::vector<Variant> levers(const Scene& scene) {
     std::vector<Variant> variants;
     for (const double factor : {1e-6, 1e-3, 1e3})
@@ -68,7 +68,7 @@ std::vector<Variant> levers(const Scene& scene) {
     return variants;
 }
 
-// The parameter from next to nothing to far too much. At 0 what is held alone acts.
+// Range of the parameter from almost zero to far too large. At 0 only the static loads act.
 std::vector<Variant> loads(const Scene& scene) {
     std::vector<Variant> variants;
     Scene still = first_branch(scene);
@@ -90,7 +90,7 @@ std::vector<Variant> beyond(const Scene& scene) {
     return variants;
 }
 
-// One, and as many as round-off notices, of one method of each kind: so many as some seconds are enough for.
+// One step, and as many as make round-off visible within some seconds, for one method of each kind.
 std::vector<Variant> steps(const Scene& scene) {
     std::vector<Variant> variants;
     const auto bodies = scene.bodies.size();
@@ -108,7 +108,7 @@ std::vector<Variant> steps(const Scene& scene) {
     return variants;
 }
 
-// The same numbers in other units, as if the file said so.
+// The same numbers read in other units.
 std::vector<Variant> units(const Scene& scene) {
     std::vector<Variant> variants;
     for (const auto& [label, factor] :
@@ -140,7 +140,7 @@ std::vector<Variant> told_otherwise(const Scene& original) {
              .retold = Retelling{}}};
 }
 
-// The scene as it is, solved with other arithmetic; and every number of it an ulp off, solved as ever.
+// The unchanged scene under other arithmetic; and every number of it changed by one ulp.
 std::vector<Variant> arithmetic(const Scene& original) {
     const Scene scene = first_branch(original);
     std::vector<Variant> variants;

@@ -15,14 +15,15 @@ double count(auto number) { return static_cast<double>(number); }
 
 Column words(const char* name, const char* description = "") { return {name, "", description, true}; }
 
-// Calls sink(words of the reading, it) for both readings of a branch: over its parameter and its abscissa.
+// Calls sink(name of the reading, value) for both readings of a branch: over its parameter and its
+// abscissa.
 template <class T, class Sink>
 void both(Unit unit, const std::string& abscissa, const T& at_parameter, const T& at_abscissa, Sink&& sink) {
     sink(parameter_reading(symbol(unit)), at_parameter);
     sink(abscissa_reading(abscissa), at_abscissa);
 }
 
-// Part of a whole that is not only the arithmetic's, mm or deg.
+// Percentage; NaN where the whole is rounding, mm or deg.
 double percent(double part, double whole) { return std::abs(whole) < 1e-9 ? nan : 100 * part / whole; }
 
 }  // namespace

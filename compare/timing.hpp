@@ -1,8 +1,8 @@
-// Times of several jobs that can be compared with each other on a machine that does other things as well.
+// Interleaved timing of several jobs on a machine with other load.
 //
-// The jobs take turns in one process, round after round, so that whatever slows the machine down for a while
-// slows all of them. A ratio is formed within each round, where both of its times saw the same machine, and
-// then the median is taken.
+// The jobs run in turns in one process, round after round, so that a temporary slowdown of the
+// machine affects all of them. A ratio is formed within each round, then the median over the rounds
+// is taken.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,13 @@ namespace elastocheck::compare {
 using Times = std::vector<std::vector<double>>;
 Times take_turns(std::span<const std::function<void()>> jobs, int rounds);
 
-double median(std::vector<double> values);                                                      // NaN of none
-std::vector<double> ratios(const std::vector<double>& times, const std::vector<double>& base);  // by round
+double median(std::vector<double> values);  // NaN for an empty vector
+// by round
+std::vector<double> ratios(const std::vector<double>& times, const std::vector<double>& base);
 
-// How far the ratio of a job to itself, timed twice, is off 1: its median, or half its interquartile range if
-// that is more. Differences up to this are none.
+// Noise of a time ratio, from one job timed twice per round: deviation of the median ratio from 1,
+// or half the interquartile range if that is larger. Differences up to the noise are not
+// significant.
 double noise_of(const std::vector<double>& self_ratios);
 
 }  // namespace elastocheck::compare

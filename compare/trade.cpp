@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "compare/legs.hpp"
 #include "compare/timing.hpp"
@@ -17,21 +15,23 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Of the tolerances of `adaptive` [rad/m]: 0.001 deg beside 0.01 mm.
+// Ratio of the tolerances of `adaptive` [rad/m]: 0.001 deg for 0.01 mm.
 constexpr double angle_per_length = 1.745;
 
 bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
-Accuracy plus(const Accuracy& a, const Accuracy& b) { return {a.mm + b.mm, a.deg + b.deg}; }
+Accuracy plus(const Accuracy& a, const Accuracy& b) {
+    return {a.mm + b.mm, a.deg + b.deg, a.share + b.share};
+}
 
-// ---- one configuration
+// ---- One configuration
 
-// The same output points, `factor` from one to the next.
+// The same output points with `factor` intermediate points each.
 std::vector<Way> refined(std::vector<Way> ways, int factor) {
     for (auto& way : ways) way.branch.steps *= factor;
     return ways;
 }
 
-// Every so-many-th point.
+// Every `stride`-th point.
 Curve every(const Curve& curve, std::size_t stride) {
     Curve result{.unit = curve.unit, .a = {}, .start = curve.start / stride, .values = {}};
     for (std::size_t k = curve.start % stride; k < curve.a.size(); k += stride) {
@@ -41,7 +41,7 @@ Curve every(const Curve& curve, std::size_t stride) {
     return result;
 }
 
-// Of a path that is complete; else without a point, so that whatever is read from it is no number.
+// Curve of a complete path; of an incomplete one an empty curve, whose errors are NaN.
 Curve curve_of(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
                const EquilibriumPath& path) {
     if (path.outcome != Outcome::converged) return {};
@@ -75,7 +75,7 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
     return all;
 }
 
-// ---- ranking
+// ---- Ranking
 
 void rank(Trade& trade) {
     const double least = share_of(trade.tolerance, trade.uncertainty);
@@ -107,24 +107,26 @@ void rank(Trade& trade) {
     }
 }
 
-// ---- recommendation
+// ---- Recommendation
 
 bool good_enough(const Trade& trade, const Accuracy& error) {
-    return within(share_of(trade.tolerance, plus(error, trade.uncertainty)), 1);
+    const Accuracy at_most = plus(error, trade.uncertainty);
+    return within(share_of(trade.tolerance, at_most), 1) && within(at_most.share, trade.tolerance.share);
 }
 
 bool same_ladder(const TradePoint& a, const TradePoint& b) {
     return a.leg == b.leg && a.method == b.method && a.again == b.again;
 }
 
-// Told more than is asked for, a method is good enough by luck.
+// Whether the method's own tolerance is at most the required one; otherwise it meets the required
+// one only by chance.
 bool told_enough(const Trade& trade, const TradePoint& point) {
     const double deg = in_unit(Unit::deg) * angle_per_length * point.own_tolerance;
     return 1e3 * point.own_tolerance <= trade.tolerance.mm && deg <= trade.tolerance.deg;
 }
 
-// Good enough, and so is everything finer of the same method: what is good by two errors that cancel, or at
-// steps too few to show that the method is unstable, is good by luck.
+// Meets the tolerance, and so do all finer configurations of the same method: errors that cancel,
+// or too few steps to show an instability, would meet it only by chance.
 bool eligible(const Trade& trade, std::size_t k) {
     if (trade.points[k].again || !told_enough(trade, trade.points[k])) return false;
     for (std::size_t finer = k;
@@ -135,7 +137,7 @@ bool eligible(const Trade& trade, std::size_t k) {
     return true;
 }
 
-// By price; of equals the first, since every ladder begins with its loosest rung.
+// Cheapest by price; the first of equal ones, which has the loosest tolerance or the fewest steps.
 std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::size_t>& candidates) {
     const auto price = [&](std::size_t k) { return trade.points[k].work.price; };
     const auto best = std::ranges::min_element(candidates, {}, price);
@@ -143,9 +145,10 @@ std::optional<std::size_t> cheapest(const Trade& trade, const std::vector<std::s
     return *best;
 }
 
-// Between the rungs h/2 and 2h a law C·h^p puts the geometric mean at the middle one; at an end of the ladder
-// the two next rungs say where it ought to be. By this factor the law misses, and by as much the error may be
-// elsewhere. The band also holds what the confirming run found.
+// Misfit factor of the law C·h^p: between the rungs h/2 and 2h it predicts the geometric mean at
+// the middle one, at an end of the ladder the extrapolation of the two next rungs. The same factor
+// is the uncertainty of the error elsewhere. The band also contains the result of the confirming
+// run.
 double misfit(double error, double neighbour, double other, bool between) {
     const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
     return std::max(error / expected, expected / error);
@@ -182,21 +185,27 @@ void band(const Trade& trade, Recommendation& found) {
     };
     one(&Accuracy::mm);
     one(&Accuracy::deg);
+    one(&Accuracy::share);
 }
 
-// Run again, at output points it was not chosen by: finer ones, and those of a branch that ends half a step
-// earlier, against a reference that gets there by thirds of its steps.
-Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const TradePoint& point,
-                 int points, int& compared) {
-    int finer = 7;  // output points for one
+// Runs the configuration again at output points that were not used for its selection: finer ones,
+// and those of branches that end half a step earlier, against a reference with three times as many
+// points.
+Accuracy confirm(const Model& model, const std::vector<Channel>& channels,
+                 const std::vector<std::vector<double>>& extents, const TradePoint& point, int points,
+                 int& compared) {
+    int finer = 7;  // refinement factor of the output points
     if (point.steps > 0) {
         finer = 1;
         while (2 * finer * points <= std::min(point.steps, 100)) finer *= 2;
     }
     const TradePoint reference{.leg = point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
-    const auto main = std::ranges::count_if(channels, &Channel::main);
     Accuracy worst;
-    for (const auto& branch : model.branches)
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        std::size_t outputs = 0;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            outputs += channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c]));
         for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * points)}) {
             Branch shorter = branch;
             shorter.to *= end;
@@ -206,21 +215,23 @@ Accuracy confirm(const Model& model, const std::vector<Channel>& channels, const
                                          walk(refined(ways, 3), gait_of(reference, points))),
                         found =
                             curve_of(model, channels, shorter, walk(ways, gait_of(point, finer * points)));
-            worst = worse(worst, distance(channels, every(truth, 3), found));
-            compared += static_cast<int>(main) * static_cast<int>(found.a.size());
+            worst = worse(worst, distance(channels, every(truth, 3), found, extents[b]));
+            compared += static_cast<int>(outputs * found.a.size());
         }
+    }
     return worst;
 }
 
-void recommend(const Model& model, const std::vector<Channel>& channels, Trade& trade) {
+void recommend(const Model& model, const std::vector<Channel>& channels,
+               const std::vector<std::vector<double>>& extents, Trade& trade) {
     std::vector<std::size_t> candidates;
     for (std::size_t k = 0; k < trade.points.size(); ++k)
         if (eligible(trade, k)) candidates.push_back(k);
     while (const auto k = cheapest(trade, candidates)) {
         Recommendation found;
         found.point = *k;
-        found.confirmed =
-            confirm(model, channels, trade.points[*k], trade.points_per_branch, found.confirmed_numbers);
+        found.confirmed = confirm(model, channels, extents, trade.points[*k], trade.points_per_branch,
+                                  found.confirmed_numbers);
         band(trade, found);
         const bool holds = found.confirmed_numbers > 0 && good_enough(trade, found.confirmed);
         if (holds && good_enough(trade, found.high)) {
@@ -229,55 +240,17 @@ void recommend(const Model& model, const std::vector<Channel>& channels, Trade& 
         }
         const Accuracy& worst = holds ? found.high : found.confirmed;
         trade.rejected.push_back(fmt::format(
-            "{}: {}{:.3g} mm and {:.3g} deg{}", describe(trade.points[*k]), holds ? "up to " : "", worst.mm,
-            worst.deg, holds ? ", as far as its rungs obey their law" : " when run again"));
+            "{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}", describe(trade.points[*k]),
+            holds ? "up to " : "", worst.mm, worst.deg, 100 * worst.share,
+            holds ? ", as far as its rungs obey their law" : " when run again"));
         std::erase(candidates, *k);
     }
 }
 
 }  // namespace
 
-Tolerance parse_tolerance(std::string_view text, Asks asks) {
-    const bool forces = asks == Asks::forces_too;
-    const auto refuse = [&](std::string_view why) {
-        throw std::invalid_argument(fmt::format(
-            "tolerance '{}': {}; allowed: {}, each above 0, such as 0.01mm,0.001deg{}", text, why,
-            forces ? "a length in mm, an angle in deg, a force in N, a moment in Nm, or some of these"
-                   : "a length in mm, an angle in deg or both",
-            forces ? ",1N" : ""));
-    };
-    const auto trim = [](std::string_view word) {
-        while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
-        while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-        return word;
-    };
-    Tolerance result;
-    const std::pair<std::string_view, double*> known[] = {
-        {"mm", &result.mm}, {"deg", &result.deg}, {"N", &result.newton}, {"Nm", &result.newton_metre}};
-    for (std::string_view rest = text;;) {
-        const auto comma = rest.find(',');
-        const std::string_view word = trim(rest.substr(0, comma));
-        if (word.empty()) refuse("a number with its unit is missing");
-        double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error == std::errc::invalid_argument)
-            refuse(fmt::format("'{}' does not begin with a number", word));
-        if (error != std::errc{} || !std::isfinite(value) || !(value > 0))
-            refuse(fmt::format("'{}' is not a finite number above 0", word));
-        const std::string_view unit = trim(word.substr(static_cast<std::size_t>(end - word.data())));
-        const auto* const of = std::ranges::find(known, unit, [](const auto& entry) { return entry.first; });
-        if (of >= known + (forces ? 4 : 2))
-            refuse(unit.empty() ? fmt::format("'{}' has no unit", word)
-                                : fmt::format("'{}' is not a unit of it", unit));
-        if (std::isfinite(*of->second)) refuse(fmt::format("{} is given twice", unit));
-        *of->second = value;
-        if (comma == rest.npos) return result;
-        rest.remove_prefix(comma + 1);
-    }
-}
-
 double share_of(const Tolerance& tolerance, const Accuracy& error) {
-    // What is not asked for does not count, whatever it is, but for a NaN.
+    // A quantity without a tolerance does not count, except for a NaN.
     const double mm = std::isinf(tolerance.mm) ? 0 * error.mm : error.mm / tolerance.mm;
     const double deg = std::isinf(tolerance.deg) ? 0 * error.deg : error.deg / tolerance.deg;
     return worse(mm, deg);
@@ -335,11 +308,14 @@ Trade trade(const Model& model, const TradeOptions& options) {
 
     if (model.branches.empty()) result.inconclusive.push_back("the scene has no branch");
     if (std::isinf(result.tolerance.mm) && std::isinf(result.tolerance.deg))
-        result.inconclusive.push_back("only an angle is asked for, and the scene has none");
+        result.inconclusive.push_back(std::isfinite(options.tolerance.deg)
+                                          ? "only an angle is asked for, and the scene has none"
+                                          : "neither a position nor an angle is asked for");
     if (!result.inconclusive.empty()) return result;
 
     std::vector<std::vector<Way>> ways;
     std::vector<Curve> truth;
+    std::vector<std::vector<double>> extents;  // per branch
     for (const auto& branch : model.branches) {
         tell(fmt::format("{}: the references", branch.name));
         ways.push_back(ways_of(model, branch, options.points));
@@ -348,6 +324,7 @@ Trade trade(const Model& model, const TradeOptions& options) {
             result.inconclusive.push_back(fmt::format("{}: {}", branch.name, why));
         result.uncertainty = worse(result.uncertainty, known.uncertainty);
         truth.push_back(known.truth_ended == Outcome::converged ? std::move(known.truth) : Curve{});
+        extents.push_back(std::move(known.extents));
     }
 
     result.points = configurations(model, options);
@@ -362,9 +339,9 @@ Trade trade(const Model& model, const TradeOptions& options) {
             point.work.solves += path.counts.iterations;
             point.work.factorisations += path.counts.factorisations;
             point.work.evaluations += path.counts.evaluations;
-            point.error = worse(
-                point.error,
-                distance(all_channels, truth[b], curve_of(model, all_channels, model.branches[b], path)));
+            point.error = worse(point.error,
+                                distance(all_channels, truth[b],
+                                         curve_of(model, all_channels, model.branches[b], path), extents[b]));
             if (path.outcome != Outcome::converged && point.outcome == Outcome::converged) {
                 point.outcome = path.outcome;
                 point.detail = path.detail;
@@ -391,7 +368,7 @@ Trade trade(const Model& model, const TradeOptions& options) {
     }
     rank(result);
     tell("the recommendation, again");
-    if (result.inconclusive.empty()) recommend(model, all_channels, result);
+    if (result.inconclusive.empty()) recommend(model, all_channels, extents, result);
     return result;
 }
 

@@ -21,16 +21,16 @@ using Eigen::VectorXd;
 
 constexpr int most_iterations = 30;
 constexpr int most_halvings = 10;
-constexpr double met = 1e-12;        // [m, rad]: as well as a settled state is known
-constexpr double acceptable = 1e-9;  // [m, rad]: where Newton's method stops getting nearer
-constexpr double moves = 1e-10;      // [m, rad]: what a step moves by less, it does not move
-constexpr double known = 1e-6;       // of the largest singular value: what differences can tell from zero
+constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
+constexpr double acceptable = 1e-9;  // [m, rad]: accepted where Newton's method stagnates
+constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
+constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
 
-// The question, ready to be asked for any p.
+// The trim equations for any p.
 struct Problem {
     const Trim* trim = nullptr;
-    Way way;                        // the branch on which the adjustments are held
-    std::vector<Channel> channels;  // that the conditions read
+    Way way;                        // branch on which the adjustments are held
+    std::vector<Channel> channels;  // read by the conditions
     VectorXd asked;                 // [m, rad]
 };
 
@@ -76,8 +76,8 @@ VectorXd values(const Problem& problem, const Equilibrium& state) {
     return c;
 }
 
-// The scene on a branch whose drivers are the adjustments. compile() takes them for moving, so that nothing is left
-// out because it starts at zero.
+// The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
+// no adjustment is left out because it starts at zero.
 Problem pose(const Scene& scene) {
     Problem problem;
     problem.trim = &*scene.trim;
@@ -130,7 +130,7 @@ double step(const Trim::Adjustment& adjustment) {
     return of_what / std::abs(adjustment.per_unit);
 }
 
-// J, a column a step h: what the conditions do when an adjustment goes by one. Nothing where a leg gave no answer.
+// J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
 std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, Answer& failed) {
     const Index n = p.size();
     MatrixXd J(static_cast<Index>(problem.channels.size()), n);
@@ -155,7 +155,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-// Those that take part in a combination.
+// Names with a significant part in a combination.
 template <class Named>
 std::vector<std::string> taking_part(const std::vector<Named>& all, const VectorXd& share) {
     std::vector<std::string> names;
@@ -165,7 +165,7 @@ std::vector<std::string> taking_part(const std::vector<Named>& all, const Vector
     return names;
 }
 
-// Which adjustment or condition makes the question ill-posed; empty where none does.
+// Names the adjustment or condition that makes the trim ill-posed; empty if none does.
 std::string ill_posed(const Trim& trim, const MatrixXd& J) {
     MatrixXd scaled = J;
     for (Index k = 0; k < J.cols(); ++k) {
@@ -193,7 +193,7 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
         listed(taking_part(trim.adjust, svd.matrixV().rightCols<1>())));
 }
 
-// ---- What was found, as plain data and in words.
+// ---- Result as plain data and as text.
 
 void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
@@ -220,7 +220,7 @@ void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
     scene.trim.reset();
 }
 
-// Of the trimmed scene, its driver's part as the model has it.
+// Text of the resulting value in the trimmed scene; `driven` is the driver in the model.
 std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Problem& problem,
                           const Driven& driven, const Way& held, const Equilibrium& state) {
     return std::visit(
@@ -279,7 +279,8 @@ Trimmed trim(const Scene& scene) {
     Answer here = settle(problem, p, Leg::equilibrium);
     if (here.outcome != Outcome::converged) return give_up(here, "the scene as written does not settle");
     std::string stuck;
-    // J is asked for before anything is believed: conditions that hold by chance may leave p undetermined.
+    // J is checked before convergence is accepted: conditions met by chance may leave p
+    // undetermined.
     for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
         Answer failed;
         const auto J = responses(problem, p, failed);
@@ -289,7 +290,8 @@ Trimmed trim(const Scene& scene) {
             break;
         }
         if (const std::string why = ill_posed(trim, *J); !why.empty()) {
-            // Where it was well-posed before, the way there has led to where it can go no farther.
+            // Well-posed at an earlier iterate: the iteration has reached the limit of what can be
+            // trimmed.
             if (record.iterations == 0 || here.missed.norm() <= acceptable) throw std::invalid_argument(why);
             stuck = "; there " + why;
             break;
@@ -303,7 +305,8 @@ Trimmed trim(const Scene& scene) {
             if (next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm()) break;
         }
         if (!(next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())) {
-            // Conditions out of reach are left at a singular state, on whose other side rounding decides what is met.
+            // Unreachable conditions lead to a singular state, beyond which rounding decides which
+            // are met.
             if (next.outcome != Outcome::converged)
                 stuck = fmt::format("; farther: {}: {}", elastocheck::name(next.outcome), next.detail);
             break;

@@ -1,17 +1,19 @@
-// Trim: the free lengths, preloads and offsets with which a scene, under what is held on every branch, settles where
-// its conditions ask for.
+// Trim: free lengths, preloads and offsets for which a scene settles, under the loads held on every
+// branch, at the requested conditions.
 //
-// x(p): the state that the equilibrium leg settles, the adjustments p held by the drivers of a branch on which
-// nothing moves. c(x) are the conditions, lengths and angles side by side. Newton's method on c(x(p)) = 0,
+// x(p): the state settled by the equilibrium leg, the adjustments p held by the drivers of a branch
+// without motion. c(x): the residuals of the conditions, lengths and angles together. Newton's
+// method on c(x(p)) = 0,
 //
 //   J Δp = -c,     J e_k h_k = ½ (c(x(p + h_k e_k)) - c(x(p - h_k e_k))),
 //
-// h_k a step that moves the elements by a tenth of a millimetre or their stress by ten newtons; Δp is halved until c
-// gets smaller. Whether J answers every condition by one Δp alone is judged on J with columns per step h and then
-// rows of length one: differences are known to some six digits, so a singular value below 1e-6 of the largest is
-// none.
+// h_k is a step that moves the element by a tenth of a millimetre or changes its stress by ten
+// newtons; Δp is halved until |c| decreases. The rank of J (every condition answered by exactly one
+// Δp) is judged on J with columns per step h and rows scaled to length one. Differences have about
+// six digits, so a singular value below 1e-6 of the largest counts as zero.
 //
-// The energy leg, which knows nothing of p, then settles the trimmed scene, and its conditions are read as well.
+// The energy leg, which does not use p, then settles the trimmed scene, and its conditions are
+// checked too.
 #pragma once
 
 #include <optional>
@@ -28,34 +30,36 @@ struct TrimRecord {
     struct Adjusted {
         std::string name;  // "springs.coil.preload"
         Unit unit = Unit::newton;
-        double by = 0;      // found, counted from what the scene said
-        std::string makes;  // "force 3521.4 N in compression, free length 412.3 mm": what it is now
+        double by = 0;  // found change relative to the value in the scene
+        // "force 3521.4 N in compression, free length 412.3 mm": resulting values
+        std::string makes;
     };
     struct Met {
         std::string name;  // "left.travel"
         Unit unit = Unit::mm;
         double asked = 0;
-        double missed = 0;     // by the equilibrium leg's state
-        double confirmed = 0;  // missed by that of the second reference
+        double missed = 0;     // residual by the equilibrium leg's state
+        double confirmed = 0;  // residual by the state of the second reference
     };
     std::vector<Adjusted> adjusted;
     std::vector<Met> conditions;
     int iterations = 0;              // of Newton's method
-    Leg confirmed_by = Leg::energy;  // or the series, where that one is not asked
+    Leg confirmed_by = Leg::energy;  // or the series, where the energy leg does not apply
     Outcome outcome = Outcome::converged;
-    std::string detail;  // why there is no trim: nothing was reached, or not confirmed; empty when there is
+    // reason why there is no trim: not reached, or not confirmed; empty on success
+    std::string detail;
     bool reached() const { return outcome == Outcome::converged && detail.empty(); }
 };
 
 struct Trimmed {
-    Scene scene;                       // with what was found as plain data, and no trim any more
-    std::optional<TrimRecord> record;  // none where the scene asks for no trim, and is as it was
+    Scene scene;                       // with the result as plain data, and without a trim section
+    std::optional<TrimRecord> record;  // empty where the scene requests no trim and is unchanged
 };
 
-// Throws std::invalid_argument where the trim is no well-posed question: conditions and adjustments that are not as
-// many, an adjustment that moves no condition, conditions that no adjustment moves or that move only together. It
-// names them. Where no answer is reached, or the second reference does not confirm it, the record says why and the
-// scene is the one given.
+// Throws std::invalid_argument for an ill-posed trim, naming the entries: different numbers of
+// conditions and adjustments, an adjustment that moves no condition, conditions that no adjustment
+// moves or that move only together. Where no solution is reached, or the second reference does not
+// confirm it, the record has the reason and the scene is the one given.
 Trimmed trim(const Scene& scene);
 
 }  // namespace elastocheck::compare

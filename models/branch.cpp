@@ -10,7 +10,7 @@
 namespace elastocheck {
 namespace {
 
-// Which joints and elements stand on the branch.
+// Joints and elements that are active on the branch.
 struct Standing {
     std::vector<bool> joints, elastics;
 };

@@ -1,4 +1,4 @@
-// A branch and the model it is walked on.
+// Branch sides, and the model that is active on a branch.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace elastocheck {
 
-// The one-way branches that a branch is walked as, each from a = 0: to `from` where there is one, then to
-// `to`. The steps are shared out by length, at least one each, and are as many as before where there are two or more.
+// Splits a branch into its sides, each starting at a = 0: to `from` if that is not 0, then to `to`.
+// The steps are divided by length, at least one each; the total is unchanged if it is two or more.
 std::vector<Branch> ways(const Branch& branch);
 
-// The model as it stands on the branch: joints that stand only where they are driven, and are not driven
-// here, hold nothing, and such elements have no law (both stay in their lists, so that reactions and elements keep
-// their places). Only this branch is left.
+// The model that is active on the branch: joints that are active only where driven, and are not
+// driven here, have no constraints; such elements have no law. Both stay in their lists, so that
+// reactions and elements keep their positions. The result has only this branch.
 Model on_branch(const Model& model, const Branch& branch);
 
-// Whether every constraint and element of the model stands on the branch, as every leg requires, and the branch is
-// one-way.
+// Whether every constraint and element of the model is active on the branch and the branch has one
+// side, as every leg requires.
 bool stands_on(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck

@@ -11,7 +11,7 @@
 namespace elastocheck {
 namespace {
 
-// Where on its body an end of a joint is.
+// Point of a joint's end on its body.
 Point place(const Point& end) { return end; }
 Point place(const Direction& end) { return {end.body, Eigen::Vector3d::Zero()}; }
 
@@ -30,7 +30,7 @@ bool can_be_driven(const ConstraintKind& kind) {
         kind);
 }
 
-// Whether the model has it turned round.
+// Whether compile() must swap the element's markers.
 bool is_framed_on_j(const ElasticKind& elastic) {
     const auto* bushing = std::get_if<Bushing>(&elastic);
     return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::on_j;
@@ -68,7 +68,7 @@ void lower_joints(const Scene& scene, Model& model) {
     }
 }
 
-// Bushings whose frame is on j are turned round, and with them what drives their preload.
+// Swaps the markers of bushings with their frame on j, and the sign of drivers of their preload.
 void turn_round(Model& model) {
     const auto element = [&](int k) -> ElasticKind& {
         return model.elastics[static_cast<std::size_t>(k)].kind;
@@ -85,7 +85,8 @@ void turn_round(Model& model) {
         }
 }
 
-// Motions of joints that have no length, offset or angle; and what has nothing left that moves.
+// Removes drivers of joints without a length, offset or angle, and reports branches that move
+// nothing.
 void name_what_cannot_move(Model& model) {
     for (Branch& branch : model.branches) {
         std::erase_if(branch.drivers, [&](const Driver& driver) {

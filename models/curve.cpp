@@ -10,7 +10,7 @@ namespace {
 
 using Cubic = std::array<double, 4>;  // c_0 + c_1 x + c_2 x² + c_3 x³
 
-// The cubic c about a, about a + h.
+// The cubic c about a, re-expanded about a + h.
 Cubic shifted(const Cubic& c, double h) {
     return {c[0] + h * (c[1] + h * (c[2] + h * c[3])), c[1] + h * (2 * c[2] + h * 3 * c[3]),
             c[2] + 3 * h * c[3], c[3]};
@@ -36,7 +36,8 @@ Curve reversed(const Curve& curve) {
     std::ranges::transform(curve.knots, result.knots.rbegin(), [](double x) { return -x; });
     result.pieces.front() = reversed(curve.pieces.back());
     result.pieces.back() = reversed(curve.pieces.front());
-    // Between two knots a piece is told about the left one, which was the right one.
+    // A piece between two knots refers to its left knot, which was the right one before the
+    // reversal.
     for (std::size_t k = 1; k < n; ++k)
         result.pieces[n - k] = reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));
     return result;

@@ -1,20 +1,20 @@
-// Curves as data: their values, and the same law told the other way round.
+// Values of force curves, and reversal of a law's sign convention.
 #pragma once
 
 #include "models/mechanism.hpp"
 
 namespace elastocheck {
 
-// f(x), for those who ask what an element is at the design position (compile() and the reader). A leg evaluates its
-// laws by itself.
+// f(x), for compile() and the reader, which need the force at the design position. Each leg has its
+// own evaluation.
 double force(const ScalarLaw& law, double x);
 
-// f(x) → -f(-x): the law of the deformation counted the other way.
+// f(x) → -f(-x): the law for the opposite sign of the deformation.
 Curve reversed(const Curve& curve);
 ScalarLaw reversed(const ScalarLaw& law);
 
-// The same bushing with its markers changed over: i is j, j is i, deformations, preload and undeformed offset
-// count the other way. What was a frame on j is a frame on i, and the other way round.
+// The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
+// change sign. A frame on j becomes a frame on i and vice versa.
 Bushing turned_round(const Bushing& bushing);
 
 }  // namespace elastocheck

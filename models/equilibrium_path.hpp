@@ -1,4 +1,4 @@
-// What every leg returns: the equilibria along one branch, or each as it is found, and how the solution ended.
+// Result of every leg: the equilibria along one branch, stored or streamed, and the outcome.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ struct Wrench {
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N·m], ground axes
 };
 
-// How far a state may be from the equilibrium that it stands for, by the leg's own account: above the true error, and
-// infinite where the leg can promise nothing.
+// A-posteriori error bound: distance of a state from its equilibrium as bounded by the leg itself.
+// It exceeds the true error, and is infinite where the leg has no bound.
 struct ErrorBound {
     double length = std::numeric_limits<double>::infinity();  // of any body's origin [m]
     double angle = std::numeric_limits<double>::infinity();   // of any body's orientation [rad]
@@ -26,34 +26,40 @@ struct Equilibrium {
     double load = 0;          // load factor a of the branch
     std::vector<Pose> poses;  // one per Model::bodies
     std::vector<Wrench>
-        reactions;  // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
+        // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
+        reactions;
     double constraint_error = 0;  // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
-    // What a leg says of the point where it is asked to give account of its path; else as here.
+    // Set where a leg computes error bounds along its path; else the default.
     ErrorBound bound = {};
-    // The least stiffness of what the joints leave free and something resists, in the leg's own scaling, over what it was
-    // at a = 0: 0 where the branch turns back, divides or loses its stability, negative past that.
+    // Least stiffness of the motions that the joints allow and something resists, in the leg's own
+    // scaling, over its value at a = 0: 0 at limit and bifurcation points and at loss of stability,
+    // negative past them.
     double stiffness_left = std::numeric_limits<double>::quiet_NaN();
 };
 
 enum class Outcome {
     converged,
-    singular,                  // the linear system lost rank on the way
-    loaded_idle_mode,          // a motion that nothing resists is pushed by a load
-    inconsistent_constraints,  // the joints contradict each other
+    singular,                  // the linear system is rank deficient on the branch
+    loaded_idle_mode,          // a load acts on a motion that nothing resists
+    inconsistent_constraints,  // redundant joints are inconsistent
     not_finite,                // a NaN or infinity appeared
-    iteration_limit,           // the solver gave up before its own criterion was met
-    diverged,                  // steps that swing back and forth and grow: the method is unstable here
-    limit_point,               // the branch ends here: it turns back, and no equilibrium continues it
-    dividing_point,    // another curve of equilibria crosses the branch here, which is unstable past it
+    iteration_limit,           // the iteration stopped before its own criterion was met
+    diverged,                  // steps alternate and grow: the method is unstable here
+    // limit point: the branch turns back, and no equilibrium continues it
+    limit_point,
+    // bifurcation: another path of equilibria crosses here, and the branch is unstable past it
+    dividing_point,
     branch_lost,       // no equilibrium continues the branch, however small the load step
-    not_conservative,  // a load or a formulation has no energy: the energy leg cannot be asked
-    too_large,         // more work than a leg whose cost grows with the cube of the scene is worth: not asked
-    outside_table,     // a curve that says nothing beyond its ends was led beyond them
+    not_conservative,  // a load or a formulation has no energy: the energy leg does not apply
+    // the cost grows with the cube of the scene and exceeds the leg's limit: not run
+    too_large,
+    // the branch left the range of a curve that is defined within its end knots only
+    outside_table,
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
 
-// How far a state is from satisfying a leg's own equations: the largest absolute entries. Every leg can judge
-// any state, its own or another's, so nobody has to grade himself.
+// Residuals of a state in a leg's own equations: the largest absolute entries. Every leg can
+// evaluate the states of every other leg, so that no leg judges its own result.
 struct Residuals {
     double length = 0;     // constraints that are lengths [m]
     double direction = 0;  // constraints that are cosines of directions [-]
@@ -70,13 +76,14 @@ struct Counts {
 
 struct EquilibriumPath {
     Outcome outcome = Outcome::converged;
-    std::string detail;               // what failed, in words; empty when converged
+    std::string detail;               // message on the failure; empty when converged
     std::vector<Equilibrium> points;  // all requested points, or those reached before the failure
     Counts counts;
 };
 
-// Takes each point as it is found, in their order, so that a path need not keep them: told of one, a leg returns the
-// path without points. What is handed over is the leg's own, and may be another point once this returns.
+// Visitor that receives each point as it is found, in order, so that the path need not be stored:
+// with a visitor a leg returns the path without points. The reference is valid during the call
+// only.
 using Visit = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

@@ -14,13 +14,13 @@ Quaterniond axes(const std::vector<Body>& bodies, BodyId body) {
     return body == ground ? Quaterniond::Identity() : bodies[static_cast<std::size_t>(body)].design.p;
 }
 
-// Two directions across `axis`, perpendicular to it and to each other, on the same body.
+// Two directions on the same body, perpendicular to `axis` and to each other.
 std::pair<Direction, Direction> across(const Direction& axis) {
     const Vector3d a = axis.u_local.unitOrthogonal();
     return {{axis.body, a}, {axis.body, axis.u_local.cross(a).normalized()}};
 }
 
-// The direction `u` of one body as it lies in another at the design pose.
+// The direction `u` of one body, in the axes of another body at the design pose.
 Direction carried(const Direction& u, BodyId to, const std::vector<Body>& bodies) {
     return {to, axes(bodies, to).conjugate() * (axes(bodies, u.body) * u.u_local)};
 }

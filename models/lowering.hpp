@@ -1,4 +1,4 @@
-// Joints as compositions of the four basic constraints.
+// Lowers joints to the four basic constraints (Nikravesh 1988).
 #pragma once
 
 #include <vector>
@@ -7,7 +7,8 @@
 
 namespace elastocheck {
 
-// The constraints a joint is made of, at most six rows; where one of them has an offset, it is the only one:
+// Constraints of a joint, at most six rows; a constraint with an offset is the only one of its
+// joint:
 //
 //   spherical      coincident points                                          3
 //   revolute       coincident points  + axis_i ⟂ two directions across axis_j  5
@@ -18,8 +19,8 @@ namespace elastocheck {
 //   fixed          coincident points + x_i ⟂ y_j, x_i ⟂ z_j, y_i ⟂ z_j         6
 //   distance 1 · in-plane 1 · in-line 2 · perpendicular 1 · parallel 2 · angle 1 (DirectionAtAngle)
 //
-// `bodies` gives the design orientation, needed where a direction across an axis is not part of the joint:
-// the perpendicular directions of a translational joint are perpendicular at the design pose.
+// `bodies` gives the design orientation, needed for a direction that is not part of the joint: the
+// transverse directions of a translational joint are perpendicular at the design pose.
 std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body>& bodies);
 
 }  // namespace elastocheck

@@ -1,8 +1,8 @@
-// What a suspension is made of, as plain data: bodies, joints, elastic elements, loads.
+// Plain data of a suspension mechanism: bodies, joints, elastic elements, loads.
 //
-// Everything here is SI (m, N, rad) and ISO 8855 (x forward, y left, z up). A name ending in _local is in the
-// axes of its body; no suffix means ground axes. There is no mechanics in models/, not even r + A s: each leg
-// writes its own.
+// Units are SI (m, N, rad), axes ISO 8855 (x forward, y left, z up). A name ending in _local is in
+// body axes; no suffix means ground axes. models/ contains no mechanics, not even r + A s: each leg
+// has its own.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -45,8 +45,8 @@ struct Marker {
     Eigen::Quaterniond A_local = Eigen::Quaterniond::Identity();  // marker axes to body axes
 };
 
-// ---- Joints, under their usual names. `i` is the first body,
-// `j` the second. lowering.hpp says what each is made of.
+// ---- Joints, under their usual names. `i` is the first body, `j` the second. lowering.hpp lists
+// their constraints.
 
 struct Spherical {
     Point i, j;
@@ -95,8 +95,8 @@ struct Parallel {
     Direction i, j;
 };
 
-// i stays in the plane of x_j = j and y_j at this angle from x_j towards y_j, when it is in that plane
-// already: the drive of a revolute or cylindrical joint, never a joint by itself.
+// i stays in the plane of x_j = j and y_j at this angle from x_j towards y_j, provided that it is
+// in that plane already: the drive of a revolute or cylindrical joint, never a joint by itself.
 struct Angle {
     Direction i;
     Direction j, y_j;  // perpendicular
@@ -108,30 +108,31 @@ using JointKind = std::variant<Spherical, Revolute, Universal, Cylindrical, Tran
 struct Joint {
     std::string name;
     JointKind kind;
-    bool only_where_driven = false;  // a jack: stands only on the branches that drive it
+    bool only_where_driven = false;  // a jack: active only on the branches that drive it
 };
 
-// ---- Elastic elements: geometry times law. The geometry says what deforms, the law what energy that costs;
-// every force follows from the energy.
+// ---- Elastic elements: geometry times law. The geometry defines the deformation, the law its
+// energy; all forces follow from the energy.
 
 // Laws of one deformation x.
 struct LinearRate {
     double k = 0;  // [N/m] or [N·m/rad] ≥ 0
 };                 // u(x) = ½ k x²
 
-// A force over a deformation, piecewise a polynomial:
+// Force over a deformation, a piecewise cubic polynomial:
 //
-//   f(x) = Σ c_kn (x - x_k)ⁿ, n = 0 ... 3,  on the pieces  x < x_0 | x_0 ≤ x < x_1 | ... | x ≥ x_K     u(x) = ∫₀ˣ f
+//   f(x) = Σ c_kn (x - x_k)ⁿ, n = 0 ... 3,  on the pieces  x < x_0 | x_0 ≤ x < x_1 | ... | x ≥ x_K
+//   u(x) = ∫₀ˣ f
 //
-// The piece before the first knot and the one behind the last are straight and go on for ever. f is continuous;
-// its slope is where the curve interpolates a table (curve.hpp), and jumps where a stop of constant rate closes.
+// The pieces before the first and behind the last knot are linear and unbounded. f is continuous.
+// Its slope is continuous for a smooth interpolant; it jumps at the rows of a piecewise linear
+// table and where a stop closes.
 struct Curve {
     std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
     std::vector<std::array<double, 4>>
-        pieces;  // c [N, N/m, ...] of the piece before the first knot, about it,
-                 // then of the piece behind each knot, about that knot
-    bool known_outside =
-        true;  // false: beyond the end knots nothing is known, a branch that goes there ends there
+        pieces;                 // c [N, N/m, ...] of the piece before the first knot, about it,
+                                // then of the piece behind each knot, about that knot
+    bool known_outside = true;  // false: undefined beyond the end knots, and a branch ends there
 };
 using ScalarLaw = std::variant<LinearRate, Curve>;
 
@@ -151,25 +152,28 @@ struct AxialSpring {
     double free_length = 0;  // ℓ₀ [m]
 };
 
-// What a bushing measures, and what its stress does. Tools differ here, and all are right: the default is
-// eqs. (10)-(11) as an energy, the others are named. B = A_iᵀ A_j turns marker axes i into j.
+// Deformation measure of a bushing and the direction of its forces. Programs differ here and all
+// choices are valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from
+// marker axes i to j.
 struct Formulation {
-    // The axes A_f that d is measured in:  on_i: A_i   middle: A_i B^½   on_j: A_j. On j is on i of the same
-    // bushing with its two markers, and the signs of its deformations, changed over: compile() does that, so that
-    // no leg meets it.
+    // The axes A_f of d:  on_i: A_i   middle: A_i B^½   on_j: A_j. A frame on j equals a frame on i
+    // of the same bushing with its markers swapped and the signs of its deformations reversed:
+    // compile() does that, so that no leg sees it.
     enum class Frame { on_i, on_j, middle } frame = Frame::on_i;
     // The three angles θ of B:
     //   rotation_vector  log(B)
     //   cardan           B = R_x(θ_x) R_y(θ_y) R_z(θ_z)
-    //   projected        θ_x = atan2(-B_12, B_22)   θ_y = atan2(B_02, B_22)   θ_z = atan2(B_10, B_00), indices from 0:
-    //                    each axis of j as it looks along an axis of i, the small angles of a commercial code
+    //   projected        θ_x = atan2(-B_12, B_22)   θ_y = atan2(B_02, B_22)
+    //                    θ_z = atan2(B_10, B_00), indices from 0: each axis of j projected along an
+    //                    axis of i, the small angles of a commercial code
     enum class Angles { rotation_vector, cardan, projected } angles = Angles::rotation_vector;
-    // true:  forces and moments are those that do work on (d, θ): -∂U/∂q. It has an energy.
-    // false: (F', M') = ∂u/∂e + preload, straight along the axes A_f: F = A_f F', M = A_f M', F acting at p_j on both
-    //        bodies. In general no energy has these; not with the frame in the middle.
+    // true:  forces and moments are conjugate to (d, θ): -∂U/∂q. They have an energy.
+    // false: (F', M') = ∂u/∂e + preload along the axes A_f: F = A_f F', M = A_f M', F acting at p_j
+    //        on both bodies. In general no energy. Not defined with the frame in the middle.
     bool conjugate = true;
-    // false: F acts on each body at its own marker, so that the moment D × F of the points' offset is left out, in the
-    // middle also the share of it that is j's: M = A_i (∂θ/∂φ)ᵀ M' alone, φ the rotation of j relative to i. No energy.
+    // false: F acts on each body at its own marker. The moment D × F of the offset between the
+    // points is left out, and in the middle also its part on j: M = A_i (∂θ/∂φ)ᵀ M' alone, φ the
+    // rotation of j relative to i. No energy.
     bool offset_moment = true;
 
     friend bool operator==(const Formulation&, const Formulation&) = default;
@@ -177,13 +181,13 @@ struct Formulation {
 constexpr bool has_energy(const Formulation& f) { return f.conjugate && f.offset_moment; }
 
 // Two markers:  U = u(e - e₀) + preloadᵀ e,  e = (d, θ),  d = A_fᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
-// with p, A the positions and axes of the two markers; A_f = A_i, the frame rides on marker i as in eqs. (10)-(11),
-// and θ is the rotation vector, unless the formulation says otherwise.
-// `preload` is (force [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e,
-// as ∂u/∂e does. `undeformed` is e₀ [m, rad], where the law alone gives no force.
+// with p, A the positions and axes of the two markers. By default A_f = A_i, the frame is fixed in
+// marker i as in eqs. (10)-(11), and θ is the rotation vector; see Formulation. `preload` is (force
+// [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e, as ∂u/∂e
+// does. `undeformed` is e₀ [m, rad], where the law has zero force.
 //
-// A torsion spring is a bushing that resists θ_z alone, a tyre one to ground that resists d_z alone, a beam one in
-// the middle of its length with its frame in the middle (models/reader/beams.hpp).
+// A torsion spring is a bushing that resists only θ_z, a tyre one to ground that resists only d_z,
+// a beam one at half its length with its frame in the middle (models/reader/beams.hpp).
 struct Bushing {
     Marker i, j;
     SpatialLaw law;
@@ -194,30 +198,24 @@ struct Bushing {
 
 using ElasticKind = std::variant<AxialSpring, Bushing>;
 
-// What an element was written as, for the names of its outputs and for drawings: no leg reads it.
-enum class WrittenAs {
-    itself,
-    stop,
-    torsion_spring,
-    beam,
-    tyre
-};  // itself: a spring or bushing, as its kind is
+// Kind of element in the file, for output names and drawings; the legs do not read it.
+enum class WrittenAs { itself, stop, torsion_spring, beam, tyre };  // itself: a spring or bushing
 
 struct Elastic {
     std::string name;
     ElasticKind kind;
-    bool only_where_driven = false;  // a tyre: stands only on the branches that drive it
+    bool only_where_driven = false;  // a tyre: active only on the branches that drive it
     WrittenAs written_as = WrittenAs::itself;
-    bool turned_round =
-        false;  // by compile(), as its frame is on j: deformations and forces count the other way
+    // Markers swapped by compile(), since the frame is on j: deformations and forces change sign.
+    bool turned_round = false;
 };
 
-// ---- Loads. Dead ones keep their direction in ground axes while their point of application moves, followers
-// turn with their body: they have no potential.
+// ---- Loads. Dead loads keep their direction in ground axes while their point of application
+// moves. Followers rotate with their body and have no potential.
 
 struct DeadForce {
     Point at;
-    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N], or [-] where a driver multiplies it by newtons
+    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N]; [-] if a driver multiplies it by newtons
 };
 struct DeadMoment {
     BodyId body = ground;

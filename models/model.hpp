@@ -1,7 +1,7 @@
-// A model: the scene as compiled, which is all that a leg ever sees.
+// Compiled model: the input of all legs.
 //
-// Two things happen between scene and model, once: what cannot influence an asked-for output is left out or condensed
-// (reduce/passes.hpp), and joints are lowered to four basic constraints (lowering.hpp).
+// Compilation does two things: it removes or condenses what cannot influence a requested output
+// (reduce/passes.hpp), and lowers joints to basic constraints (lowering.hpp).
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@
 
 namespace elastocheck {
 
-// The four basic constraints (Nikravesh 1988), and the one that a driven angle needs, as statements. Each leg
-// writes its own equations for them.
+// The four basic constraints (Nikravesh 1988), and one more for a driven angle, as data. Each leg
+// has its own equations for them.
 struct CoincidentPoints {
     Point i, j;
 };  // p_i = p_j                     3 rows
@@ -48,7 +48,7 @@ constexpr int rows(const ConstraintKind& kind) {
     return std::holds_alternative<CoincidentPoints>(kind) ? 3 : 1;
 }
 
-// What remains of a joint after lowering: its name, and where its reaction wrench is reported.
+// Remainder of a joint after lowering: its name, and the point of its reaction wrench.
 struct ModelJoint {
     std::string name;
     BodyId i = ground, j = ground;
@@ -58,7 +58,7 @@ struct ModelJoint {
     bool only_where_driven = false;
 };
 
-// How much there is to solve.
+// Size of the problem.
 struct Size {
     int bodies = 0, joints = 0, elastics = 0;
     int rows = 0;  // of the joints' constraints
@@ -72,13 +72,13 @@ struct Model {
     std::vector<Constraint> constraints;  // in the order of `joints`
     std::vector<Elastic> elastics;
     std::vector<Load> static_loads;
-    std::vector<Branch> branches;  // their drivers speak of Model::joints and Model::elastics
+    std::vector<Branch> branches;  // their drivers refer to Model::joints and Model::elastics
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
     std::vector<Damper> dampers;
     std::optional<Vehicle> vehicle;
     std::vector<Omission> left_out;
-    Size as_written, as_solved;  // the scene's, and what is left of it here
+    Size as_written, as_solved;  // of the scene, and of the reduced model
 };
 
 inline int coordinates(const Model& model) { return 6 * static_cast<int>(model.bodies.size()); }  // 6 nb

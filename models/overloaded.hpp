@@ -1,4 +1,4 @@
-// One function a kind: a visit that forgets a kind does not compile.
+// Visitor of a std::variant built from one lambda per kind; a missing kind does not compile.
 #pragma once
 
 namespace elastocheck {
@@ -8,6 +8,6 @@ struct overloaded : F... {
     using F::operator()...;
 };
 template <class... F>
-overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce it
+overloaded(F...) -> overloaded<F...>;  // clang 14 does not deduce this guide
 
 }  // namespace elastocheck

@@ -1,4 +1,4 @@
-// A scene: what the user asked. One YAML file (scene_file.hpp), or built in code.
+// A scene: the user's input, from one YAML file (scene_file.hpp) or built in code.
 #pragma once
 
 #include <optional>
@@ -10,35 +10,36 @@
 
 namespace elastocheck {
 
-// ---- What a branch moves: all of it as start + rate · a, a the parameter of the branch.
+// ---- Inputs that a branch drives, all as start + rate · a, a the parameter of the branch.
 
-// A joint's offset: the length of a Distance, the offset of an InPlane [m], the angle of an Angle [rad],
-// counted from what the joint itself says.
+// Offset of a joint relative to its value in the scene: the length of a Distance, the offset of an
+// InPlane [m], the angle of an Angle [rad].
 struct Motion {
     int joint = 0;  // position in Scene::joints or Model::joints
 };
-// The free length of an AxialSpring, counted from its ℓ₀ [m].
+// Change of the free length ℓ₀ of an AxialSpring [m].
 struct FreeLength {
     int elastic = 0;  // position in Scene::elastics or Model::elastics
 };
-// A preload of a Bushing, counted from its own.
+// Change of the preload of a Bushing.
 struct Preload {
     int elastic = 0;
-    Vector6 direction = Vector6::Zero();  // what the driver multiplies, as (force, moment) [N, N·m]
+    Vector6 direction = Vector6::Zero();  // multiplied by the driver, (force, moment) [N, N·m]
 };
 using Driven = std::variant<Load, Motion, FreeLength, Preload>;
 
 struct Driver {
     Driven what;
-    double start = 0;  // at a = 0: what is held while a moves
+    double start = 0;  // at a = 0, constant while a changes
     double rate = 0;   // per unit of a
 };
 
 enum class ParameterUnit { newton, newton_metre, metre, radian, none };
 
-// A path of equilibria. At a = 0 it begins with the scene as drawn, settled under what is held; from there a
-// goes to `to`, and to `from` where that is on the other side of 0: one curve, walked both ways. The paper's
-// example is two branches driven by a load, to +3000 and to -3000 N, 300 steps each.
+// A path of equilibria. At a = 0 it starts with the scene as drawn, settled under the start values.
+// From there a goes to `to`, and to `from` if that is on the other side of 0: one path with two
+// sides. The paper's example is two branches driven by a load, to +3000 and to -3000 N, 300 steps
+// each.
 struct Branch {
     std::string name;
     double from = 0;  // of the parameter a
@@ -48,23 +49,24 @@ struct Branch {
     std::vector<Driver> drivers;
 };
 
-// About which the wheel is steered, as it is drawn: the line through two points, each on the body where it sits (two
-// ball joints of a wheel carrier; the top mount of a strut). For outputs alone: no leg sees it.
+// Steering axis of the wheel as drawn: the line through two points, each fixed in its body (two
+// ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs do not read
+// it.
 struct SteeringAxis {
     Point lower, upper;  // or ground
 };
 
 struct Wheel {
-    std::string name;  // "left"; empty where the scene has only the one
+    std::string name;  // "left"; empty if the scene has one wheel
     BodyId body = ground;
     Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();  // [m]
     Eigen::Vector3d contact_local =
         Eigen::Vector3d::Zero();  // contact patch at the design pose, a point of the body [m]
     Eigen::Vector3d spin_axis_local = Eigen::Vector3d::UnitY();  // unit, pointing outboard
     int side = +1;                                               // +1 left, -1 right
-    double tyre_rate =
-        0;  // vertical, k_t [N/m]; 0 where no tyre is given. Ride rate: 1 / (1/k_wheel + 1/k_t)
-    std::optional<SteeringAxis> steering_axis = {};  // none where the geometry has none, as of a multi-link
+    double tyre_rate = 0;  // vertical, k_t [N/m]; 0: no tyre given. Ride rate: 1 / (1/k_wheel + 1/k_t)
+    // none where the geometry has none, as in a multi-link
+    std::optional<SteeringAxis> steering_axis = {};
 };
 
 // A body point whose position is an output, for scenes that are not suspensions.
@@ -73,39 +75,38 @@ struct Probe {
     Point at;
 };
 
-// Two points whose distance is an output. In quasi-statics a damper has no force.
+// Two points whose distance is an output. A damper has no force in quasi-statics.
 struct Damper {
     std::string name;
     Point i, j;  // or ground
 };
 
-// What the wheels of the scene belong to, for the outputs that depend on it: anti-dive, Ackermann.
+// Vehicle data for the outputs that depend on it: anti-dive, Ackermann.
 enum class Axle { front, rear };
 struct Vehicle {
     double wheelbase = 0;  // [m] > 0
-    double cg_height =
-        0;  // of the whole vehicle, above the road: the contact patches of the design position [m] > 0
-    Axle axle = Axle::front;  // that the wheels of the scene are on
+    double cg_height = 0;  // of the whole vehicle, above the contact patches of the design position [m] > 0
+    Axle axle = Axle::front;  // axle of the scene's wheels
     double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
-    double drive_share = 0;   // of its driving force, likewise
+    double drive_share = 0;   // of the driving force, 0 ... 1
 };
 
-// A named position of the design, ground axes [m]. For drawings; no leg sees it.
+// A named position of the design, ground axes [m]. For drawings; the legs do not read it.
 struct Hardpoint {
     std::string name;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
-// A number of the file that a scene was read from, as written there, in the unit declared there.
+// A number of the scene file, as written and in the unit declared there.
 struct Number {
-    std::string path;  // "points.tie_rod_inner.z": the name by which a Setting varies it
+    std::string path;  // "points.tie_rod_inner.z": name for a Setting
     double value = 0;
     std::string unit;  // "mm", "N·m/deg"; empty for a pure number
 };
 
-// ---- Trim: what is adjusted until the design position is one of equilibrium, under what is held on every
-// branch. As many conditions as adjustments. Solved before anything else (compare/trim.hpp); the branches start
-// from there.
+// ---- Trim: parameters adjusted until the design position is in equilibrium under the start values
+// of every branch. As many conditions as adjustments. Solved first (compare/trim.hpp); the branches
+// start from there.
 
 struct WheelTravel {
     int wheel = 0;
@@ -119,27 +120,29 @@ struct WheelCamber {
 struct ProbeCoordinate {
     int probe = 0;
     int axis = 2;  // 0 x, 1 y, 2 z
-};                 // position less that at the design position [m]
+};                 // position relative to that at the design position [m]
 using ConditionKind = std::variant<WheelTravel, WheelToe, WheelCamber, ProbeCoordinate>;
 
 struct Trim {
     struct Adjustment {
-        std::string name;                            // as a branch would drive it: "springs.coil.preload"
-        Driven what;                                 // counted from what the scene says; never a Load
-        double per_unit = 1;                         // of `what`, for one unit of the quantity named [SI/SI]
-        ParameterUnit unit = ParameterUnit::newton;  // of the quantity named
+        std::string name;  // named as a driver: "springs.coil.preload"
+        // relative to its value in the scene; never a Load
+        Driven what;
+        // change of `what` for one unit of the named quantity [SI/SI]
+        double per_unit = 1;
+        ParameterUnit unit = ParameterUnit::newton;  // of the named quantity
     };
     struct Condition {
         std::string name;  // "left.travel"
         ConditionKind what;
-        std::optional<double> value;  // SI; none: as it is in the scene as drawn
+        std::optional<double> value;  // SI; none: its value in the scene as drawn
     };
     std::vector<Adjustment> adjust;
     std::vector<Condition> until;
     int line = 0;  // of the file, 0 when built in code
 };
 
-// What was asked for and is not modelled.
+// A part of the input that is not modelled.
 struct Omission {
     std::string what;  // "body 'antiroll_bar'"
     std::string why;
@@ -153,14 +156,14 @@ struct Scene {
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<Elastic> elastics;
-    std::vector<Load> static_loads;  // held on every branch
+    std::vector<Load> static_loads;  // act on every branch
     std::vector<Branch> branches;
     std::vector<Wheel> wheels;
     std::vector<Probe> probes;
     std::vector<Damper> dampers;
     std::optional<Vehicle> vehicle;
     std::optional<Trim> trim;
-    std::vector<Omission> left_out;  // what the file defines and nothing uses
+    std::vector<Omission> left_out;  // parts that the file defines and nothing uses
 };
 
 }  // namespace elastocheck

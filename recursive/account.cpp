@@ -13,10 +13,10 @@ namespace {
 
 using Real = long double;
 
-constexpr int corrections = 12;  // at most; they fall quadratically
-constexpr int multipliers = 3;   // solves for λ alone
+constexpr int corrections = 12;  // at most; the corrections fall quadratically
+constexpr int multipliers = 3;   // initial solves for λ alone
 
-// The largest of any body: of the origin, of the orientation.
+// Largest displacement of an origin and largest rotation over all bodies.
 struct Size {
     Real length = 0, angle = 0;
 };
@@ -39,7 +39,7 @@ struct Accountant {
     Softest<Real> softest = {};
     bool begun = false;
     std::optional<Node<Real>> last_found = {};  // on the branch
-    Real noise = 0;                             // of the forces as they are evaluated, as |W⁻¹ f|
+    Real noise = 0;                             // rounding of the evaluated forces, as |W⁻¹ f|
 
     Accountant(const Model& model, const Branch& branch, const Analysis& analysis, bool back)
         : s(model, branch, analysis), turns_back(back), lambda(Vector<Real>::Zero(s.m())) {
@@ -54,7 +54,7 @@ struct Accountant {
         return s.x.allFinite() ? Outcome::converged : Outcome::not_finite;
     }
 
-    // R: what rounding makes of a correction with the factors now in the system.
+    // R: effect of rounding on a correction with the factors in the system.
     Size rounding(const State<Real>& q) {
         const int n = s.n(), m = s.m();
         Vector<Real> c(n + m), e = Vector<Real>::Zero(n + m);
@@ -84,7 +84,8 @@ struct Accountant {
         return worst;
     }
 
-    // From q to the equilibrium near, and how far that was; λ found first by so many solves for it alone.
+    // Newton's method from q to the nearby equilibrium, and the bound on that distance; λ is found
+    // first by `solves` solves for λ alone.
     ErrorBound bound(State<Real>& q, int solves) {
         const ErrorBound none;
         for (int k = 0; k < solves; ++k) {
@@ -111,7 +112,8 @@ struct Accountant {
         if (!arrived) return none;
         if (orientation == 0) orientation = s.system.lu.orientation;
         if (!turns_back && s.system.lu.orientation != orientation) return none;
-        // What the border has taken up, the equations have not: a load on what is idle, joints that contradict each other.
+        // The border may carry what the equations do not satisfy: a load on an idle mode,
+        // inconsistent joints.
         residual_at(s, q, lambda);
         const Real open = s.lower.norm(), left = size_of_force(s, s.upper);
         external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);
@@ -121,14 +123,13 @@ struct Accountant {
             !(left <= 1e-9L * acts + noise))
             return none;
         // A pose is written down with the digits of a double.
-        Real reach = 0;
-        for (BodyId b = 0; b < q.bodies(); ++b) reach = std::max(reach, q[b].r.norm());
         constexpr Real digits = std::numeric_limits<double>::epsilon();
-        return {static_cast<double>(way.length + last.length + 3 * rounded.length + open + digits * reach),
+        return {static_cast<double>(way.length + last.length + 3 * rounded.length + open + digits * reach(q)),
                 static_cast<double>(way.angle + last.angle + 3 * rounded.angle + open + 4 * digits)};
     }
 
-    // Where forces have no energy, with the sign of the determinant.
+    // Remaining stiffness over that at the first point; where forces have no energy, with the sign
+    // of the determinant. A negative stiffness of an idle mode replaces it.
     double stiffness_left(const State<Real>& q) {
         if (s.free <= 0) return 1;
         const LeastStiffness least = least_stiffness(s, softest);
@@ -139,12 +140,12 @@ struct Accountant {
     }
 
     Going<Real> going() const {
-        constexpr Real near = 1e-4L;  // of L, or rad: what a step along the branch need not be told apart
+        constexpr Real near = 1e-4L;  // of L, or rad: tolerance of the corrector along the branch
         return {Drive::rate, near * static_cast<Real>(s.length), near};
     }
-    // From the last equilibrium found along the branch to a; q is where that leads.
+    // Continuation from the last equilibrium on the branch to a; q returns the result.
     bool follow(Real a, State<Real>& q) {
-        constexpr int shortest = 4096;  // of the way
+        constexpr int shortest = 4096;  // step, as a fraction of the interval
         Vector<Real> curvature = Vector<Real>::Zero(s.n()), lambda_curvature = Vector<Real>::Zero(s.m());
         Node<Real> here = *last_found, next = here;
         const Real way = a - here.p;
@@ -165,7 +166,8 @@ struct Accountant {
         lambda = here.lambda;
         return true;
     }
-    // How far apart two configurations are, `without` some bodies; none, all count.
+    // Distance between two configurations, except of the bodies in `without` (empty: all bodies
+    // count).
     static ErrorBound distance(const State<Real>& from, const State<Real>& to,
                                const std::vector<bool>& without) {
         Real length = 0, angle = 0;
@@ -186,10 +188,10 @@ struct Accountant {
             if (std::abs(held.value[at]) > Real(1e-6))
                 idle[static_cast<std::size_t>(held.row[at] / 6)] = true;
         }
-        // Where none is left to tell equilibria apart by, all are compared, idle or not.
+        // If every body is idle, all are compared.
         return std::ranges::find(idle, false) == idle.end() ? std::vector<bool>{} : idle;
     }
-    // Where the branch begins.
+    // Settles to the start of the branch.
     void begin() {
         begun = true;
         if (turns_back || settle(s) != Outcome::converged) return;
@@ -198,12 +200,13 @@ struct Accountant {
         differentiate(s, going(), *last_found);
     }
 
-    // q is where the branch leads, nearly; then that equilibrium.
+    // Pre: q is near the equilibrium that the branch leads to. Returns q at that equilibrium.
     ErrorBound bound_on_branch(const Equilibrium& point, State<Real>& q) {
         const State<Real> from = state_of<Real>(point.poses);
         if (s.system.held.idle > 0) {
-            // Of what is idle nothing is said, and from here it is elsewhere: it counts from the point, if that leads to
-            // what the branch does.
+            // The bound does not cover idle modes, whose amplitude on the branch differs from the
+            // point's. Newton's method therefore starts at the point, if it leads to the
+            // equilibrium of the branch.
             State<Real> near = from;
             const Vector<Real> lambda_there = lambda;
             const ErrorBound bound_near = bound(near, 0), apart = distance(q, near, idle_bodies());
@@ -219,8 +222,8 @@ struct Accountant {
         return {off.length + left.length, off.angle + left.angle};
     }
 
-    // Of the equilibrium that the branch leads to: the one that Newton's method finds near the point may be another. A path
-    // that turns back is known by its points alone.
+    // Bounds the distance from the equilibrium of the branch: Newton's method from the point itself
+    // may find another one. For a path that turns back the points are the only information.
     void operator()(Equilibrium& point) {
         if (!begun) begin();
         const auto a = static_cast<Real>(point.load);

@@ -1,31 +1,38 @@
-// What a point of a path says of itself: how far it may be from the equilibrium that it stands for, and what stiffness
-// is left there. Asked of the true equations in extended precision, whatever method found the point and however.
+// A-posteriori error bound and remaining stiffness at a point of a path.
+// They are computed from the true equations in extended precision, independent of the method that
+// produced the point.
 //
-// ---- How far it may be off
+// ---- Error bound
 //
-// A point is q alone, a given; a multiplier of its own is solved first, λ ← λ + dλ at the same q (the published sums
-// carry one of another place). Then Newton's method with fresh factors, in extended precision, from z₀ = (q, λ):
+// A point gives q alone. The multipliers are solved first, λ ← λ + dλ at the same q, because the
+// sums of the published method carry λ of another configuration. Then Newton's method with fresh
+// factors, in extended precision, from z₀ = (q, λ):
 //
 // ⎡ ∂G/∂q   Φ_qᵀ ⎤ ⎧ dq ⎫ᵏ     ⎧ G ⎫
 // ⎣ Φ_q      0   ⎦ ⎩ dλ ⎭   = -⎩ Φ ⎭     zᵏ⁺¹ = zᵏ + dzᵏ
 //
-// Each correction is condition times backward error of its place. Where each is at most half of the one before, they
-// lead to an equilibrium z*, which by Newton and Kantorovich's theorem is the only one near, and no farther than that way.
-// It need not be the one that q stands for: an equilibrium of another branch may be nearer. So z₀ is not the point: it is
-// where the branch leads, by believed steps (walk.hpp) from what settles at a = 0 and on from point to point, and the distance
-// of the point from there is added. Where a path is followed past limit points z₀ is the point.
+// Each correction is the condition number times the backward error at its iterate. Where each
+// correction is at most half of the one before, the iteration converges to an equilibrium z*. By
+// the theorem of Newton and Kantorovich z* is the only equilibrium near, and its distance is at
+// most the sum of the corrections. It need not be the equilibrium that q approximates: an
+// equilibrium of another branch may be nearer. Therefore z₀ is not the point but the branch itself,
+// followed by accepted steps (walk.hpp) from the settled start at a = 0 from point to point, and
+// the distance of the point from z₀ is added. Where a path is followed past limit points, z₀ is the
+// point.
 //
-// What is left behind the last correction is less than it, and what rounding makes of
-// G and Φ as they are evaluated in extended precision, e_i = ε Σ_j |M_ij| c_j with c = (size of r, 1, |λ|), is
+// The error after the last correction is less than that correction, plus the effect of rounding in
+// G and Φ as evaluated in extended precision, e_i = ε Σ_j |M_ij| c_j with c = (size of r, 1, |λ|):
 //
 //   R = max |M⁻¹ (±e)|   over a few choices of the signs
 //
 //   |q - q*| ≤ Σ |dqᵏ| + |dq_last| + 3 R         per body: of the origin, of the orientation
 //
-// Where they lead nowhere there is no bound: infinite. Of what is idle nothing is said: dq holds still what nothing
-// resists, and where anything is idle z₀ is the point after all, if z* is where the branch leads but for that.
+// Where the iteration does not converge the bound is infinite. The bound does not cover idle modes:
+// dq is zero along them. With idle modes present z₀ is the point, if z* agrees with the branch
+// except along the idle modes.
 //
-// What stiffness is left there is told by the same factors (stiffness.hpp), over what it was at the first point.
+// The same factors give the remaining stiffness (stiffness.hpp), as a ratio to that at the first
+// point.
 #pragma once
 
 #include <functional>
@@ -36,8 +43,9 @@
 
 namespace elastocheck::recursive {
 
-// Gives the points of one path their account, in their order from a = 0. `turns_back`: the path is followed past limit
-// points, where the determinant has another sign.
+// Returns a function that sets the error bound and remaining stiffness of the points of one path,
+// called in their order from a = 0. `turns_back`: the path is followed past limit points, where the
+// determinant changes its sign.
 std::function<void(Equilibrium&)> accountant(const Model& model, const Branch& branch,
                                              const Analysis& analysis, bool turns_back = false);
 

@@ -1,23 +1,28 @@
-// Step size from an error estimate, and the branch between the steps.
+// Step-size control by an error estimate, and dense output between the steps.
 //
 //   a step    walk.hpp
-//   between   the cubic through (z, z') and (z⁺, z⁺'). Its error is largest in the middle: one correction
-//             there is it.
+//   between   the cubic through (z, z') and (z⁺, z⁺'). Its error is largest at the midpoint, where
+//             the size of one Newton correction estimates it.
 //
-// A step is accepted when it is believed and the middle is within the tolerance; the next size follows from
-// the middle, which is of order 4.
+// A step is accepted when walk.hpp accepts it and the midpoint error is within the tolerance. The
+// next step size follows from the midpoint error, which is of order 4.
 //
-// An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the determinant
-// as it was. It is found where the determinant dips: where it is, in the middle, of another sign or less than
-// half of what it is at either end, the step is halved until it is no more, or the point is found. Two modes that become
-// unstable at once leave the sign, too: they are seen in the least stiffness of every node (stiffness.hpp). What begins
-// unstable is not followed (inertia.hpp), and what takes more than `most_steps` ends as that.
+// An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the
+// determinant unchanged. It shows as a dip of the determinant: where the determinant at the
+// midpoint has another sign, or is less than half of that at either end, the step is halved until
+// the dip disappears or the point is located. Two modes that become unstable at once also leave the
+// sign unchanged; they show in the least stiffness at every node (stiffness.hpp). A branch that
+// begins unstable is not followed (inertia.hpp). After `most_steps` steps the outcome is
+// iteration_limit.
 //
-// Curves have knots, which no step goes over: it ends there (landing.hpp), and the next one begins with the derivative
-// that the path has behind. Where the determinant changes its sign with the piece, the path turns back at the knot.
+// No step crosses a knot of a force curve: the step ends on the knot (landing.hpp) and the next one
+// begins with the derivative on the other side. Where the determinant changes its sign with the
+// piece, the path turns back at the knot.
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "recursive/landing.hpp"
 #include "recursive/recording.hpp"
@@ -26,11 +31,11 @@
 
 namespace elastocheck::recursive {
 
-// What takes more steps than these, believed or not, goes on for too long to be waited for: near a singular point each may
-// be a ten-millionth of the way.
+// Maximum number of steps, accepted or rejected: near a singular point each may be a ten-millionth
+// of the branch.
 inline constexpr int most_steps = 20'000;
 
-// The cubic between two nodes at the share t of the way, rotations as vectors π from the first node:
+// Cubic Hermite interpolation at the fraction t between two nodes, rotations as vectors π:
 // π(0) = 0, π'(0) = ω, π(h) = log(A⁺Aᵀ), π'(h) = J(π)⁻¹ ω⁺.
 template <class Real>
 void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& q, Vector<Real>& lambda) {
@@ -50,9 +55,11 @@ void between(const Node<Real>& from, const Node<Real>& to, Real t, State<Real>& 
     }
 }
 
-// What the correction in s.x changes of the reactions, as a share of what it may: of the larger of those at
-// the two nodes as much as the tolerance is of L, and the rounding of all that acts at q, since there may be
-// none. The motion does not tell: a driven mechanism has none that is not given, and all its forces in λ.
+// Change of the reactions by the correction in s.x, over the allowed change. Allowed are the larger
+// reactions of the two nodes `one` and `other` times length_tolerance / L, and the rounding of all
+// forces at q and of stiffness times position, since the reactions may be zero. The correction of
+// the motion does not detect this error: in a driven mechanism the drivers prescribe the whole
+// motion, and all forces are in λ.
 template <class Real>
 Real share_of_reactions(March<Real>& s, const Going<Real>& going, const State<Real>& q,
                         const Vector<Real>& one, const Vector<Real>& other) {
@@ -63,12 +70,15 @@ Real share_of_reactions(March<Real>& s, const Going<Real>& going, const State<Re
     const Real largest = std::max(force(one), force(other)), change = force(s.x.tail(s.m()));
     elastic_force<Real>(s.model, s.inputs, q, s.force);
     const Real acts = std::max({largest, size_of_force(s, s.applied), size_of_force(s, s.force)});
+    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     const Real allowed = largest * going.length_tolerance / static_cast<Real>(s.length) +
-                         Real(guard::rounding) * std::numeric_limits<Real>::epsilon() * acts;
+                         Real(guard::rounding) * epsilon * acts +
+                         10 * epsilon * (static_cast<Real>(s.length) + reach(q)) * stiffest(s.system.M);
     return allowed > 0 ? change / allowed : Real(0);
 }
 
-// Records its points at their equal increments up to `to`. Pre: just settled.
+// Records the points at equal increments of the parameter up to `to`. Pre: the state has just
+// settled.
 template <class Real>
 Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& recording) {
     const Real end = static_cast<Real>(to);
@@ -88,12 +98,18 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
                  lambda_curvature = Vector<Real>::Zero(s.m());
     State<Real> q = s.q;
     Real size = 0;
-    // The factors are still those that settling ended with.
+    // The factors are those of the last correction of settling.
     differentiate(s, going, node);
     const int orientation = node.orientation;
+    // A bend of the path may be sharper than a short step: an imperfect column turns aside within 1e-9
+    // of its load. The reason why the branch ends is judged at the first short step that is refused.
+    constexpr Real short_step = Real(1e-7),  // of the branch
+        shortest_step = std::max(Real(1e-12), std::numeric_limits<Real>::epsilon());
+    std::optional<Outcome> ended;  // at ended_at; none once the path has gone on by a short step
+    Real ended_at = 0;
     Real h = end / 8;
-    int changes = 0;  // of pieces since the last step
-    // Factors and derivative of the node along the present pieces.
+    int changes = 0;  // of pieces since the last accepted step
+    // Factorisation and derivative at the node on the present pieces.
     const auto begin_anew = [&]() -> Outcome {
         go_to(s, going.place(node.p));
         external_force<Real>(s.model, s.branch, s.inputs, node.q, s.applied);
@@ -125,7 +141,7 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
                                          [&](const Node<Real>& one, const Node<Real>& other, Real t,
                                              State<Real>& at) { between(one, other, t, at, lambda); });
         const Real step = next.p - node.p;
-        if (step == Real(0)) {  // it stands on a knot
+        if (step == Real(0)) {  // the node lies on a knot
             piece_of(s, *met.curve) += met.side;
             if (++changes > 2 * static_cast<int>(s.curves.size())) return Outcome::limit_point;
             if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
@@ -161,11 +177,12 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
                 log_here = log_next;
                 s.a = node.p;
                 changes = 0;
+                if (std::abs(node.p - ended_at) > std::abs(end) * short_step) ended.reset();
                 if (met.curve && reached <= last) {
                     take_pieces(s, going, node, h * Real(1e-3), q);
                     if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
                     log_here = log_determinant(s.system.lu);
-                    continue;  // with the size that the knot has cut short
+                    continue;  // with the step size that the knot shortened
                 }
             }
         }
@@ -173,9 +190,14 @@ Outcome adapt(March<Real>& s, const Adaptive& method, double to, Recording& reco
         const bool judged = trial.verdict == Verdict::believed && std::isfinite(error);
         const Real change = judged ? Real(0.85) * pow(std::max(error, Real(1e-8)), Real(-0.25)) : Real(0.3);
         h = step * std::clamp(change, Real(0.1), Real(4));
-        if (!(std::abs(h) > std::abs(end) * Real(1e-7)) && reached <= last)
-            return judged ? Outcome::branch_lost
-                          : why_it_ends(trial, node, curvature, step, static_cast<Real>(s.length));
+        if (!(std::abs(h) > std::abs(end) * short_step) && reached <= last) {
+            if (!ended) {
+                ended_at = node.p;
+                ended = judged ? Outcome::branch_lost
+                               : why_it_ends(trial, node, curvature, step, static_cast<Real>(s.length));
+            }
+            if (!(std::abs(h) > std::abs(end) * shortest_step)) return *ended;
+        }
     }
     return Outcome::converged;
 }

@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include "recursive/assembly.hpp"
+#include "recursive/centred.hpp"
 #include "recursive/loops.hpp"
 #include "recursive/pattern.hpp"
 
 namespace elastocheck::recursive {
 
 Analysis analyse(const Model& model) {
+    if (const auto c = far_centre(model)) return analyse(centred(model, *c));
     Analysis result;
     result.diagnosis = diagnose(model);
     if (std::isnan(result.diagnosis.constraint_error)) return result;
@@ -16,7 +18,7 @@ Analysis analyse(const Model& model) {
     const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
     const double L = result.diagnosis.length;
     const State<double> q = design_state<double>(model);
-    const Branch nothing;  // is driven
+    const Branch nothing;  // no driver
     const Inputs<double> drawn = inputs_as_drawn<double>(model);
     Inputs<double> inputs;
     set_inputs<double>(model, nothing, drawn, 0, 0, inputs);
@@ -34,7 +36,7 @@ Analysis analyse(const Model& model) {
     external_force<double>(model, nothing, inputs, q, result.R_d);
     result.R_d -= elastic_force<double>(model, inputs, q);
     result.Phi_d = Phi;
-    // What is left of stiffness times length by rounding moves nothing.
+    // A residual that is rounding of stiffness times length counts as zero.
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * L;
     const auto largest = [](const Vector<double>& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; };
     result.at_rest =

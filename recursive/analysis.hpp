@@ -1,5 +1,6 @@
-// What a model tells before any branch is walked, told once: its diagnosis, the scaling and the order of
-// elimination of eq. (24), and the factors of its consistent tangent at the design position.
+// Analysis of a model that all its branches share.
+// It holds the diagnosis, the scaling and elimination order of eq. (24), and the factors of the
+// consistent tangent at the design position.
 #pragma once
 
 #include "recursive/diagnosis.hpp"
@@ -7,16 +8,19 @@
 
 namespace elastocheck::recursive {
 
-// Constant once made: any number of branches and threads may share one. It belongs to the constraints,
-// elastic elements and bodies of its model; loads and drivers are the branches'.
+// Constant after analyse(): branches and threads may share one. It depends on the constraints,
+// elastic elements and bodies of its model; loads and drivers belong to the branches.
 struct Analysis {
     Diagnosis diagnosis;
-    SaddlePoint<double> system;  // (24) with ∂G/∂q for K at the design position as drawn, λ = 0: factorised
-    Vector<double> R_d, Phi_d;  // out of balance and open as drawn: f_ext - f_elast [6nb], Φ [m]
-    double pivot_ratio = 0;     // of those factors
-    bool at_rest = false;  // R_d and Φ_d are no more than rounding: the design position is an equilibrium
+    // (24) with ∂G/∂q for K at the design position as drawn, λ = 0: factorised
+    SaddlePoint<double> system;
+    Vector<double> R_d, Phi_d;  // residuals as drawn: f_ext - f_elast [6nb], Φ [m]
+    double pivot_ratio = 0;     // of those factors, smallest over largest
+    // R_d and Φ_d are below rounding: the design position is an equilibrium
+    bool at_rest = false;
 };
 
+// Analyses the model. A model far from the origin is first moved to its centre (centred.hpp).
 Analysis analyse(const Model& model);
 
 }  // namespace elastocheck::recursive

@@ -1,12 +1,12 @@
-// κ₂ from the two ends of the spectrum, by Lanczos iteration on the matrix and on its inverse.
+// Condition number κ₂ of eq. (24) by Lanczos iteration on the matrix and on its inverse.
 //
-// Of A = S M S, S = I for the matrix as it stands and S = D for the equilibrated one (saddle_point.hpp), the null
-// space is S⁻¹ Z with Z what is idle or redundant. On its complement A is regular; with the factors of M, bordered so
-// that Z is held,
+// For A = S M S, with S = I for the raw matrix and S = D for the equilibrated one
+// (saddle_point.hpp), the null space is S⁻¹ Z with Z the idle and redundant directions. On its
+// complement A is regular. With the factors of M, bordered so that Z is held,
 //
 //   A⁺ f = P S⁻¹ M⁻¹ S⁻¹ P f        P = I - N (Nᵀ N)⁻¹ Nᵀ,  N = S⁻¹ Z .
 //
-// Eigenvalues come in both signs; the largest in size of A over the smallest is κ₂.
+// Eigenvalues have both signs; κ₂ is the largest modulus over the smallest.
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 using Eigen::VectorXd;
 using Columns = Eigen::SparseMatrix<double>;
 
-// Takes the null space out of a vector.
+// Projects the null space out of a vector.
 struct Complement {
     Columns N;
     Eigen::SimplicialLDLT<Columns> gram;
@@ -39,14 +39,14 @@ struct Complement {
     }
 };
 
-// The largest eigenvalue, in size, of a symmetric operator on vectors of this size that P leaves alone. Without
-// reorthogonalisation: what is lost by it are copies of eigenvalues, and the largest needs none. Where many crowd
-// below the largest the last digits are not worth the steps to them; two are shown.
+// Largest eigenvalue in modulus of a symmetric operator on the range of P. No reorthogonalisation:
+// its loss only duplicates eigenvalues, which does not affect the largest. Where many eigenvalues
+// lie close to the largest, the last digits are not converged; two digits are shown.
 template <class Operator>
 double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator& A) {
     constexpr double same = 1e-10;
     const Eigen::Index most = std::min<Eigen::Index>(4 * size, 256);
-    std::mt19937 random(1);  // its sequence is the same everywhere
+    std::mt19937 random(1);  // the same sequence on every platform
     VectorXd v(size), before = VectorXd::Zero(size), alpha(most), beta(most);
     for (auto& entry : v) entry = static_cast<double>(random()) / 4294967296.0 - 0.5;
     v = P(v).normalized();

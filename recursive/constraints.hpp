@@ -1,5 +1,6 @@
-// Φ(q, inputs) and its Jacobian Φ_q for the basic constraints: eqs. (1), (6)-(7), after Nikravesh (1988).
-// c is the offset, length or angle of the constraint (inputs.hpp), which a branch may move.
+// Constraint functions Φ(q, inputs) and their Jacobian Φ_q for the basic constraints.
+// Eqs. (1), (6)-(7), after Nikravesh (1988). c is the offset, length or angle of the constraint
+// (inputs.hpp), which a branch may drive.
 //
 // With p = r + s the position of a point, s = A s', and a small motion Δq = (Δr, Δπ):
 //
@@ -7,24 +8,30 @@
 //
 //   coincident points          Φ = p_i - p_j
 //
-//   point in plane             Φ = n_j·d - c,  d = p_i - p_j; n_j turns with body j: its lever reaches to p_i
+//   point in plane             Φ = n_j·d - c,  d = p_i - p_j; n_j rotates with body j: its lever
+//                              reaches to p_i
 //
 //   perpendicular directions   Φ = u_i·u_j
 //
-//   distance between           Φ = (d·d - c²) / (2c), so that Φ is a length and |Φ_q,r| is 1 on the surface
+//   distance between           Φ = (d·d - c²) / (2c): a length, with |Φ_q,r| = 1 on the surface
 //
-//   direction at angle         Φ = u_i·w,  w = cos c y_j - sin c x_j: perpendicular to a direction of body j
+//   direction at angle         Φ = u_i·w,  w = cos c y_j - sin c x_j
 //
-// and with c: ∂Φ/∂c = -1 (plane), -(d·d + c²) / (2c²) (distance), -u_i·(sin c y_j + cos c x_j) (angle).
+// Derivatives with respect to c, with w' = dw/dc = -(sin c y_j + cos c x_j):
+//
+//   ∂Φ/∂c      -1 (plane), -(d·d + c²) / (2c²) (distance), u_i·w' (angle)
+//
+//   ∂Φ_q/∂c    distance: its direction d/c has the derivative -d/c²
+//              angle: its couple u_i × w has the derivative u_i × w'
 #pragma once
 
 #include "recursive/inputs.hpp"
 
 namespace elastocheck::recursive {
 
-// One scalar constraint: its value, and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ), as the lines
-// along which it acts: direction n at the levers s_i and s_j, and a couple u. A multiplier λ on it puts the
-// generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
+// One scalar constraint: its value and its two blocks of Φ_q, [n  m] with the columns (Δr, Δπ). The
+// blocks are given by their lines of action: a direction n at the levers s_i and s_j, and a couple
+// u. A multiplier λ puts the generalised force -λ [n  m]ᵀ on the body (f_ext = K Δq + Φ_qᵀ λ).
 template <class Real>
 struct Row {
     BodyId i = ground, j = ground;
@@ -44,6 +51,12 @@ struct Row {
 };
 
 namespace detail {
+
+template <class Real>
+Row<Real> at_rest() {
+    const Vector3<Real> zero = Vector3<Real>::Zero();
+    return {ground, ground, 0, true, zero, zero, zero, zero};
+}
 
 template <class Real, class Sink>
 void rows(const CoincidentPoints& c, Real, const State<Real>& q, Sink&& sink) {
@@ -77,7 +90,7 @@ void rows(const DistanceBetween& c, Real length, const State<Real>& q, Sink&& si
                    s_j, Vector3<Real>::Zero()});
 }
 
-// w of a direction at an angle, ground axes.
+// The direction w of a DirectionAtAngle, ground axes.
 template <class Real>
 Vector3<Real> across(const DirectionAtAngle& c, Real angle, const State<Real>& q) {
     using std::cos;
@@ -92,33 +105,43 @@ void rows(const DirectionAtAngle& c, Real angle, const State<Real>& q, Sink&& si
     sink(Row<Real>{c.i.body, c.j.body, u_i.dot(w), false, zero, zero, zero, u_i.cross(w)});
 }
 
-// ∂Φ/∂c, where there is a c.
+// Derivative of a row with respect to c, entry by entry: zero for a constraint without c.
 template <class Real>
-Real slope(const CoincidentPoints&, Real, const State<Real>&) {
-    return 0;
+Row<Real> rate(const CoincidentPoints&, Real, const State<Real>&) {
+    return at_rest<Real>();
 }
 template <class Real>
-Real slope(const PointInPlane&, Real, const State<Real>&) {
-    return -1;
+Row<Real> rate(const PointInPlane&, Real, const State<Real>&) {
+    Row<Real> row = at_rest<Real>();
+    row.Phi = -1;
+    return row;
 }
 template <class Real>
-Real slope(const PerpendicularDirections&, Real, const State<Real>&) {
-    return 0;
+Row<Real> rate(const PerpendicularDirections&, Real, const State<Real>&) {
+    return at_rest<Real>();
 }
 template <class Real>
-Real slope(const DistanceBetween& c, Real length, const State<Real>& q) {
-    const Vector3<Real> d =
-        q[c.i.body].r + q[c.i.body].lever(c.i.s_local) - q[c.j.body].r - q[c.j.body].lever(c.j.s_local);
-    return -(d.dot(d) + length * length) / (2 * length * length);
+Row<Real> rate(const DistanceBetween& c, Real length, const State<Real>& q) {
+    const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
+    const Vector3<Real> d = q[c.i.body].r + s_i - q[c.j.body].r - s_j;
+    const Real squared = length * length;
+    return {c.i.body,
+            c.j.body,
+            -(d.dot(d) + squared) / (2 * squared),
+            true,
+            -d / squared,
+            s_i,
+            s_j,
+            Vector3<Real>::Zero()};
 }
 template <class Real>
-Real slope(const DirectionAtAngle& c, Real angle, const State<Real>& q) {
+Row<Real> rate(const DirectionAtAngle& c, Real angle, const State<Real>& q) {
     using std::cos;
     using std::sin;
-    return -q[c.i.body]
-                .lever(c.i.u_local)
-                .dot(sin(angle) * q[c.y_j.body].lever(c.y_j.u_local) +
-                     cos(angle) * q[c.j.body].lever(c.j.u_local));
+    const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), zero = Vector3<Real>::Zero();
+    const Vector3<Real> dw =
+        -(sin(angle) * q[c.y_j.body].lever(c.y_j.u_local) + cos(angle) * q[c.j.body].lever(c.j.u_local));
+    return {c.i.body, c.j.body, u_i.dot(dw), false, zero, zero, zero, u_i.cross(dw)};
 }
 
 }  // namespace detail
@@ -129,10 +152,16 @@ void rows(const ConstraintKind& kind, Real offset, const State<Real>& q, Sink&& 
     std::visit([&](const auto& c) { detail::rows<Real>(c, offset, q, sink); }, kind);
 }
 
-// ∂Φ/∂c of a constraint, 0 where it has none.
+// ∂/∂c of the first row of a constraint: of Φ, and of the direction and couple in which λ acts.
+// Zero for a constraint without c.
+template <class Real>
+Row<Real> rate(const ConstraintKind& kind, Real offset, const State<Real>& q) {
+    return std::visit([&](const auto& c) { return detail::rate<Real>(c, offset, q); }, kind);
+}
+// ∂Φ/∂c of a constraint; 0 for a constraint without c.
 template <class Real>
 Real slope(const ConstraintKind& kind, Real offset, const State<Real>& q) {
-    return std::visit([&](const auto& c) { return detail::slope<Real>(c, offset, q); }, kind);
+    return rate<Real>(kind, offset, q).Phi;
 }
 
 // Calls sink(row number, const Row<Real>&) for all rows of the model, 0 ... m-1.
@@ -144,7 +173,7 @@ void for_each_row(const Model& model, const Inputs<Real>& inputs, const State<Re
                    [&](const Row<Real>& row) { sink(k++, row); });
 }
 
-// Φ_q [m × 6nb] and Φ [m], for those who want them whole.
+// Φ_q [m × 6nb] as a dense matrix; constraint_values() below: Φ [m].
 template <class Real>
 Matrix<Real> constraint_jacobian(const Model& model, const Inputs<Real>& inputs, const State<Real>& q) {
     Matrix<Real> Phi_q = Matrix<Real>::Zero(constraint_rows(model), coordinates(model));

@@ -7,7 +7,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-// An element's moments about the origins of its bodies, its force standing still while the levers turn.
+// Tangent of an element's moments about the origins of its bodies: constant force, rotating levers.
 void add_lever_tangent(const ElasticKind& kind, const Rest<double>& rest, const State<double>& q,
                        SaddleMatrix<double>& target) {
     const auto [i, j] = bodies_of(kind);
@@ -27,7 +27,7 @@ void add_lever_tangent(const ElasticKind& kind, const Rest<double>& rest, const 
                         target);
 }
 
-// K_G in place of K, everything else zero.
+// K_G in the place of K, all other entries zero.
 void assemble_delayed(const March<double>& s, const Follow& follow, SaddleMatrix<double>& G) {
     std::fill(G.values.begin(), G.values.end(), 0.);
     if (follow.lever || follow.axis) {
@@ -48,7 +48,7 @@ void assemble_delayed(const March<double>& s, const Follow& follow, SaddleMatrix
     if (follow.load) add_load_stiffness<double>(s.model, s.branch, s.inputs, s.q, G);
 }
 
-// G u, of the top left alone.
+// G u for the top left block of G.
 Vector<double> times(const SaddleMatrix<double>& G, const Vector<double>& u) {
     Vector<double> f = Vector<double>::Zero(G.n);
     for_each_entry(G, [&](int i, int j, int at) {
@@ -57,7 +57,7 @@ Vector<double> times(const SaddleMatrix<double>& G, const Vector<double>& u) {
     return f;
 }
 
-// The largest of T K_G, by powers of it on three vectors.
+// Largest eigenvalue of T K_G by subspace iteration on three vectors.
 double largest(March<double>& s, const SaddleMatrix<double>& G) {
     constexpr int vectors = 3, turns = 12;
     const int n = s.n();
@@ -93,7 +93,7 @@ double delayed_stiffness(const Model& model, const Branch& branch, const Method&
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     if (factorise_at(s, s.q, s.lambda) != Outcome::converged) return std::numeric_limits<double>::quiet_NaN();
-    residual_at(s, s.q, s.lambda);  // λ = 0: what the reactions answer
+    residual_at(s, s.q, s.lambda);  // λ = 0: solves for the reactions
     s.lower.setZero();
     back_substitute(s);
     s.lambda = s.x.tail(s.m());
@@ -102,8 +102,8 @@ double delayed_stiffness(const Model& model, const Branch& branch, const Method&
     return largest(s, G);
 }
 
-// Between two points of the true branch, looked for again on the way to the second until they are near each other beside how
-// far that is: then the line between is as good as the few digits of it that anybody needs.
+// The eigenvalue is sampled on the true branch and the interval around one is refined until it is
+// short relative to the load; linear interpolation then gives enough digits.
 std::optional<double> stability_limit(const Model& model, const Branch& branch, const Method& method,
                                       const Analysis& analysis) {
     constexpr int points = 64, passes = 24;

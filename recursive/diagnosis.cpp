@@ -23,19 +23,19 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Eigenvalues of a 6×6 with a unit diagonal that are more than its rounding (some 1e-15).
+// Eigenvalues of a 6×6 matrix with unit diagonal above its rounding (some 1e-15).
 constexpr double stiffness_threshold = 1e-13;
-// A lever is the difference of two places: of the coordinates, what it may be where they are the same.
+// A lever is a difference of coordinates: rounding bound for a zero lever, relative to the
+// coordinates.
 constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
-constexpr double part_threshold = 1e-7;  // of a unit combination of rows that a row has a part in
+constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
 
-// Where on its body an end of a constraint or element is attached; a direction is attached nowhere.
+// Attachment point of a constraint or element on its body; a direction has none.
 const Vector3d* lever(const Point& end) { return &end.s_local; }
 const Vector3d* lever(const Marker& end) { return &end.s_local; }
 const Vector3d* lever(const Direction&) { return nullptr; }
 
-// The root mean square lever of everything that is attached to a body:
-// invariant under motions of the ground frame.
+// Root mean square lever of all attachments: invariant under motions of the ground frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
@@ -52,7 +52,7 @@ double characteristic_length(const Model& model) {
     return count > 0 ? std::sqrt(sum / count) : 1.0;
 }
 
-// Rows of the model, each on two bodies at most, as they are put together.
+// Rows of the model during assembly, each on at most two bodies.
 struct Stack {
     int count = 0;
     std::vector<Eigen::Triplet<double>> entries;
@@ -69,7 +69,7 @@ struct Stack {
     }
 };
 
-// Rows to unit length, zero rows left alone. Returns what each was divided by.
+// Scales rows to unit length except zero rows; returns the divisors.
 VectorXd normalise(Rows& rows) {
     VectorXd length = VectorXd::Ones(rows.rows());
     for (int k = 0; k < rows.outerSize(); ++k)
@@ -80,7 +80,7 @@ VectorXd normalise(Rows& rows) {
     return length;
 }
 
-// Rows one below the other.
+// Concatenates rows.
 Rows stacked(const std::vector<Rows>& parts, Eigen::Index columns) {
     Stack stack;
     for (const Rows& part : parts) {
@@ -112,14 +112,14 @@ Rows constraint_rows_of(const Model& model, const Inputs<double>& inputs, const 
     return stack.rows(coordinates(model));
 }
 
-// The rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment point,
-// turned to ground axes. What is soft in one of an element's own directions is told apart from what is nothing
-// only there: in other axes the rounding of the stiff directions covers it. K_e = S C S with a unit diagonal C,
-// so that rates of any size count alike.
+// Rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment
+// point, turned to ground axes. Own axes are needed to distinguish a soft direction from a zero
+// one: in other axes the rounding of the stiff directions hides it. K_e = S C S with a unit
+// diagonal C, so that rates of any size have the same weight.
 std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
                                        const State<double>& q) {
     const Axial<double> g = deformation<double>(e, q);
-    // A curve may fall: that is noticed as well. An open stop is not.
+    // A curve with negative slope counts as stiffness; an open stop (slope 0) does not.
     if (hessian<double>(e.law, [&] { return g.length - rest.free_length; }) == 0) return {};
     Vector6<double> row;
     row << g.D / g.length, Vector3d::Zero();
@@ -166,7 +166,8 @@ Rows elastic_rows(const Model& model, const Inputs<double>& inputs, const State<
     return stack.rows(coordinates(model));
 }
 
-// The modes of single bodies: what all rows leave of the six columns of one [6nb × ?], perpendicular to each other.
+// Idle modes of single bodies: the null space of all rows in the six columns of one body [6nb × ?],
+// orthogonal to each other.
 Columns modes_of_single_bodies(const Rows& rows, int bodies) {
     std::vector<std::vector<int>> on(static_cast<std::size_t>(bodies));
     for (int k = 0; k < rows.outerSize(); ++k)
@@ -198,7 +199,7 @@ Columns modes_of_single_bodies(const Rows& rows, int bodies) {
     return result;
 }
 
-// What a body's constraints and elements are called and where on it they are attached.
+// Names of a body's constraints and elements, and their attachment points.
 struct Attachment {
     const std::string* name;
     Vector3d s_local;
@@ -219,7 +220,7 @@ std::vector<std::vector<Attachment>> attachments(const Model& model) {
     return on;
 }
 
-// Without the minus that rounding leaves before a zero.
+// Removes the minus sign of rounded zeros.
 Vector3d shown(const Vector3d& u) {
     return u.unaryExpr([](double v) { return std::abs(v) < 5e-4 ? 0.0 : v; });
 }
@@ -249,11 +250,11 @@ std::string describe(const std::string& name, const BodyState<double>& at,
                        name, motion, shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
 }
 
-// Which joints share a dependency yᵀ Φ_q = 0. Those of the rows that repeat, one each, are enough to tell: any other
-// is a combination of them, and two that have no row in common cannot be told together.
+// Sets of joints that share a dependency yᵀ Φ_q = 0. One dependency per dependent row is enough:
+// any other is a combination of these, and those without a common row are independent.
 void find_undetermined(const std::vector<int>& joint_of_row, const Columns& dependencies, Diagnosis& result) {
     std::vector<int> set(
-        result.determined.size());  // towards the smallest joint of the set that a joint is in
+        result.determined.size());  // union-find: parent of each joint; root = smallest of its set
     std::iota(set.begin(), set.end(), 0);
     const auto smallest = [&](int joint) {
         const auto to = [&](int j) -> int& { return set[static_cast<std::size_t>(j)]; };
@@ -271,7 +272,7 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
             set[static_cast<std::size_t>(high)] = low;
         }
     }
-    std::vector<int> place(set.size(), -1);  // of a set in the list, known by its smallest joint
+    std::vector<int> place(set.size(), -1);  // index of a set in the list, by its smallest joint
     for (int joint = 0; joint < static_cast<int>(set.size()); ++joint) {
         if (result.determined[static_cast<std::size_t>(joint)]) continue;
         int& at = place[static_cast<std::size_t>(smallest(joint))];
@@ -283,7 +284,7 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
     }
 }
 
-// The rows that repeat, by the joints that they belong to.
+// Redundant joints, from the dependent rows.
 void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeating, const VectorXd& Phi,
                     double reach, Diagnosis& result) {
     std::vector<std::map<int, double>> among;  // of each redundancy: Σ y² by joint
@@ -311,14 +312,15 @@ void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeat
         const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
         const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
         r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
-        // A row comes of levers that are differences of coordinates, and turns as far as the joints are open.
+        // Rows are computed from differences of coordinates, and their directions vary with the
+        // constraint error.
         constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
         r.undecided = r.left > digits * (1 + reach / result.length) +
                                    10 * result.constraint_error / std::min(1.0, result.length);
     }
 }
 
-// Whether the twist turns a body about a line that every point lies on by which it is attached.
+// Whether the twist rotates a body about a line that carries all its attachment points.
 bool is_spin(const BodyState<double>& at, const std::vector<Attachment>& attached, const Vector3d& v,
              const Vector3d& w, double length) {
     if (attached.empty() || w.norm() * length < 1e-6 * v.norm()) return false;
@@ -327,8 +329,8 @@ bool is_spin(const BodyState<double>& at, const std::vector<Attachment>& attache
     });
 }
 
-// The probes that the mode moves, the wheels whose centre it moves or whose spin axis it turns, the dampers that it
-// shortens or lengthens.
+// Names of the probes that the mode moves, the wheels whose centre it moves or whose spin axis it
+// rotates, and the dampers whose length it changes.
 std::vector<std::string> outputs_moved(const Model& model, const State<double>& q,
                                        const Eigen::SparseVector<double>& dq, double length) {
     constexpr double rounding = 1e-6;
@@ -360,7 +362,7 @@ std::vector<std::string> outputs_moved(const Model& model, const State<double>& 
     return moved;
 }
 
-// An idle mode from its column in (Δr, L Δπ). Its sign is free: the largest entry counts as positive.
+// An idle mode from its column in (Δr, L Δπ), with the sign that makes the largest entry positive.
 IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
     double largest = 0;
     Columns::InnerIterator z(modes, column);
@@ -376,7 +378,7 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
             moved += z.value() * z.value();
             mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (physical[z.row()] * z.value());
         }
-        if (moved > most || mode.body == ground) {  // also where it is no number
+        if (moved > most || mode.body == ground) {  // also if NaN
             most = moved;
             mode.body = body;
         }
@@ -411,7 +413,7 @@ Diagnosis diagnose(const Model& model) {
     const VectorXd row_length = normalise(Phi_q);
     const Repeated repeating = repeated(Phi_q);
     result.rank = m - static_cast<int>(repeating.rows.size());
-    std::vector<int> joint_of_row;  // rising
+    std::vector<int> joint_of_row;  // ascending
     for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
     double reach = 0;
     for (const auto& body : model.bodies) reach = std::max(reach, body.design.r.norm());
@@ -419,7 +421,7 @@ Diagnosis diagnose(const Model& model) {
     result.determined.assign(model.joints.size(), true);
     find_undetermined(joint_of_row, repeating.dependencies, result);
 
-    // Modes of single bodies first; as rows of their own they leave the others perpendicular to them.
+    // Modes of single bodies first; appended as rows they make the other modes orthogonal to them.
     Rows elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
     normalise(elastic);
     Phi_q = without(Phi_q, repeating.rows);
@@ -453,7 +455,7 @@ Diagnosis diagnose(const Model& model) {
     result.null_space.resize(n + m, column);
     result.null_space.setFromTriplets(held.begin(), held.end());
 
-    // f_ext(0) - f_elast, projected on what the constraints leave free.
+    // f_ext(0) - f_elast, projected on the motions that the constraints allow.
     VectorXd f = VectorXd::Zero(n);
     for (const auto& load : model.static_loads) add_load<double>(load.kind, 1.0, q, f);
     f -= elastic_force<double>(model, inputs, q);

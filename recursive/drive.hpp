@@ -1,4 +1,4 @@
-// How balance and Φ answer to the drivers of a branch at fixed q: their ∂/∂a, and ∂/∂t while settling.
+// Derivatives of balance and Φ with respect to the drivers: ∂/∂a, and ∂/∂t while settling.
 #pragma once
 
 #include "recursive/constraints.hpp"
@@ -7,7 +7,7 @@
 
 namespace elastocheck::recursive {
 
-// What of a driver moves: its start while settling, its rate on the branch.
+// Which amplitude of a driver is applied: its start while settling, its rate on the branch.
 enum class Drive { start, rate };
 
 template <class Real>
@@ -67,22 +67,36 @@ void add_stored_rate(const Model& model, const Branch& branch, const Inputs<Real
                                });
 }
 
+// amount · ∂/∂a of the driven rows: add(row number, ∂row/∂c, change of c).
+template <class Real, class Add>
+void for_each_row_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
+                       Real amount, const State<Real>& q, Add&& add) {
+    for (const auto& driver : branch.drivers)
+        if (const auto* motion = std::get_if<Motion>(&driver.what)) {
+            const std::size_t k = constraint_of(model, *motion);
+            add(inputs.row[k], rate<Real>(model.constraints[k].kind, inputs.offset[k], q),
+                amount * speed<Real>(driver, drive));
+        }
+}
 // Adds amount · ∂Φ/∂a to `Phi` [m].
 template <class Real>
 void add_constraint_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
                          Real amount, const State<Real>& q, Vector<Real>& Phi) {
-    for (const auto& driver : branch.drivers)
-        std::visit(overloaded{
-                       [](const Load&) {},
-                       [&](const Motion& motion) {
-                           const std::size_t k = constraint_of(model, motion);
-                           Phi[inputs.row[k]] += amount * speed<Real>(driver, drive) *
-                                                 slope<Real>(model.constraints[k].kind, inputs.offset[k], q);
-                       },
-                       [](const FreeLength&) {},
-                       [](const Preload&) {},
-                   },
-                   driver.what);
+    for_each_row_rate<Real>(model, branch, inputs, drive, amount, q,
+                            [&](int row, const Row<Real>& d, Real by) { Phi[row] += by * d.Phi; });
+}
+// Adds amount · ∂(Φ_qᵀ λ)/∂a to `force` [6nb]: a driven length or angle scales or rotates the rows
+// along which λ acts.
+template <class Real>
+void add_reaction_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Drive drive,
+                       Real amount, const State<Real>& q, const Vector<Real>& lambda, Vector<Real>& force) {
+    for_each_row_rate<Real>(model, branch, inputs, drive, amount, q,
+                            [&](int row, const Row<Real>& d, Real by) {
+                                if (d.i != ground)
+                                    force.template segment<6>(6 * d.i) += by * lambda[row] * d.on_i();
+                                if (d.j != ground)
+                                    force.template segment<6>(6 * d.j) += by * lambda[row] * d.on_j();
+                            });
 }
 
 }  // namespace elastocheck::recursive

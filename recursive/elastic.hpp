@@ -1,28 +1,29 @@
 // Elastic elements: the stiffness matrix of eqs. (8)-(20), and the force of the full nonlinear law.
 //
-// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen from body
-// i,
+// The paper's displacement of the attachment points, eqs. (12)-(13), and its relative motion seen
+// from body i,
 //
 //   Δe = ⎧ Δr_j' - Δr_i' ⎫ = B ⎧ Δq_i ⎫ ,   B = ⎡ -I   s̃_i   I   -s̃_j ⎤      Δr' = Δr - s̃ Δπ
 //        ⎩ Δπ_j  - Δπ_i  ⎭     ⎩ Δq_j ⎭         ⎣  0   -I    0    I   ⎦
 //
-// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections:
-// its sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the second block
-// row, third and fourth block. Written out,
+// make every element matrix K = Bᵀ diag(K_T, K_R) B, which is eq. (19) with two corrections: its
+// sign, so that f_ext = K Δq + Φ_qᵀ λ with K ⪰ 0, and s̃_i instead of s̃_j at the front of the
+// second block row, third and fourth block. Written out,
 //
 //   ⎡ K_ii  K_ij ⎤   ⎡  K_T         -K_T s̃_i              -K_T          K_T s̃_j            ⎤
 //   ⎣ K_ji  K_jj ⎦ = ⎢  s̃_i K_T     -s̃_i K_T s̃_i + K_R    -s̃_i K_T      s̃_i K_T s̃_j - K_R  ⎥      (19)
 //                    ⎢ -K_T          K_T s̃_i               K_T         -K_T s̃_j            ⎥
 //                    ⎣ -s̃_j K_T      s̃_j K_T s̃_i - K_R     s̃_j K_T     -s̃_j K_T s̃_j + K_R  ⎦
 //
-// The levers s_i, s_j are the paper's, each to its own attachment point. Where the two points have drifted
-// apart by D this leaves out the moment D × F that the law has: part of the published method's formulation
-// gap, kept on purpose.
+// The levers s_i, s_j are the paper's, each to its own attachment point. Where the two points have
+// drifted apart by D, K lacks the moment D × F of the law. This is part of the published method's
+// formulation gap and is kept on purpose.
 //
-// What the paper does not know contributes to its method in this same form, as an extension: a curve its slope
-// at the deformation of the moment, a frame in the middle its own axes A_f in place of A_i. Angles that differ
-// for finite rotations only, forces that are not conjugate and a moment that is left out are no matter of
-// increments between unloaded markers: there K stays as it is, and they are in the forces.
+// Elements that the paper does not cover enter K in this same form, as an extension: a curve with
+// its slope at the current deformation, a frame in the middle with its axes A_f in place of A_i.
+// Angles that differ only at finite rotations, forces that are not conjugate, and an omitted moment
+// of the offset do not change increments between unloaded markers. They do not enter K, only the
+// forces.
 #pragma once
 
 #include "recursive/inputs.hpp"
@@ -37,13 +38,13 @@ struct ElementStiffness {
     BodyId i = ground, j = ground;
     Vector3<Real> s_i, s_j;
     Matrix6<Real> K;         // of (translation, rotation) of j relative to i [N/m  N; N  N·m]
-    bool rotational = true;  // whether anything outside K_T is there
-    bool coupled = true;     // whether anything outside K_T and K_R is there
+    bool rotational = true;  // whether any entry outside K_T is non-zero
+    bool coupled = true;     // whether any entry outside K_T and K_R is non-zero
 };
 
-// ---- Geometry: what deforms.
+// ---- Geometry: the deformations.
 
-// Two points: D = p_j - p_i, ℓ = |D|; the law answers to ℓ - ℓ₀.
+// Two points: D = p_j - p_i, ℓ = |D|; the law is a function of ℓ - ℓ₀.
 template <class Real>
 struct Axial {
     Vector3<Real> s_i, s_j, D;
@@ -84,14 +85,14 @@ Spatial<Real> deformation(const Bushing& e, const State<Real>& q) {
     if (in_the_middle(e)) g.e.template head<3>() = middle<Real>(g.B).S.transpose() * g.d();
     return g;
 }
-// A_f, the axes that d is measured in.
+// A_f, the axes in which d is measured.
 template <class Real>
 Matrix3<Real> axes(const Bushing& e, const State<Real>& q) {
     if (!in_the_middle(e)) return q[e.i.body].A * e.i.A_local.cast<Real>().toRotationMatrix();
     const Spatial<Real> g = deformation<Real>(e, q);
     return g.A_i * middle<Real>(g.B).S;
 }
-// e - e₀, what the law answers to.
+// e - e₀, the argument of the law.
 template <class Real>
 Vector6<Real> strain(const Bushing& e, const Spatial<Real>& g) {
     return g.e - e.undeformed.cast<Real>();
@@ -138,12 +139,13 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
     return k;
 }
 
-// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top left
-// corner.
+// Adds Bᵀ K B to the stiffness matrix, eqs. (18)-(20); `target` is [6nb × 6nb] or has it as its top
+// left corner.
 template <class Real, class Target>
 void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
-    // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b), and with F_s = C - K_T s̃, the force
-    // that a rotation makes at the lever s, each is ± [K_T  F_b; F_aᵀ  s̃_a F_b + K_R - Cᵀ s̃_b].
+    // With T(s) = [I -s̃; 0 I] both halves of B are ∓T: K_ab = ± T(s_a)ᵀ K T(s_b). With
+    // F_s = C - K_T s̃, the force caused by a rotation at the lever s, each block is
+    // ± [K_T  F_b; F_aᵀ  s̃_a F_b + K_R - Cᵀ s̃_b].
     const Matrix3<Real> K_T = e.K.template topLeftCorner<3, 3>(), C = e.K.template topRightCorner<3, 3>();
     const auto force = [&](const Vector3<Real>& s) {
         // K_T s̃, symmetric times skew: its rows are those of K_T crossed with s
@@ -180,7 +182,7 @@ ElementStiffness<Real> element_stiffness(const ElasticKind& kind, const Rest<Rea
     return std::visit([&](const auto& e) { return element_stiffness<Real>(e, rest, q); }, kind);
 }
 
-// K(q) [6nb × 6nb], symmetric, positive semidefinite where the laws are: f_elast = K Δq, eq. (20).
+// K(q) [6nb × 6nb], symmetric, positive semidefinite if the laws are: f_elast = K Δq, eq. (20).
 template <class Real, class Target>
 void add_stiffness(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, Target& target) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
@@ -193,11 +195,12 @@ Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const Sta
     return K;
 }
 
-// ---- The law itself: f_elast(q), ∂U/∂q where there is a U, which K Δq linearises at an unloaded design position.
+// ---- The law: f_elast(q), ∂U/∂q where U exists; K Δq linearises it at an unloaded design
+// position.
 //
 // Spring:  f = u'(ℓ - ℓ₀) n along its axis n.
-// Bushing: with the stress σ = (F', M') = ∂u/∂e + preload at e - e₀, and e a function of x and B (measure.hpp), the
-// force F = A_i F_x and the moment M = A_i M_φ that do work on (δx, δφ) are
+// Bushing: with the stress σ = (F', M') = ∂u/∂e + preload at e - e₀, and e a function of x and B
+// (measure.hpp), the force F = A_i F_x and the moment M = A_i M_φ that do work on (δx, δφ) are
 //
 //   E = ∂e/∂(x, φ),   (F_x, M_φ) = Eᵀ σ         conjugate: the forces of U. With the frame on i
 //                                                E = ⎡ I  0 ⎤,  so that F = A_i F', M = A_i Hᵀ M'
@@ -211,12 +214,13 @@ Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const Sta
 //   E = ⎡ Sᵀ  d̃ P ⎤      F_x = S F'      M_φ = Hᵀ M' - Pᵀ (d × F')
 //       ⎣ 0    H  ⎦
 //
-// which is the share of D × F that is j's. Where the moment of the offset is left out, it goes with the rest, and
-// the force on i acts at p_i:  M_φ = Hᵀ M',  on i: ( -F, -s_i × F - M ).
+// The added moment is the part of D × F that acts on j. Where the moment of the offset is left out,
+// this part is left out too, and the force on i acts at p_i:  M_φ = Hᵀ M',
+// on i: ( -F, -s_i × F - M ).
 
-// The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and where its line of action
-// passes: levers from both origins to p_j (bushing, both to the same unless its offset's moment is left out) or to
-// either end of a spring.
+// The force (F, M) [N, N·m] of an element on its body j at p_j, ground axes, and the levers of its
+// line of action: for a bushing from both origins to p_j (from i to p_i if the moment of the offset
+// is left out), for a spring to its two ends.
 template <class Real>
 struct ElementForce {
     Vector3<Real> F, M;
@@ -255,7 +259,7 @@ ElementForce<Real> element_force(const ElasticKind& kind, const Rest<Real>& rest
     return std::visit([&](const auto& e) { return element_force<Real>(e, rest, q); }, kind);
 }
 
-// ∂(F, M)/∂ℓ₀ and along a change of the preload.
+// ∂(F, M)/∂ℓ₀, and the change of (F, M) by a change of the preload.
 template <class Real>
 ElementForce<Real> force_of_free_length(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
     const Axial<Real> g = deformation<Real>(e, q);
@@ -268,7 +272,7 @@ ElementForce<Real> force_of_preload(const Bushing& e, const Vector6<Real>& chang
     return force_of_stress<Real>(e, deformation<Real>(e, q), change);
 }
 
-// The bodies an element acts between.
+// The two bodies of an element.
 inline std::pair<BodyId, BodyId> bodies_of(const ElasticKind& kind) {
     return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, kind);
 }

@@ -1,4 +1,5 @@
-// Whether a model is numbers at all. The reader lets no other pass; whoever builds a scene in code may make one.
+// Detects NaN and infinite values in a model.
+// The reader rejects them; scenes built in code may have them.
 #pragma once
 
 #include <string>
@@ -7,8 +8,9 @@
 
 namespace elastocheck::recursive {
 
-// What gives a number that is none, or one beyond all, as it is drawn: "as drawn a number is not finite in joint 'link'";
-// empty where nothing does. Of rank, idle modes and conditioning nothing can be told then.
+// Names the element whose values as drawn are NaN or overflow: "as drawn a number is not finite in
+// joint 'link'"; empty where all are finite. Rank, idle modes and conditioning are undefined for
+// such a model.
 std::string not_finite(const Model& model);
 
 }  // namespace elastocheck::recursive

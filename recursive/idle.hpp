@@ -1,11 +1,14 @@
-// Motions that nothing resists where they were looked for, as drawn and unloaded. The border of (24) holds them, and what
-// else is said of stability is said of the others. But what acts may resist them as they turn, as its weight does a
-// pendulum, or push them over: a rod that is pushed along itself, a weight that stands on a ball. With Z those that share
-// bodies, orthonormal in W and in the null space of Φ_q,
+// Stability along idle modes: negative stiffness caused by the acting forces.
+//
+// Idle modes are motions that nothing resists at the unloaded design position. The border of (24)
+// holds them, and the other stability tests do not cover them. Under load the acting forces may
+// resist them (a pendulum under its weight) or make them unstable (a rod under axial compression, a
+// weight standing on a ball). With Z the idle modes that share bodies, orthonormal in W and in the
+// null space of Φ_q,
 //
 //   zᵀKz < 0, z in Z      the energy falls along z: the equilibrium is unstable
 //
-// K with the reactions of the joints, which are what is turned.
+// K includes the curvature of the joint reactions.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -14,11 +17,11 @@
 
 namespace elastocheck::recursive {
 
-// The least eigenvalue of ZᵀKZ of all of them, K of the consistent matrix in the system; 0 where none is below what
-// rounding makes of it.
+// The least eigenvalue of ZᵀKZ over all groups of idle modes, K of the consistent matrix in the
+// system; 0 where none is negative beyond rounding.
 template <class Real>
 double least_of_idle(const March<Real>& s) {
-    constexpr double several = 256;  // of the roundings of a sum
+    constexpr double several = 256;  // multiple of the rounding of a sum
     constexpr double epsilon = std::max(static_cast<double>(std::numeric_limits<Real>::epsilon()),
                                         std::numeric_limits<double>::epsilon());
     const Held<Real>& held = s.system.held;
@@ -55,9 +58,10 @@ double least_of_idle(const March<Real>& s) {
     return least;
 }
 
-// The least stiffness of an idle motion at the equilibrium near (q, λ), whose consistent matrix is in the system and
-// factorised, where what acts pushes it over: below a millionth of the forces over L, which what is left out of balance of
-// them comes to, and that of the equilibrium itself. Else 0. The system is left factorised, there or here.
+// The least stiffness of an idle mode at the equilibrium near (q, λ) if the acting forces make that
+// mode unstable, else 0. Pre: the consistent matrix at (q, λ) is in the system and factorised.
+// Unstable means below -10⁻⁶ times (forces / L), which exceeds the effect of the residual, both at
+// (q, λ) and at the equilibrium after corrections. The system is left factorised at one of the two.
 template <class Real>
 double pushed_over(March<Real>& s, const State<Real>& near, const Vector<Real>& lambda_near) {
     constexpr int corrections = 3;
@@ -72,7 +76,7 @@ double pushed_over(March<Real>& s, const State<Real>& near, const Vector<Real>& 
         return stiffness < -noticed * static_cast<double>(acts) / s.length ? stiffness : 0.;
     };
     if (!(least(near) < 0)) return 0;
-    const Counts counts = s.counts;  // judges, finds nothing: not counted
+    const Counts counts = s.counts;  // a check only: not counted
     State<Real> q = near;
     Vector<Real> lambda = lambda_near;
     bool there = true;

@@ -25,10 +25,11 @@ bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorX
                  const std::vector<int>& held) {
     using Sparse = Eigen::SparseMatrix<double>;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    constexpr double symmetric = 1e-6;  // |K - Kᵀ| over |K|; where an energy is, Newton's method is as near
-    constexpr double strengths[] =
-        {1, 1e3, 1e6};  // ρ over the stiffest: too weak a one lets what the joints forbid be
-                        // negative, too strong a one drowns K in round-off
+    // bound on |K - Kᵀ| / |K|: the residual asymmetry after Newton's method
+    constexpr double symmetric = 1e-6;
+    // ρ over the largest stiffness: too small leaves motions that the joints forbid negative, too
+    // large hides K in round-off.
+    constexpr double strengths[] = {1, 1e3, 1e6};
     const Eigen::Index n = weight.size(), m = saddle.rows() - n;
     const auto scale = weight.cwiseInverse().asDiagonal();
     const Sparse K = scale * Sparse(saddle.topLeftCorner(n, n)) * scale, K_T = K.transpose();

@@ -1,9 +1,10 @@
-// Whether an equilibrium is unstable: whether the energy falls along a motion that the joints allow.
+// Instability of an equilibrium by the inertia of its reduced Hessian (negative eigenvalues).
 //
-// With Z the motions that they allow, ZᵀKZ is positive definite if and only if K + ρ Φ_qᵀ Φ_q is for some ρ (Finsler, Debreu);
-// and that has as many negative eigenvalues as its LDLᵀ has negative pivots (Sylvester). One factorisation sees every
-// mode, however stiff, and any number of them: the few softest (stiffness.hpp) are not all, and two that are negative leave
-// the determinant's sign as it was.
+// With Z a basis of the motions that the joints allow, ZᵀKZ is positive definite if and only if
+// K + ρ Φ_qᵀ Φ_q is for some ρ (Finsler, Debreu). That matrix has as many negative eigenvalues as
+// its LDLᵀ has negative pivots (Sylvester). One factorisation covers every mode of any stiffness.
+// The few softest modes (stiffness.hpp) are not all, and two negative modes leave the sign of the
+// determinant unchanged.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -13,16 +14,17 @@
 
 namespace elastocheck::recursive {
 
-// Whether the work of all forces is that of an energy: a load that turns with its body has none, and the symmetric part of
-// its K says nothing.
+// Whether the forces derive from an energy. A load that turns with its body has none, and then the
+// symmetric part of its K does not decide stability.
 bool has_energy(const Model& model, const Branch& branch);
 
-// Of the matrix of (24) [n + m square], in the norm |W x|, `weight` [n]; of every idle mode an unknown that is large in
-// it is held. False where round-off may be what is negative, which grows with ρ, and where K is not symmetric.
+// For the matrix of (24) [n + m square], in the norm |W x|, `weight` [n]. `held` lists one unknown
+// for each idle mode, large in that mode, which is fixed. Returns false where the negative pivot
+// may be round-off, which grows with ρ, and where K is not symmetric.
 bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorXd& weight,
                  const std::vector<int>& held);
 
-// Of the equilibrium whose consistent tangent is in the system.
+// The same for the equilibrium whose consistent tangent is in the system.
 template <class Real>
 bool is_unstable(const March<Real>& s) {
     if (s.free <= 0 || sizeof(Real) < sizeof(double) || !has_energy(s.model, s.branch)) return false;

@@ -1,9 +1,10 @@
-// What a branch moves: balance and Φ are functions of (q, inputs), and the inputs of the parameter a,
+// Inputs of the equations that the drivers of a branch change.
+// Balance and Φ are functions of (q, inputs); at the parameter a
 //
-//   input(t, a) = as the model says + t · start + a · rate
+//   input(t, a) = as drawn + t · start + a · rate
 //
-// for every driver. t goes from 0, the model as drawn, to 1 while what is held is settled (settle.hpp), and
-// stays 1 on the branch.
+// for every driver. t goes from 0, the model as drawn, to 1 while the start is settled
+// (settle.hpp), and stays 1 on the branch.
 #pragma once
 
 #include <stdexcept>
@@ -14,12 +15,12 @@
 
 namespace elastocheck::recursive {
 
-// What an elastic element is at rest with: the one that is not its own stays zero.
+// Rest values of an elastic element; the field of the other kind stays zero.
 template <class Real>
 struct Rest {
     Real free_length = 0;                           // ℓ₀ of an AxialSpring [m]
     Vector6<Real> preload = Vector6<Real>::Zero();  // of a Bushing [N, N·m]
-    Pieces piece = everywhere;                      // of its curves, a spring's first: no driver moves them
+    Pieces piece = everywhere;                      // of its curves; constant on a branch
 };
 
 template <class Real>
@@ -30,7 +31,7 @@ struct Inputs {
     std::vector<int> row;           // per constraint: its first row of Φ
 };
 
-// ---- As the model says.
+// ---- Values of the model as drawn.
 
 template <class Real>
 Real offset_of(const ConstraintKind& kind) {
@@ -67,15 +68,15 @@ Inputs<Real> inputs_as_drawn(const Model& model) {
     return inputs;
 }
 
-// ---- As the branch says.
+// ---- Values along the branch.
 
-// The constraint whose offset a motion moves. Pre: `stands_on`.
+// The constraint whose offset a motion changes. Pre: `stands_on`.
 inline std::size_t constraint_of(const Model& model, const Motion& motion) {
     return static_cast<std::size_t>(model.joints[static_cast<std::size_t>(motion.joint)].driven);
 }
 
-// Throws std::invalid_argument unless the model stands on the branch, and every driver has something to
-// drive.
+// Throws std::invalid_argument unless the branch fits the model and every driver has a matching
+// target.
 inline void check(const Model& model, const Branch& branch) {
     const auto require = [&](bool met, const char* what) {
         if (!met) throw std::invalid_argument("branch '" + branch.name + "': " + what);
@@ -117,13 +118,14 @@ inline void check(const Model& model, const Branch& branch) {
             "the model does not stand on it, or it does not begin at 0 (on_branch, ways)");
 }
 
-// The inputs at (t, a), from those as drawn. Nothing is allocated where `inputs` has been through it before.
+// The inputs at (t, a), from those as drawn. Allocates only on the first call with the same
+// `inputs`.
 template <class Real>
 void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& drawn, Real t, Real a,
                 Inputs<Real>& inputs) {
     if (inputs.row.size() != drawn.row.size() || inputs.rest.size() != drawn.rest.size()) inputs = drawn;
     inputs.load_factor.resize(branch.drivers.size());
-    // Each driver works on one input: first all back to where they were drawn, since two may share one.
+    // Each driver changes one input and two drivers may share it: first reset all, then add.
     const auto each = [&](auto&& change) {
         for (std::size_t k = 0; k < branch.drivers.size(); ++k) {
             const Real by = t * static_cast<Real>(branch.drivers[k].start) +

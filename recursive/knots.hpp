@@ -1,8 +1,9 @@
-// The curves of a model, and where their deflections are among their knots.
+// Kinks of the force curves in a model, and on which side of each kink a configuration lies.
 //
-// Between two knots everything is smooth. At a knot the rate of the element jumps (a kink, where a stop closes)
-// or the rate's own slope does (where a table is interpolated). Steps of equal size go over knots as they come;
-// what they may not do is to compare two steps with a kink between them, as if one told about the other.
+// A curve is smooth between two knots. At a knot either the rate (slope of the force) jumps, which
+// is a kink and happens where a stop closes, or the slope of the rate jumps, as in an interpolated
+// table. Methods with equal steps step across knots. They must not compare two steps with a kink
+// between them, because the second step has another tangent.
 #pragma once
 
 #include <cmath>
@@ -15,11 +16,11 @@ struct CurvePlace {
     std::size_t element = 0;  // position in Model::elastics
     std::size_t axis = 0;     // of its law
     const Curve* curve = nullptr;
-    bool angle = false;         // whether it deflects by [rad], not by [m]
+    bool angle = false;         // whether the deflection is an angle [rad], else a length [m]
     std::vector<double> kinks;  // the knots where the slope jumps
 };
 
-// Where the slopes of two pieces that meet differ by more than rounding.
+// Knots at which the slopes of the adjacent pieces differ by more than rounding.
 inline std::vector<double> kinks_of(const Curve& f) {
     std::vector<double> kinks;
     for (std::size_t k = 0; k < f.knots.size(); ++k) {
@@ -49,7 +50,7 @@ inline std::vector<CurvePlace> curves_of(const Model& model) {
     return all;
 }
 
-// What the curve answers to, at q and these inputs [m] or [rad].
+// The argument of the curve at q and these inputs, [m] or [rad].
 template <class Real>
 Real deflection(const Model& model, const Inputs<Real>& inputs, const State<Real>& q, const CurvePlace& at) {
     return std::visit(overloaded{
@@ -63,8 +64,8 @@ Real deflection(const Model& model, const Inputs<Real>& inputs, const State<Real
                       model.elastics[at.element].kind);
 }
 
-// On which side of every kink the configuration is: how many each curve has at or before its deflection.
-// Fills `sides`, returns whether they were others. Nothing is allocated.
+// Side of every kink: per curve, the number of kinks at or below its deflection. Fills `sides` and
+// returns whether any changed. Allocates nothing.
 template <class Real>
 bool find_sides(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
                 const std::vector<CurvePlace>& curves, std::vector<int>& sides) {

@@ -1,22 +1,22 @@
-// Steps that end at knots.
+// Event location at the knots of force curves: steps that end on a knot.
 //
-// A step goes along one piece of every curve, past its ends if need be (law.hpp): what it solves is smooth, and
-// its error estimate means what it says. Where a deflection x(p) meets the end of its piece on the way, the step is
-// made to end there instead:
+// A step uses one polynomial piece of every curve and continues it beyond its ends if needed
+// (law.hpp), so the equations of the step are smooth and its error estimate is valid. Where a
+// deflection x(p) reaches the end of its piece within the step, the step is shortened to end there:
 //
-//   where      x is a cubic through four points of the way, as forecast and once more as it came out;
-//              its first root is near enough for
-//   landing    p ← p + (knot - x) / x', the node corrected along z', until x is the knot to a millionth of the
-//              tolerance
+//   location   x is interpolated by a cubic through four points of the step, first of the
+//              predictor, then of the accepted step; its first root is the starting value for
+//   landing    p ← p + (knot - x) / x', with the node corrected along z', until x equals the knot
+//              to a millionth of the tolerance
 //
-// From there the path goes on along the next piece, with another derivative.
+// The next step uses the adjacent piece and the derivative of the path on that side.
 #pragma once
 
 #include "recursive/walk.hpp"
 
 namespace elastocheck::recursive {
 
-// What counts as on the knot, on either side of it.
+// Distance within which a deflection counts as lying on the knot, on either side [m] or [rad].
 template <class Real>
 Real slack(const Going<Real>& going, const CurvePlace& at) {
     return Real(1e-6) * (at.angle ? going.angle_tolerance : going.length_tolerance);
@@ -27,10 +27,11 @@ Piece& piece_of(March<Real>& s, const CurvePlace& at) {
     return s.inputs.rest[at.element].piece[at.axis];
 }
 
-// The first knot that is met between two nodes: of which curve, on which side of its piece, and at what share of the way.
+// First knot reached between two nodes: its curve, the end of the piece, and the fraction of the
+// step.
 template <class Real>
 struct Meeting {
-    const CurvePlace* curve = nullptr;  // none is met
+    const CurvePlace* curve = nullptr;  // nullptr: no knot is reached
     int side = 0;                       // -1 at the lower end of the piece, +1 at the upper
     Real t = 2;
     Real knot = 0;
@@ -43,7 +44,8 @@ Real cubic(const std::array<Real, 4>& x, Real t) {
     return -x[0] * b * c * d / 6 + x[1] * a * c * d / 2 - x[2] * a * b * d / 2 + x[3] * a * b * c / 6;
 }
 
-// The earliest meeting on the way over h from `from`; `at(t, q)` fills the configuration at the share t.
+// First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t of the
+// step.
 template <class Real, class Way>
 Meeting<Real> first_meeting(March<Real>& s, const Going<Real>& going, Real from, Real h, State<Real>& q,
                             Way&& at) {
@@ -87,8 +89,9 @@ Meeting<Real> first_meeting(March<Real>& s, const Going<Real>& going, Real from,
     return first;
 }
 
-// Puts `next`, an equilibrium near the knot with its derivative, onto it; false where that leads nowhere between
-// the node at p and `limit`. The factors are those of `next`.
+// Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
+// where the iteration leaves the interval between the node at p and `limit`. The factors are those
+// of `next`.
 template <class Real>
 bool land(March<Real>& s, const Going<Real>& going, const Meeting<Real>& knot, Real p, Real limit,
           Node<Real>& next, State<Real>& q) {
@@ -120,8 +123,8 @@ bool land(March<Real>& s, const Going<Real>& going, const Meeting<Real>& knot, R
     return false;
 }
 
-// The step of walk.hpp from `node` to next.p along the present pieces, shortened to where the first knot is met;
-// `met` says which. `between(node, next, t, q)` is the way as it came out.
+// The step of walk.hpp from `node` to next.p on the present pieces, shortened to the first knot
+// reached, which `met` returns. `between(node, next, t, q)` interpolates the accepted step.
 template <class Real, class Between>
 Trial<Real> step_to_knot(March<Real>& s, const Going<Real>& going, const Node<Real>& node,
                          const Vector<Real>& curvature, const Vector<Real>& lambda_curvature,
@@ -139,14 +142,14 @@ Trial<Real> step_to_knot(March<Real>& s, const Going<Real>& going, const Node<Re
     Trial<Real> trial;
     for (int k = 0; k < 4; ++k) {
         next.p = expected.curve ? node.p + expected.t * h : whole;
-        if (next.p == node.p) {  // it stands on the knot and goes beyond
+        if (next.p == node.p) {  // the node lies on the knot and the step leaves the piece
             met = expected;
             return trial;
         }
         trial = try_step(s, going, node, curvature, lambda_curvature, next);
         if (trial.verdict != Verdict::believed) return trial;
         const bool landed = expected.curve && land(s, going, expected, node.p, whole, next, q);
-        if (expected.curve && !landed && k == 0) {  // as forecast, and not so
+        if (expected.curve && !landed && k == 0) {  // the path misses the knot of the predictor
             expected = {};
             continue;
         }
@@ -163,8 +166,8 @@ Trial<Real> step_to_knot(March<Real>& s, const Going<Real>& going, const Node<Re
     return trial;
 }
 
-// Every curve on the piece that the path follows from the node on: the one its deflection is on or, at a knot, will
-// be on a little ahead.
+// Selects for every curve the piece that the path follows from the node on: the piece of its
+// deflection or, on a knot, the piece a little ahead.
 template <class Real>
 void take_pieces(March<Real>& s, const Going<Real>& going, const Node<Real>& node, Real ahead,
                  State<Real>& q) {

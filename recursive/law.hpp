@@ -1,12 +1,12 @@
-// The laws of the elastic elements: energy u of a deformation, its gradient and its Hessian. The geometry
-// (measure.hpp, elastic.hpp, tangent.hpp) does the rest, so that a new law is a new overload here and nothing
-// elsewhere.
+// Force laws of the elastic elements: energy u of a deformation, its gradient and Hessian.
+// The geometry (measure.hpp, elastic.hpp, tangent.hpp) is separate, so that a new law is one
+// overload here.
 //
-// The Hessian is asked for more often than the deformation is at hand: it takes a function that gives the
-// deformation where the law needs it.
+// The Hessian takes a function that returns the deformation, which only nonlinear laws call: many
+// callers have not computed the deformation.
 //
-// A curve is a polynomial only between two knots. A step that is to be smooth goes along the polynomial of one
-// piece, past its ends if need be: so a piece can be told, by its number.
+// A curve is a polynomial only between two knots. A step with smooth equations uses the polynomial
+// of one piece and continues it beyond its ends; callers select that piece by its number.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 
 namespace elastocheck::recursive {
 
-// The number of a curve's piece, 0 before the first knot; or whichever the deformation is on.
+// Number of a curve's piece, 0 before the first knot; `wherever`: the piece of the deformation.
 using Piece = int;
 inline constexpr Piece wherever = -1;
 using Pieces = std::array<Piece, 6>;
 inline constexpr Pieces everywhere{wherever, wherever, wherever, wherever, wherever, wherever};
 
-// As many knots as there are at or before x.
+// Number of knots at or before x.
 template <class Real>
 Piece piece_at(const Curve& f, Real x) {
     const auto beyond = std::upper_bound(f.knots.begin(), f.knots.end(), x,
@@ -30,7 +30,7 @@ Piece piece_at(const Curve& f, Real x) {
     return static_cast<Piece>(beyond - f.knots.begin());
 }
 
-// A piece c_0 + c_1 t + c_2 t² + c_3 t³ as seen from x: its coefficients, and t = x - x_k.
+// A piece c_0 + c_1 t + c_2 t² + c_3 t³ evaluated at x: its coefficients, and t = x - x_k.
 template <class Real>
 struct Cubic {
     const std::array<double, 4>& c;
@@ -48,7 +48,7 @@ Cubic<Real> piece_of(const Curve& f, Real x, Piece piece) {
     return {f.pieces[k], x - static_cast<Real>(f.knots[k == 0 ? 0 : k - 1])};
 }
 
-// ---- Of one deformation x [m or rad]: u'(x) [N or N·m], u''(x) [N/m or N·m/rad].
+// ---- Scalar deformation x [m or rad]: u'(x) [N or N·m], u''(x) [N/m or N·m/rad].
 
 template <class Real>
 Real gradient(const LinearRate& law, Real x, Piece = wherever) {
@@ -77,7 +77,7 @@ Real hessian(const ScalarLaw& law, Deformation&& x, Piece piece = wherever) {
     return std::visit([&](const auto& kind) { return hessian<Real>(kind, x, piece); }, law);
 }
 
-// ---- Of six, e = (d, θ) [m, rad]: ∂u/∂e [N, N·m], ∂²u/∂e² [N/m  N; N  N·m/rad].
+// ---- Spatial deformation e = (d, θ) [m, rad]: ∂u/∂e [N, N·m], ∂²u/∂e² [N/m  N; N  N·m/rad].
 
 template <class Real>
 Vector6<Real> gradient(const LinearStiffness& law, const Vector6<Real>& e, const Pieces& = everywhere) {
@@ -87,7 +87,7 @@ template <class Real, class Deformation>
 Matrix6<Real> hessian(const LinearStiffness& law, Deformation&&, const Pieces& = everywhere) {
     return law.K.cast<Real>();
 }
-// Whether the law answers to rotation at all, at any deformation.
+// Whether the law depends on rotation.
 inline bool rotational(const LinearStiffness& law) { return !law.K.rightCols<3>().isZero(0); }
 
 template <class Real>

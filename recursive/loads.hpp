@@ -1,12 +1,13 @@
-// The external force vector f_ext of eq. (3): forces and moments on the bodies' origins. A follower keeps its
-// components in body axes, F = A F', M = A M'.
+// The external force vector f_ext of eq. (3): forces and moments on the bodies' origins.
+// A follower keeps its components in body axes, F = A F', M = A M'.
 #pragma once
 
 #include "recursive/inputs.hpp"
 
 namespace elastocheck::recursive {
 
-// Adds factor · load to f_ext [6nb]. A force at a body point has a lever s = A s' that moves with the body.
+// Adds factor · load to f_ext [6nb]. A force at a body point has a lever s = A s', which rotates
+// with the body.
 template <class Real>
 void add_load(const DeadForce& force, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
     const BodyId b = force.at.body;
@@ -34,7 +35,8 @@ void add_load(const LoadKind& load, Real factor, const State<Real>& q, Vector<Re
     std::visit([&](const auto& kind) { add_load<Real>(kind, factor, q, f_ext); }, load);
 }
 
-// Calls sink(load, factor) for the static loads, factor 1, then for those that the branch drives.
+// Calls sink(load, factor) for the static loads with factor 1, then for the loads that the branch
+// drives.
 template <class Real, class Sink>
 void for_each_load(const Model& model, const Branch& branch, const Inputs<Real>& inputs, Sink&& sink) {
     for (const auto& load : model.static_loads) sink(load.kind, Real(1));

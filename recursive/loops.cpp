@@ -9,8 +9,8 @@ struct End {
     std::size_t body, constraint;
 };
 struct Visit {
-    std::size_t body, by;  // by which constraint it was come to
-    std::size_t next = 0;  // of its ends
+    std::size_t body, by;  // the constraint by which the search came
+    std::size_t next = 0;  // index among its ends
 };
 
 }  // namespace
@@ -26,14 +26,14 @@ std::vector<int> loops(const Model& model) {
                 return std::pair{kind.i.body, kind.j.body};
             },
             model.constraints[c].kind);
-        if (i == j) {  // of one body, or of two that are fixed to the ground: a loop by itself
+        if (i == j) {  // on one body, or between ground and ground: a loop by itself
             block[c] = blocks++;
             continue;
         }
         ends[static_cast<std::size_t>(i + 1)].push_back({static_cast<std::size_t>(j + 1), c});
         ends[static_cast<std::size_t>(j + 1)].push_back({static_cast<std::size_t>(i + 1), c});
     }
-    // Depth first: when each body was come to, and the earliest that is reached from it or from behind it.
+    // Depth-first search (Hopcroft and Tarjan 1973): discovery time and low point of each body.
     std::vector<int> came(ends.size(), -1), earliest(ends.size(), 0);
     std::vector<std::size_t> open;  // constraints whose block is not complete
     std::vector<Visit> way;

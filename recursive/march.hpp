@@ -1,4 +1,4 @@
-// What all methods march with: the state, the system, and the pieces of a step.
+// State, linear system and step functions shared by all stepping methods.
 #pragma once
 
 #include <algorithm>
@@ -15,50 +15,53 @@
 
 namespace elastocheck::recursive {
 
-// Where on the way: first what is held settles, t from 0 to 1, then a goes its way along the branch.
+// Position on the path: t goes from 0 to 1 while the start is settled, then a changes along the
+// branch.
 //
 //   Φ(q, inputs(t, a)) = (1 - t) Φ_d        G(q, λ, inputs(t, a)) = -(1 - t) R_d
 //
-// Φ_d is what the joints are open by as drawn, R_d = f_ext - f_elast what is out of balance there: at t = 0
-// the design position is an equilibrium by definition, and everything between is a smooth path.
+// Φ_d is the constraint error and R_d = f_ext - f_elast the imbalance as drawn. At t = 0 the design
+// position satisfies the equations by definition, and the path to t = 1 is smooth.
 template <class Real>
 struct Place {
     Real t = 0, a = 0;
 };
 
-// When a step means nothing. The numbers are no tolerances of the answer: between what they let pass and what
-// they refuse lie orders of magnitude.
+// Limits beyond which a step is rejected as meaningless. They are not tolerances of the result:
+// accepted and rejected values differ by orders of magnitude.
 namespace guard {
-// A motion counts as idle while its strain, as a share of what it would be if only one end of each element
-// moved, is less than this; a real mode has a share near one.
+// A mode counts as idle while its strain, as a fraction of the strain if only one end of each
+// element moved, is less than this; a real mode has a fraction near one.
 inline constexpr double idle_strain = 1e-3;
-// What is idle or redundant where the constraints are met blurs with the constraint error: so much strain,
-// and so much of a load's share, for each |Φ| / L.
+// The constraint error blurs what is idle or redundant: the strain and the load fraction allowed
+// for each unit of |Φ| / L.
 inline constexpr double strain_per_error = 100, share_per_error = 10;
-// ... and with rounding: in multiples of the unit round-off, since the share is a small difference of forces
-// that the conditioning has blown up.
+// Rounding blurs it too: in multiples of the unit round-off, since the load fraction is a small
+// difference of forces, amplified by the condition number.
 inline constexpr double rounding = 1e7;
-// Joints that are open by less than this [m, rad] as drawn are closed: their points have been written down
+// Joints that are open by less than this [m, rad] as drawn count as closed: their points are given
 // with nine digits.
 inline constexpr double closed = 1e-9;
-// Joints that say a thing twice are drawn to agree to nine digits of L, or of a direction; else they say two.
+// Redundant joints agree as drawn within nine digits of L or of a direction; else they are
+// inconsistent.
 inline constexpr double agreeing = 1e-9;
-// The linearisation of a rotation, eq. (6), is off by half at a radian.
+// The linearisation of a rotation, eq. (6), is wrong by half at one radian.
 inline constexpr double largest_turn = 1;
-// One step that reverses the one before and outgrows it may be the path's own turn; two in a row are not.
+// One step that reverses and exceeds the step before may follow a turn of the path; two in a row do
+// not.
 inline constexpr int swings = 2;
-// A step over a kink goes too far or not far enough, the next one makes up for it: neither is to be compared
-// with the one before.
+// A step across a kink overshoots or undershoots and the next one corrects that: number of steps
+// that are not compared with the step before.
 inline constexpr int kinked = 2;
 }  // namespace guard
 
-// An elastic element that an idle mode moves, and where among the mode's entries its two bodies are; -1 where they are
-// not.
+// An elastic element that an idle mode moves, and the positions of its two bodies among the entries
+// of the mode; -1 for a body that the mode does not move.
 struct Moved {
     std::size_t element = 0;
     int at_i = -1, at_j = -1;
 };
-// Of every idle mode, in the order of the elements.
+// For every idle mode, in the order of the elements.
 template <class Real>
 std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Real>& held) {
     std::vector<std::vector<std::size_t>> on_body(model.bodies.size());
@@ -82,9 +85,10 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Re
     return all;
 }
 
-// Whether the element may push where its stiffness notices nothing: by its preload, where a curve has force and no
-// rate, where its forces are of no energy. What K Δq alone makes of the others does no such work; with their true
-// forces they may, once their two points have drifted apart.
+// Whether the element may exert a force along a motion that its stiffness does not see: by its
+// preload, where a curve has force and no rate, or where its forces have no energy. For other
+// elements K Δq does no such work. Their true forces may, once their two attachment points have
+// drifted apart.
 inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
     const bool driven = std::ranges::any_of(branch.drivers, [k](const Driver& driver) {
         const auto* preload = std::get_if<Preload>(&driver.what);
@@ -100,45 +104,47 @@ inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
                                 element);
 }
 
-// Everything a step touches, allocated once.
+// State and workspace of a march; allocated once.
 template <class Real>
 struct March {
     const Model& model;
     const Branch& branch;
     double length;  // L of the diagnosis [m]
-    int free;       // motions that the joints allow and something resists
+    int free;       // number of motions that the joints allow and something resists
     Counts counts;
-    bool consistent = false;  // whether the matrix is the consistent tangent, or K of (19)
+    bool consistent = false;  // whether the matrix is the consistent tangent, else K of (19)
 
     State<Real> q;             // qⁿ
     State<Real> before;        // qⁿ⁻¹
     Vector<Real> lambda;       // λⁿ⁻¹, total
     Vector<Real> lambda_half;  // halfway to λⁿ
     Real a = 0;                // parameter of qⁿ
-    Place<Real> place;         // that `inputs` are of
+    Place<Real> place;         // of `inputs`
     Inputs<Real> drawn, inputs;
-    Vector<Real> R_d, Phi_d;  // out of balance and open as drawn [6nb], [m]
+    Vector<Real> R_d, Phi_d;  // imbalance and constraint error as drawn [6nb], [m]
     SaddlePoint<Real> system;
 
-    Vector<Real> applied;  // f_ext as far as the method lets it follow, at (qⁿ, aⁿ⁺¹)
-    Vector<Real> stored;   // f_elast as far as the method lets it follow, at qⁿ
-    std::vector<ElementForce<Real>>
-        element;  // of each elastic element, where stored forces are kept by element
+    Vector<Real> applied;  // f_ext at (qⁿ, aⁿ⁺¹), of the load configuration that the method uses
+    Vector<Real> stored;   // f_elast at qⁿ, with levers and axes that the method uses
+    // per elastic element, for methods that store forces by element
+    std::vector<ElementForce<Real>> element;
 
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int orientation = 0;  // sign of the determinant of the consistent tangent where the branch began
-    Real missed = 0;  // what qⁿ may be from equilibrium: what W Δqⁿ⁻¹ differed from the one before it by [m]
-    bool begins_unstable = false;  // what has settled
+    int orientation = 0;  // sign of the consistent tangent's determinant at the start of the branch
+    Real missed = 0;  // estimate of the distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
+    bool begins_unstable = false;  // whether the settled start is unstable
     int swings = 0;                // steps in a row that reversed the one before and were larger
 
-    std::vector<std::vector<Moved>> moved;  // of every idle mode
-    // The elastic elements among these, and those of them that push even where K knows of nothing.
+    std::vector<std::vector<Moved>> moved;  // for every idle mode
+    // The elastic elements that idle modes move, and those of them that may exert a force along
+    // one.
     std::vector<std::size_t> at_idle, pushing;
 
     std::vector<CurvePlace> curves;
-    std::vector<int> sides, sides_ahead;  // of their kinks that q is on, that some other configuration is on
-    std::vector<std::array<Real, 4>> along;  // deflections at four places of the way
-    int kinked = 0;                          // steps to come that are not to be compared with the one before
+    std::vector<int> sides, sides_ahead;     // of the kinks, at q and at another configuration
+    std::vector<std::array<Real, 4>> along;  // deflections at four points of a step
+    // number of coming steps that are not compared with the step before
+    int kinked = 0;
 
     March(const Model& model_, const Branch& branch_, const Analysis& analysis)
         : model(model_),
@@ -177,7 +183,8 @@ struct March {
     int m() const { return system.m; }
 
   private:
-    // What is not in the pattern would silently be no part of the matrix.
+    // Throws for a follower load without entries in the pattern: the matrix would silently omit its
+    // tangent.
     void check_followers(const Pattern& pattern) const {
         for (const auto& driver : branch.drivers) {
             const auto* load = std::get_if<Load>(&driver.what);
@@ -189,28 +196,28 @@ struct March {
     }
 };
 
-// Whether the step that has just led to q went over a kink; the next ones are judged accordingly.
+// Whether the last step, which led to q, crossed a kink; sets how many next steps are not compared.
 template <class Real>
 bool pass_kinks(March<Real>& s) {
     if (!find_sides<Real>(s.model, s.inputs, s.q, s.curves, s.sides)) return false;
     s.kinked = guard::kinked;
     return true;
 }
-// Whether there is a kink between where the step began and q.
+// Whether a kink lies between the start of the step and q.
 template <class Real>
 bool beyond_a_kink(March<Real>& s, const State<Real>& q) {
     s.sides_ahead = s.sides;
     return find_sides<Real>(s.model, s.inputs, q, s.curves, s.sides_ahead);
 }
 
-// The inputs become those of (t, a).
+// Sets the inputs to those of (t, a).
 template <class Real>
 void go_to(March<Real>& s, Place<Real> place) {
     s.place = place;
     set_inputs<Real>(s.model, s.branch, s.drawn, place.t, place.a, s.inputs);
 }
 
-// The part of the external force that works on the idle modes now held, as a share of the whole.
+// Largest work of the force on a held idle mode, as a fraction of `whole`.
 template <class Real>
 Real load_on_idle_modes(const March<Real>& s, const Vector<Real>& force, Real whole) {
     const Held<Real>& held = s.system.held;
@@ -231,9 +238,8 @@ Real size_of_force(const March<Real>& s, const Vector<Real>& force) {
     return force.cwiseQuotient(s.system.weight.head(s.n())).norm();
 }
 
-// How far the held motions are from idle, and the held
-// combinations from redundant, at q: 0 for exactly so, up to 1.
-//   motion z        √(strain energy of the elements / what it would be if only one end of each moved)
+// How far the held motions are from idle and the held combinations from redundant at q (0 to 1):
+//   motion z        √(strain energy of the elements / the same if only one end of each moved)
 //   combination y   |Φ_qᵀ y| / Σ |y_k| |row k|
 template <class Real>
 Real strain_of_held(March<Real>& s, const State<Real>& q) {
@@ -243,7 +249,8 @@ Real strain_of_held(March<Real>& s, const State<Real>& q) {
         Real energy = 0, single = 0;
         for (const auto& [k, at_i, at_j] : s.moved[static_cast<std::size_t>(c)]) {
             const auto e = element_stiffness<Real>(s.model.elastics[k].kind, s.inputs.rest[k], q);
-            const Vector6<Real> rates = e.K.diagonal().cwiseAbs();  // a curve may fall
+            // a curve may have a negative slope
+            const Vector6<Real> rates = e.K.diagonal().cwiseAbs();
             const Real k_T = rates.template head<3>().sum(), k_R = rates.template tail<3>().sum();
             Vector6<Real> de = Vector6<Real>::Zero();
             const auto end = [&](int at, const Vector3<Real>& lever, Real sign) {
@@ -263,7 +270,7 @@ Real strain_of_held(March<Real>& s, const State<Real>& q) {
     }
     for (int c = held.idle; c < held.size(); ++c) {
         const SaddleMatrix<Real>& M = s.system.M;
-        // What y puts on the bodies of its rows, each of them once.
+        // Adds the generalised forces of y on the bodies of its rows, each body once.
         const auto each_end = [&](auto&& visit) {
             for (int e = held.begin(c); e < held.end(c); ++e) {
                 const int row = held.row[static_cast<std::size_t>(e)] - M.n;
@@ -291,8 +298,8 @@ Real strain_of_held(March<Real>& s, const State<Real>& q) {
     return worst;
 }
 
-// Whether two answers to the same question, or to two neighbouring ones, differ by more than half the larger
-// of them, and by more than rounding. All three are |W Δq|² [m²].
+// Whether two increments that should agree differ by more than half the larger one and by more than
+// rounding. All three arguments are |W Δq|² [m²].
 template <class Real>
 bool disagree(const March<Real>& s, Real change, Real one, Real other) {
     const Real rounding = 100 * std::numeric_limits<Real>::epsilon() * static_cast<Real>(s.length);
@@ -305,13 +312,14 @@ Real size_of_solution(const March<Real>& s) {
     return s.x.head(s.n()).cwiseProduct(s.system.weight.head(s.n())).squaredNorm();
 }
 
-// A step that means nothing is not an answer.
+// Whether the last step has diverged.
 //
-// Stored forces that do not follow are turned with one step's delay: where their stiffness k_g exceeds the
-// elements' k a step answers Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., reverses the last one and outgrows it, and more
-// steps only give it more room. A method with the consistent tangent corrects in each step what the last one
-// missed; where that is more than half a step, the steps are too long. And the linearisation itself, eq. (6),
-// means nothing for a rotation of a radian in one step.
+// Stored forces that do not follow the bodies are rotated with a delay of one step. Where their
+// geometric stiffness k_g exceeds the elastic stiffness k, a step gives
+// Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., which reverses and exceeds the step before; more steps only amplify
+// this (delay.hpp). A method with the consistent tangent corrects in each step the error of the
+// last one; where that exceeds half a step, the steps are too long. The linearisation of eq. (6) is
+// invalid for a rotation of a radian in one step.
 template <class Real>
 bool has_diverged(March<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
@@ -329,12 +337,13 @@ bool has_diverged(March<Real>& s) {
     return s.swings >= guard::swings || too_long || !(turn <= Real(guard::largest_turn));
 }
 
-// The factors now in the system, of its matrix at q.
+// Checks the factors in the system, of its matrix at q: finite, regular, and held modes still idle.
 template <class Real>
 Outcome judge(March<Real>& s, const State<Real>& q, Real pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m()))) return Outcome::singular;
-    // More than what blurs is real, and holding it would be a quiet wrong number.
+    // A strain above the blur is a real stiffness; holding that mode would give a wrong result
+    // silently.
     const Real rounding = Real(guard::rounding) * std::numeric_limits<Real>::epsilon();
     const Real blur = s.Phi.norm() / static_cast<Real>(std::min(1.0, s.length));
     if (!(strain_of_held(s, q) <= rounding + Real(guard::idle_strain) + Real(guard::strain_per_error) * blur))
@@ -342,8 +351,9 @@ Outcome judge(March<Real>& s, const State<Real>& q, Real pivot_ratio) {
     return Outcome::converged;
 }
 
-// Whether s.applied and the elements at q push an idle mode. The border of (24) would take up what they do, as a joint
-// does: an equilibrium that is none. `missed` is how far q may be from equilibrium [m], which blurs as |Φ| does.
+// Whether s.applied and the elements at q load an idle mode. The border of (24) would carry that
+// load like a joint, and the result would be a false equilibrium. `missed` is the distance of q
+// from equilibrium [m], which blurs the decision as |Φ| does.
 template <class Real>
 Outcome judge_push(March<Real>& s, const State<Real>& q, Real missed) {
     if (s.system.held.idle == 0) return Outcome::converged;
@@ -368,7 +378,7 @@ Outcome judge_push(March<Real>& s, const State<Real>& q, Real missed) {
                                                                    : Outcome::loaded_idle_mode;
 }
 
-// Assembles and factorises the method's matrix at (q, λ) with the present inputs, and judges it.
+// Assembles and factorises the method's matrix at (q, λ) with the present inputs, and checks it.
 template <class Real>
 Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
     if (s.consistent)
@@ -380,8 +390,8 @@ Outcome factorise_at(March<Real>& s, const State<Real>& q, const Vector<Real>& l
     return judge(s, q, pivot_ratio);
 }
 
-// G = f_elast + Φ_qᵀ λ - f_ext at (q, λ) and the present inputs, and Φ, less what is still held of them: the
-// right-hand side (-G, -Φ) of a correction.
+// Right-hand side (-G, -Φ) of a Newton correction at (q, λ) and the present inputs, with
+// G = f_elast + Φ_qᵀ λ - f_ext. The held parts (1 - t) of R_d and Φ_d are subtracted.
 template <class Real>
 void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambda) {
     external_force<Real>(s.model, s.branch, s.inputs, q, s.upper);
@@ -397,23 +407,29 @@ void residual_at(March<Real>& s, const State<Real>& q, const Vector<Real>& lambd
     ++s.counts.evaluations;
 }
 
-// Whether any joint says what others say already.
+// Whether the model has redundant constraints.
 template <class Real>
 bool says_twice(const March<Real>& s) {
     return s.system.borders() > s.system.held.idle;
 }
 
-// What a number of the model is worth as a share of L, or of a direction: a double, of the largest coordinate.
+// The largest distance of a body from the origin [m].
+template <class Real>
+Real reach(const State<Real>& q) {
+    Real farthest = 0;
+    for (BodyId b = 0; b < q.bodies(); ++b) farthest = std::max(farthest, q[b].r.norm());
+    return farthest;
+}
+// Relative precision of the input coordinates at q: 64 units of round-off of a double (or of Real,
+// if that is coarser), of the largest coordinate, as a fraction of L or of a unit direction.
 template <class Real>
 Real written(const March<Real>& s, const State<Real>& q) {
-    Real reach = 0;
-    for (BodyId b = 0; b < q.bodies(); ++b) reach = std::max(reach, q[b].r.norm());
     const Real digit = std::max(std::numeric_limits<Real>::epsilon(),
                                 static_cast<Real>(std::numeric_limits<double>::epsilon()));
-    return 64 * digit * (1 + reach / static_cast<Real>(s.length));
+    return 64 * digit * (1 + reach(q) / static_cast<Real>(s.length));
 }
 
-// The largest |Φ_k| in `Phi`, as a share of L where it is a length.
+// The largest |Φ_k| in `Phi`, as a fraction of L where it is a length.
 template <class Real>
 Real largest_gap(const March<Real>& s, const Vector<Real>& Phi) {
     Real worst = 0;
@@ -428,21 +444,22 @@ Real largest_gap(const March<Real>& s, const Vector<Real>& Phi) {
     return worst;
 }
 
-// Whether joints that say a thing twice say two at q, by what residual_at has left in s.lower where corrections have come to
-// rest: the border has taken up what they cannot both meet.
+// Whether redundant joints are inconsistent at q. Pre: the corrections have converged and
+// residual_at has set s.lower, which holds the gap that the border has absorbed.
 template <class Real>
 bool contradict(const March<Real>& s, const State<Real>& q) {
     return says_twice(s) && !(largest_gap(s, s.lower) <= static_cast<Real>(guard::agreeing) + written(s, q));
 }
 
-// amount · ∂/∂t or ∂/∂a of the same right-hand side, at the present inputs.
+// amount · ∂/∂t or ∂/∂a of the same right-hand side, at (q, λ) and the present inputs.
 template <class Real>
-void drive_at(March<Real>& s, Drive drive, Real amount, const State<Real>& q) {
+void drive_at(March<Real>& s, Drive drive, Real amount, const State<Real>& q, const Vector<Real>& lambda) {
     s.upper.setZero();
     s.force.setZero();
     s.lower.setZero();
     add_load_rate<Real>(s.branch, drive, amount, q, s.upper);
     add_stored_rate<Real>(s.model, s.branch, s.inputs, drive, amount, q, s.force);
+    add_reaction_rate<Real>(s.model, s.branch, s.inputs, drive, amount, q, lambda, s.force);
     s.upper -= s.force;
     add_constraint_rate<Real>(s.model, s.branch, s.inputs, drive, -amount, q, s.lower);
     if (drive == Drive::start) {
@@ -457,7 +474,7 @@ void back_substitute(March<Real>& s) {
     ++s.counts.iterations;
 }
 
-// λ acts where it was solved: for the published sums one step before q.
+// λ acts at the configuration of its solve: for the published sums one step before q.
 template <class Real>
 void record(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
             const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load,

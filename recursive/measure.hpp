@@ -1,24 +1,28 @@
-// What a bushing measures of where its marker j is, seen from marker i, and how that answers to a motion: the
-// formulations of models/mechanism.hpp, each with its first and second derivative.
+// Deformation measures of a bushing, with first and second derivatives.
+// They are the position and angles of marker j relative to marker i, for each formulation of
+// models/mechanism.hpp.
 //
-// Seen from i, j is at x = A_iᵀ D, D = p_j - p_i, turned by B = A_iᵀ A_j. A small motion is
+// Relative to i, j is at x = A_iᵀ D, D = p_j - p_i, rotated by B = A_iᵀ A_j. A small motion is
 //
 //   δx = A_iᵀ (δp_j - δp_i - δπ_i × D),   δφ = A_iᵀ (δπ_j - δπ_i),   δB = δφ~ B .
 //
 // Three angles θ of B, with H = ∂θ/∂φ and ∂(Hᵀ m)/∂φ for a constant m:
 //
 //   rotation vector   θ = log B, H = J(θ)⁻¹, J the left Jacobian of the rotation group
-//   Cardan            B = R_x(θ_x) R_y(θ_y) R_z(θ_z):  δφ = δθ_x e_x + δθ_y R_x e_y + δθ_z R_x R_y e_z, solved for δθ
-//   projected         each θ_k = atan2(n, c), n = u·w, c = v·w: a column w of B against two axes of i. With δw = δφ × w
-//                     its row of H is h = w × g / r²,  g = c u - n v,  r² = n² + c²
+//   Cardan            B = R_x(θ_x) R_y(θ_y) R_z(θ_z):  δφ = δθ_x e_x + δθ_y R_x e_y
+//                                                   + δθ_z R_x R_y e_z, solved for δθ
+//   projected         each θ_k = atan2(n, c), n = u·w, c = v·w: column w of B, axes u, v of i.
+//                     With δw = δφ × w its row of H is
+//                     h = w × g / r²,  g = c u - n v,  r² = n² + c²
 //
-// The frame in the middle is turned from i by S = B^½. From B = S S follows δφ = S (I + S) δη, δη its own rotation in
-// its own axes; and since S is the Cayley transform of t = tan(|θ|/4) θ/|θ|, the Rodrigues vector of S,
+// The frame in the middle is rotated from i by S = B^½. From B = S S follows δφ = S (I + S) δη, δη
+// the rotation increment of S in its own axes. Since S is the Cayley transform of t = tan(|θ|/4)
+// θ/|θ|, the Rodrigues vector of S,
 //
 //   δη = P δφ,   P = (I + S)⁻¹ Sᵀ = ½ (I - t̃) Sᵀ,   δt = ½ (I + t̃ + t tᵀ) δη
 //   d = Sᵀ x,   δd = Sᵀ δx - δη × d
 //
-// which nothing makes singular below a whole turn.
+// which is singular only at a whole turn.
 #pragma once
 
 #include <array>
@@ -28,7 +32,7 @@
 
 namespace elastocheck::recursive {
 
-// ---- The rotation vector.
+// ---- Rotation vector.
 
 // The rotation vector θ of R, |θ| ≤ π.
 template <class Real>
@@ -37,8 +41,8 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
     Eigen::Quaternion<Real> p(R);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|; near zero 2/w replaces the quotient, which is exact to the last bit
-    // there.
+    // θ = 2 atan2(|v|, w) along v/|v|. Near zero 2/w replaces the quotient and is exact to the last
+    // bit.
     const Real factor =
         sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
     return factor * p.vec();
@@ -49,8 +53,8 @@ template <class Real>
 Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     using std::tan;
     const Real t2 = theta.squaredNorm();
-    // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it nothing
-    // cancels badly.
+    // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it
+    // cancellation is small.
     Real c;
     if (t2 < Real(1e-3)) {
         c = Real(1) / 12 + t2 * (Real(1) / 720 + t2 * (Real(1) / 30240 + t2 * (Real(1) / 1209600)));
@@ -84,7 +88,8 @@ Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m)
            h * theta.cross(turned) * theta.transpose();
 }
 
-// ---- Cardan angles. H has cos θ_y below: no angles there, as always with three of them.
+// ---- Cardan angles. H is divided by cos θ_y: singular at θ_y = ±90°, as any three angles are
+// somewhere.
 
 template <class Real>
 Vector3<Real> cardan(const Matrix3<Real>& B) {
@@ -167,7 +172,7 @@ Matrix3<Real> projected_turning_moment(const Matrix3<Real>& B, const Vector3<Rea
     return N;
 }
 
-// ---- Whichever angles they are.
+// ---- Dispatch on the kind of angles.
 
 using Angles = Formulation::Angles;
 
@@ -202,7 +207,7 @@ Matrix3<Real> turning_moment(Angles angles, const Matrix3<Real>& B, const Vector
     return turning_moment<Real>(theta, m) * H;
 }
 
-// ---- The frame in the middle.
+// ---- Frame in the middle.
 
 template <class Real>
 struct Middle {
@@ -213,7 +218,7 @@ template <class Real>
 Middle<Real> middle(const Matrix3<Real>& B) {
     Eigen::Quaternion<Real> p(B);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
-    // Halfway between (1, 0) and p.
+    // The quaternion halfway between (1, 0) and p.
     const Eigen::Quaternion<Real> half(1 + p.w(), p.x(), p.y(), p.z());
     const Vector3<Real> t2 = half.vec() / half.w();  // tan(|θ|/4) θ/|θ|
     return {half.normalized().toRotationMatrix(), t2};

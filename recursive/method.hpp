@@ -1,28 +1,33 @@
-// The ladder of methods. All solve one saddle-point system per step; they differ in what they leave out of
-// it:
+// The stepping methods and their settings.
+// Each method solves one saddle-point system per step; they differ in the terms that they leave
+// out.
 //
-//   rung        right-hand side                                  matrix          solves  order to the truth
-//   published   what (29) carries over; constraints (7)          K of (19)       1       0
-//   closed      + -Φ(qⁿ) in the lower row                        K               1       0
-//   balanced    + true f_elast(qⁿ), f_ext(qⁿ) instead of sums    K               1       1
-//   tangent     the same                                         ∂(forces)/∂q    1       2
-//   chord       the same, then once more with the same factors   ∂(forces)/∂q    1 (2)   3
-//   midpoint    the same, matrix taken half a step ahead         ∂(forces)/∂q    2       3
-//   adaptive    tangents, with the step size from its own error estimate
-//   series      no steps: the branch as a power series, to any order with one matrix (series/path.hpp)
+//   method      right-hand side                                  matrix         solves  order
+//   published   what (29) carries over; constraints (7)          K of (19)      1       0
+//   closed      + -Φ(qⁿ) in the lower row                        K              1       0
+//   balanced    + true f_elast(qⁿ), f_ext(qⁿ) instead of sums    K              1       1
+//   tangent     the same                                         ∂(forces)/∂q   1       2
+//   chord       the same, then once more with the same factors   ∂(forces)/∂q   1 (2)   3
+//   midpoint    the same, matrix taken half a step ahead         ∂(forces)/∂q   2       3
+//   adaptive    tangent steps with step-size control by an error estimate
+//   series      the branch as a power series (asymptotic numerical method, Cochelin 1994), to any
+//               order with one matrix (series/path.hpp)
 //
-// A method that starts each step from the true residual does not accumulate: its error at a point is the
-// error of the last step, so an order p in one step is the order p at the end.
+// The order is that of convergence to the true equilibrium; 0: the limit is another configuration.
 //
-// Curves have knots. A step of equal size that goes over one ends, at that one point, with an error of order
+// A method that starts each step from the true residual does not accumulate errors: the error at a
+// point is that of the last step, so an order p in one step is the order p at the end.
 //
-//   rung                  slope jumps (a stop closes)    curvature jumps (a table)
+// Force curves have knots. An equal step across a knot has, at that one point, an error of order
+//
+//   method                slope jumps (a stop closes)    curvature jumps (a table)
 //   balanced, tangent     1                              2
-//   chord                 1                              3, its second solve knows the piece behind
+//   chord                 1                              3, the second solve uses the next piece
 //   midpoint              1                              2
 //
-// and two steps later has its own again. In published and closed, which add up what each step stored, the error
-// of the step stays: order 1, added to the gap. Adaptive ends a step on every knot (landing.hpp) and loses nothing.
+// and two steps later the method has its own order again. In published and closed, which sum stored
+// increments, the error of the step remains: order 1, added to the gap. Adaptive ends a step on
+// every knot (landing.hpp) and keeps its order.
 #pragma once
 
 #include <array>
@@ -34,15 +39,15 @@
 
 namespace elastocheck::recursive {
 
-// What of the forces stored by earlier steps turns with the bodies. The published sum turns nothing but the
-// load's lever.
+// Which forces stored by earlier steps rotate with the bodies. In the published sum only the lever
+// of the load follows.
 struct Follow {
-    bool lever =
-        false;  // the stored force of an element acts at the present position of its attachment points
-    bool axis = false;  // ... and points where the element's law says now, as large as it says
-    bool load =
-        true;  // the load already applied acts at the present position of its point; a follower turns with
-               // its body, since f_ext of (28) is that of the present configuration
+    bool lever = false;  // the stored force of an element acts at the current attachment points
+    // the stored force takes the current direction and size of the element's law
+    bool axis = false;
+    // The applied load acts at the current position of its point; a follower rotates with its body,
+    // since f_ext of (28) is that of the current configuration.
+    bool load = true;
 
     friend bool operator==(const Follow&, const Follow&) = default;
 };
@@ -58,10 +63,11 @@ struct Consistent {
     enum class Solve {
         once,
         corrected,  // once more with the same factors
-        midpoint    // once more with the matrix from half a step ahead, at the price of its factorisation
+        // a second solve with the matrix half a step ahead, at the cost of its factorisation
+        midpoint
     } solve = Solve::once;
 };
-// Steps of its own.
+// Variable step size.
 struct Adaptive {
     double length_tolerance = 1e-5;     // error of any body's origin [m] ...
     double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
@@ -71,7 +77,7 @@ using Series = series::Options;
 using MethodKind = std::variant<Linear, Consistent, Adaptive, Series>;
 struct Method {
     std::string_view name = "published";
-    double formal_order = 0;  // to the truth
+    double formal_order = 0;  // of convergence to the true equilibrium
     MethodKind kind = Linear{};
 };
 
@@ -86,7 +92,7 @@ inline constexpr std::array methods{
     Method{"series", 0, Series{}},
 };
 
-// Whether the method takes as many equal steps as it is told.
+// Whether the method takes the requested number of equal steps.
 constexpr bool has_steps(const Method& method) {
     return std::holds_alternative<Linear>(method.kind) || std::holds_alternative<Consistent>(method.kind);
 }

@@ -1,5 +1,6 @@
-// The paper's loop as it is printed, for reading beside eq. (29) and for checking the sweep (sweep.hpp),
-// which does the same with factors that know where the zeros are, and does more besides.
+// The paper's loop as printed, for reading beside eq. (29).
+// It is the reference for the sweep (sweep.hpp), which solves the same equations and has more
+// options.
 #pragma once
 
 #include <vector>

@@ -8,27 +8,27 @@
 namespace elastocheck::recursive {
 namespace {
 
-using Mask = std::array<bool, 3>;  // which components of a vector can be other than zero
+using Mask = std::array<bool, 3>;  // components of a vector that are structural non-zeros
 constexpr Mask none{false, false, false}, all{true, true, true};
 
 Mask mask(BodyId body, const Eigen::Vector3d& fixed) {
     if (body != ground) return fixed.isZero(0) ? none : all;
     return {fixed.x() != 0, fixed.y() != 0, fixed.z() != 0};
 }
-// u × v of a vector that may point anywhere.
+// u × v for any direction u.
 Mask cross(const Mask& v) { return {v[1] || v[2], v[2] || v[0], v[0] || v[1]}; }
 Mask both(const Mask& u, const Mask& v) { return {u[0] || v[0], u[1] || v[1], u[2] || v[2]}; }
 bool has_lever(const Point& point) { return point.body == ground || !point.s_local.isZero(0); }
 
 struct Touched {
     int n;                                 // 6nb
-    std::vector<std::vector<int>> column;  // the rows of every one, as they come [6nb + m]
+    std::vector<std::vector<int>> column;  // rows of each column, unsorted [6nb + m]
 
     void entry(int i, int j) {
         column[static_cast<std::size_t>(j)].push_back(i);
         column[static_cast<std::size_t>(i)].push_back(j);
     }
-    // The halves of a body: where Δr and Δπ begin, -1 for what is not there.
+    // The halves of a body: start of Δr and of Δπ, -1 for ground.
     static int r(BodyId b) { return b == ground ? -1 : 6 * b; }
     static int pi(BodyId b) { return b == ground ? -1 : 6 * b + 3; }
     void block(int a, int b) {
@@ -52,12 +52,12 @@ void touch(Touched& t, const AxialSpring& e) {
     t.among({t.r(e.i.body), has_lever(e.i) ? t.pi(e.i.body) : -1, t.r(e.j.body),
              has_lever(e.j) ? t.pi(e.j.body) : -1});
 }
-// The frame rides on i: the force turns with it, and its lever reaches to p_j.
+// The frame is fixed in i: the force rotates with it, and its lever reaches to p_j.
 void touch(Touched& t, const Bushing& e) {
     t.among({t.r(e.i.body), t.pi(e.i.body), t.r(e.j.body), t.pi(e.j.body)});
 }
 
-// Each number once, rising.
+// Sorts and removes duplicates.
 void sort_once(std::vector<int>& numbers) {
     std::ranges::sort(numbers);
     numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
@@ -89,7 +89,7 @@ void touch(Touched& t, const PointInPlane& c, int k) {
 }
 void touch_couple(Touched& t, BodyId i, BodyId j, const Mask& u_i, const Mask& u_j, int k) {
     for (const BodyId b : {i, j}) {
-        // u_i × u_j: one of them is fixed in a body, and points anywhere.
+        // u_i × u_j: one of them is fixed in a moving body and may have any direction.
         t.row(k, t.pi(b), i == ground ? cross(u_i) : j == ground ? cross(u_j) : all);
         t.block(t.pi(b), t.pi(i));
         t.block(t.pi(b), t.pi(j));
@@ -122,7 +122,7 @@ Pattern pattern(const Model& model) {
         std::visit(overloaded{
                        [](const DeadForce&) {},
                        [](const DeadMoment&) {},
-                       // It turns with its body.
+                       // The force rotates with its body.
                        [&](const FollowerForce& f) { t.block(t.r(f.at.body), t.pi(f.at.body)); },
                        [](const FollowerMoment&) {},
                    },

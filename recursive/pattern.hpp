@@ -1,6 +1,7 @@
-// Which entries of eq. (24), with the consistent tangent in place of K, can be other than zero: what every
-// element and constraint touches, by halves of bodies (Δr or Δπ) and rows of Φ. A point in the origin of its
-// body has no lever, and what is fixed in the ground keeps its zeros.
+// Sparsity pattern of eq. (24), with the consistent tangent in place of K.
+// It holds the entries of every element and constraint, by halves of bodies (Δr or Δπ) and rows of
+// Φ. A point in the origin of its body has no lever, and what is fixed in the ground has structural
+// zeros.
 #pragma once
 
 #include "models/model.hpp"
@@ -12,7 +13,7 @@ namespace elastocheck::recursive {
 // The entries of [(6nb + m) × (6nb + m)], on any branch.
 Pattern pattern(const Model& model);
 
-// The matrix itself, all zero: its blocks.
+// The zero matrix with the blocks of the model.
 SaddleMatrix<double> saddle_matrix(const Model& model);
 
 }  // namespace elastocheck::recursive

@@ -1,9 +1,11 @@
-// In which order the entries of a matrix are taken as pivots: step by step the one that fills in least (Markowitz:
-// smallest (entries in its row - 1)(entries in its column - 1)) among those no smaller than a tenth of their column.
+// Pivot order of a sparse LU by the Markowitz criterion (1957) with threshold pivoting.
+// The pivot has the smallest (entries in its row - 1)(entries in its column - 1) among entries of
+// at least a tenth of the largest in their column.
 //
-// Of a small matrix every entry that is left is looked at, for every pivot. Of a large one a few of the shortest
-// columns (Zlatev), so that the search costs about what the elimination does: both go along what can be other than
-// zero. On trees of bodies the few fill in within 4 % of what all do; from sixty unknowns on they cost half of it.
+// For a small matrix every remaining entry is a candidate for every pivot. For a large one only a
+// few of the shortest columns are searched (Zlatev 1980), so that the search costs about as much as
+// the elimination. On trees of bodies the fill of the restricted search is within 4 % of that of
+// the full search; from sixty unknowns on it costs half as much.
 #pragma once
 
 #include <algorithm>
@@ -14,15 +16,15 @@
 
 namespace elastocheck::recursive {
 
-// Which entries of a square matrix may be other than zero, column by column, rows rising.
+// Sparsity pattern of a square matrix, compressed by columns, rows ascending.
 struct Pattern {
     int size = 0;
-    std::vector<int> first;  // of every column, and where the last one ends [size + 1]
-    std::vector<int> row;    // of every entry
+    std::vector<int> first;  // index of each column's first entry, and the end [size + 1]
+    std::vector<int> row;    // of each entry
 
     std::size_t entries() const { return row.size(); }
 };
-// Which entry (i, j) is; -1 where it is none.
+// Number of the entry (i, j); -1 where the pattern has none.
 inline int entry_at(const Pattern& pattern, int i, int j) {
     const auto from = pattern.row.begin() + pattern.first[static_cast<std::size_t>(j)],
                to = pattern.row.begin() + pattern.first[static_cast<std::size_t>(j) + 1],
@@ -33,23 +35,24 @@ inline bool has_entry(const Pattern& pattern, int i, int j) { return entry_at(pa
 
 template <class Real>
 struct PivotSearch {
-    // What was found, in numbers of A: the k-th pivot, and what its column and row had beside it (fill included).
+    // Result, in row and column numbers of A: the k-th pivot, and the other entries of its column
+    // and row (fill included).
     std::vector<int> row, col, below, first_below, right, first_right;
 
-    // While every entry is looked at: the matrix itself, and where it is filled ...
+    // Workspace of the full search: the matrix and its filled entries ...
     std::vector<Real> W;
     std::vector<char> filled;
-    std::vector<long> in_row, in_column;  // ... how many entries a row and a column still have
-    std::vector<Real> largest;            // ... and the largest of a column
+    std::vector<long> in_row, in_column;  // ... remaining entries per row and column
+    std::vector<Real> largest;            // ... and the largest entry of a column
 
-    static constexpr Real least_pivot = Real(0.1);  // as a share of its column
-    static constexpr int exhaustive = 60;           // up to this size every entry is looked at
-    static constexpr int columns = 4;               // ... and beyond so many columns, for every pivot
+    static constexpr Real least_pivot = Real(0.1);  // as a fraction of its column's largest entry
+    static constexpr int exhaustive = 60;           // up to this size the full search is used
+    static constexpr int columns = 4;               // ... and beyond it this many columns per pivot
 };
 
 namespace detail {
 
-// Every entry, for every pivot.
+// Full search: every remaining entry for every pivot.
 template <class Real>
 void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* values) {
     const auto n = static_cast<std::size_t>(pattern.size);
@@ -69,7 +72,7 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
             search.W[at] = values[e];
         }
     }
-    // What is still to go is the block right and below of (k, k).
+    // The remaining matrix is the block right of and below (k, k).
     const auto measure_column = [&](std::size_t c, std::size_t k) {
         search.in_column[c] = 0;
         search.largest[c] = 0;
@@ -117,8 +120,8 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
         std::swap(search.col[k], search.col[best_c]);
         std::swap(search.in_column[k], search.in_column[best_c]);
         std::swap(search.largest[k], search.largest[best_c]);
-        // A singular matrix is told by its pivots; the next one of its pattern need not be, and fills in all
-        // the same.
+        // The zero pivot reports a singular matrix. A later matrix of this pattern may be regular,
+        // so its fill is included.
         search.filled[k * n + k] = 1;
         for (std::size_t r = k + 1; r < n; ++r) {
             if (!search.filled[r * n + k]) continue;
@@ -146,7 +149,7 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     }
 }
 
-// Rows or columns by how many entries they have: a list for each number, the one last changed first.
+// Rows or columns in linked lists by their number of entries; the last one changed is first.
 struct ByCount {
     std::vector<int> head, next, previous, count;
 
@@ -158,7 +161,7 @@ struct ByCount {
         if (next[at(k)] >= 0) previous[at(next[at(k)])] = previous[at(k)];
         count[at(k)] = -1;
     }
-    void put(int k, std::size_t entries) {  // an empty one is not left out: its matrix is singular
+    void put(int k, std::size_t entries) {  // an empty one stays in: its matrix is singular
         take_out(k);
         count[at(k)] = static_cast<int>(entries);
         previous[at(k)] = -1;
@@ -168,7 +171,7 @@ struct ByCount {
     }
 };
 
-// What is left of the matrix: the entries of the columns with their values, of the rows without.
+// The remaining matrix: columns with their values, rows without.
 template <class Real>
 struct Left {
     struct Entry {
@@ -188,7 +191,8 @@ struct Pivot {
     Real value = 0;
 };
 
-// The best pivot of the first few columns, the shortest first; row -1 where no column has other entries than zeros.
+// The best pivot of the first few columns, shortest first; row -1 where all remaining entries are
+// zero.
 template <class Real>
 Pivot<Real> best_of_few(Left<Real>& left, const ByCount& columns) {
     Pivot<Real> best;
@@ -212,7 +216,7 @@ Pivot<Real> best_of_few(Left<Real>& left, const ByCount& columns) {
     return best;
 }
 
-// A few columns, for every pivot.
+// Restricted search: a few columns for every pivot.
 template <class Real>
 void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* values) {
     const auto n = static_cast<std::size_t>(pattern.size);
@@ -231,13 +235,14 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     std::vector<char> row_is_left(n, 1);
     std::size_t first_left = 0;
     std::vector<Real> multiplier(n, 0);
-    std::vector<char> below(n, 0), met(n, 0);  // rows of the pivot's column; of those, the ones a column has
+    // marks: rows of the pivot's column; those of them that the current column has
+    std::vector<char> below(n, 0), met(n, 0);
 
     for (std::size_t k = 0; k < n; ++k) {
         Pivot<Real> pivot = best_of_few(left, columns);
         if (pivot.row < 0) {
-            // A singular matrix is told by its pivots; the next one of its pattern need not be, and fills in all
-            // the same.
+            // The zero pivot reports a singular matrix. A later matrix of this pattern may be
+            // regular, so its fill is included.
             while (!row_is_left[first_left]) ++first_left;
             pivot.row = static_cast<int>(first_left);
             for (std::size_t c = 0; pivot.col < 0; ++c)
@@ -291,7 +296,7 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
 
 }  // namespace detail
 
-// Chooses the pivots for matrices of this pattern from typical values.
+// Chooses the pivots for matrices of this pattern, from typical values.
 template <class Real>
 void search_pivots(PivotSearch<Real>& search, const Pattern& pattern, const Real* values) {
     for (auto* list : {&search.below, &search.right, &search.first_below, &search.first_right}) list->clear();

@@ -14,10 +14,11 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double rounding = 1e-12;       // of a number of order one that would be zero if drawn exactly
-constexpr double pivot_threshold = 0.1;  // of the largest entry of a row: what is as good a pivot
+// of a value of order one that would be zero in exact arithmetic
+constexpr double rounding = 1e-12;
+constexpr double pivot_threshold = 0.1;  // of the largest entry of a row: acceptable pivots
 
-// A vector that is nearly all zeros: its values, and where they have been other than zero.
+// Sparse accumulator: a dense vector with the list of its non-zero positions.
 struct Scattered {
     VectorXd value;
     std::vector<int> touched;
@@ -25,7 +26,7 @@ struct Scattered {
 
     explicit Scattered(Eigen::Index size)
         : value(VectorXd::Zero(size)), is_touched(static_cast<std::size_t>(size), 0) {}
-    // Whether the place is new.
+    // Returns whether the position is new.
     bool add(int at, double what) {
         value[at] += what;
         if (is_touched[static_cast<std::size_t>(at)]) return false;
@@ -42,7 +43,7 @@ struct Scattered {
         for (const int at : touched) sum += value[at] * value[at];
         return std::sqrt(sum);
     }
-    // As a column of unit length, without what is rounding.
+    // Appends the vector as a column of unit length, without entries at rounding level.
     void append_to(std::vector<Eigen::Triplet<double>>& entries, int column) const {
         const double whole = norm();
         for (const int at : touched)
@@ -55,8 +56,8 @@ struct Entry {
     double value;
 };
 
-// What is left of a row when the rows before it are taken out: entries beside the pivot's column and those of the
-// pivots before; what was taken of which; its pivot.
+// A row after elimination of the rows before it: entries outside the pivot columns, the multipliers
+// used, and its pivot.
 struct Reduced {
     std::vector<Entry> entries, taken;
     int pivot = -1;
@@ -65,15 +66,17 @@ struct Reduced {
 
 }  // namespace
 
-// Elimination in the order of the rows, the pivot of each row chosen among its columns: the largest would do; of
-// those nearly as large the one that the fewest rows to come touch keeps these sparse. In a chain it is one of the
-// body that is done with: else every row would have something of every joint before it. What is left of row k is
+// Gaussian elimination in the order of the rows, with a pivot column for each row. Among the
+// columns whose entry is at least `pivot_threshold` times the largest, the one with the fewest
+// entries in later rows is chosen, which keeps the reduced rows sparse (in a chain this is a column
+// of a finished body; otherwise every row would fill with all joints before it). The remainder of
+// row k is
 //
-//   u_k = row k - Σ_j l_kj u_j     over the j < k that do not repeat,
+//   u_k = row k - Σ_j l_kj u_j     over the independent rows j < k,
 //
-// and nothing is left of a row that repeats. No combination of rows is nearer to row k than its distance from them,
-// so what counts as repeated here is so by any measure. Backwards through the same l, from row k alone: its
-// dependency in the rows themselves.
+// and is zero for a dependent row. No combination of rows is nearer to row k than its distance from
+// their span, so a row that is dependent here is so by any measure. Back substitution with the same
+// l, starting from row k alone, gives its dependency in terms of the rows themselves.
 Repeated repeated(const Rows& rows) {
     const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
     std::vector<int> to_come(n, 0),
@@ -149,9 +152,9 @@ Repeated repeated(const Rows& rows) {
     return result;
 }
 
-// SuiteSparseQR eliminates column by column in an order that fills in little, and sets aside each column that depends
-// on those before it (Heath's method): A E = Q ⎡R₁ R₂⎤. A column r of R₂ is R₁ c, so that Eᵀ x = (-c, 1) is a null
-// vector; where R is sparse so is c.
+// SuiteSparseQR factorises in a fill-reducing column order and sets aside each column that depends
+// on those before it (Heath's method): A E = Q ⎡R₁ R₂⎤. A column r of R₂ is R₁ c, so that
+// Eᵀ x = (-c, 1) is a null vector; where R is sparse so is c.
 Columns null_space(const Rows& rows) {
     const int n = static_cast<int>(rows.cols());
     using Long = SuiteSparse_long;
@@ -177,7 +180,8 @@ Columns null_space(const Rows& rows) {
             while (!later.empty()) {
                 const int k = later.top();
                 later.pop();
-                const Long diagonal = first[k + 1] - 1;  // the last of a column of a triangle, as rows rise
+                // last entry of a column of the triangle, since rows ascend
+                const Long diagonal = first[k + 1] - 1;
                 x.value[k] /= value[diagonal];
                 for (Long e = first[k]; e < diagonal; ++e) add(row[e], -value[e] * x.value[k]);
             }
@@ -201,9 +205,10 @@ Columns null_space(const Rows& rows) {
 // ⎡ I   Aᵀ ⎤ ⎧ left ⎫   ⎧ f ⎫
 // ⎣ A   0  ⎦ ⎩  μ   ⎭ = ⎩ 0 ⎭
 //
-// solved by improving on it with what is like it but has -ε² in place of 0: eliminating μ there leaves I + Aᵀ A / ε²,
-// which couples bodies that share a row and no others. Where A stretches a motion by σ, each round leaves the share
-// ε² / (ε² + σ²) of what was missing, and of its own rounding 1 / ε² times that of a number.
+// Iterative refinement with a nearby regular matrix that has -ε² in place of 0. Eliminating μ there
+// leaves I + Aᵀ A / ε², which couples only bodies that share a row. In a direction with singular
+// value σ each round leaves the fraction ε² / (ε² + σ²) of the error, plus its own rounding times
+// 1 / ε².
 VectorXd left_free(const Rows& rows, const VectorXd& f) {
     constexpr double e2 = 1e-12, enough = 1e-14;
     constexpr int most_rounds = 50;

@@ -1,4 +1,4 @@
-// From multipliers to the wrench in each joint, eq. (22).
+// Joint reaction wrenches from Lagrange multipliers, eq. (22).
 #pragma once
 
 #include "models/equilibrium_path.hpp"
@@ -6,9 +6,9 @@
 
 namespace elastocheck::recursive {
 
-// f_ext = f_elast + Φ_qᵀ λ, so what the joint puts on its body i is -(Φ_qᵀ λ)_i, a force with a moment about
-// the body's origin; moved here to the joint's point, p = r + s:  M_p = M_r - s × F. Ground is a body like
-// any other. Returns |Φ|², which falls out on the way.
+// f_ext = f_elast + Φ_qᵀ λ, so the joint exerts -(Φ_qᵀ λ)_i on its body i, a force with a moment
+// about the body's origin. The wrench is moved to the joint's point, p = r + s:  M_p = M_r - s × F.
+// Ground is a body like the others. Returns |Φ|², computed from the same rows.
 template <class Real>
 Real joint_wrenches(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
                     const Vector<Real>& lambda, std::vector<Wrench>& wrenches) {

@@ -1,5 +1,5 @@
-// Where the recorded points go: all into the path, or, where somebody visits them, one after the other through the one
-// room that there is. It is made beforehand, so that the stepping allocates nothing.
+// Output of recorded points: stored in the path, or streamed to a visitor.
+// Streamed points share one preallocated buffer. The memory is allocated before the first step.
 #pragma once
 
 #include "recursive/march.hpp"

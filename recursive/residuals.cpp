@@ -24,7 +24,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         add(joint.i, +1);
         add(joint.j, -1);
     }
-    // std::max would drop a NaN; once here, it stays.
+    // std::max would drop a NaN; a NaN in `worst` is kept.
     const auto worse = [](double& worst, double value) {
         if (!std::isnan(worst) && !(std::abs(value) <= worst)) worst = std::abs(value);
     };

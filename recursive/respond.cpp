@@ -28,7 +28,8 @@ void check(const Model& model, const Equilibrium& state, std::span<const Disturb
                    disturbance);
 }
 
-// The right-hand side of one disturbance: the wrench above, or what the joint is asked to close below.
+// Right-hand side of one disturbance. A wrench enters the upper rows. A motion of a joint enters
+// the lower row as -∂Φ/∂c and the upper rows as the change of its reaction, -∂(Φ_qᵀ λ)/∂c.
 void disturb(March<double>& s, const Disturbance& disturbance) {
     s.upper.setZero();
     s.lower.setZero();
@@ -39,15 +40,20 @@ void disturb(March<double>& s, const Disturbance& disturbance) {
                    },
                    [&](const Motion& motion) {
                        const std::size_t k = constraint_of(s.model, motion);
-                       s.lower[s.inputs.row[k]] =
-                           -slope<double>(s.model.constraints[k].kind, s.inputs.offset[k], s.q);
+                       const int row = s.inputs.row[k];
+                       const Row<double> d =
+                           rate<double>(s.model.constraints[k].kind, s.inputs.offset[k], s.q);
+                       s.lower[row] = -d.Phi;
+                       if (d.i != ground) s.upper.segment<6>(6 * d.i) -= s.lambda[row] * d.on_i();
+                       if (d.j != ground) s.upper.segment<6>(6 * d.j) -= s.lambda[row] * d.on_j();
                    },
                },
                disturbance);
 }
 
-// What the border of a held direction took upon itself in the last back-substitution, b μ of saddle_point.hpp without the
-// scaling: a force on an idle mode, as |W⁻¹ f|, or what redundant constraints stay open by.
+// Load carried by the border of a held direction in the last back-substitution, b μ of
+// saddle_point.hpp without the scaling: a force on an idle mode, as |W⁻¹ f|, or the gap of
+// redundant constraints.
 double taken_by_border(const SaddlePoint<double>& system, int c) {
     const Held<double>& held = system.held;
     const double mu = system.solution[system.n + system.m + c];
@@ -61,9 +67,9 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
     return std::sqrt(sum);
 }
 
-// A direction that is held answers nothing, so its border must have nothing to answer. μ tells of both: of what pushes a
-// motion that is idle, and of one that is idle in K and no longer in the tangent.
-// A wrench asks nothing of joints that hold the same twice: they answer it, in a way that nothing decides.
+// A held direction does not respond, so its border must carry no load. μ detects a force on an idle
+// mode, and a mode that is idle in K but not in the tangent. For a wrench, redundant combinations
+// are not checked: redundant joints carry it, in an undetermined distribution.
 Outcome judge_border(March<double>& s, const Disturbance& disturbance) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0) return Outcome::converged;
@@ -81,8 +87,8 @@ Outcome judge_border(March<double>& s, const Disturbance& disturbance) {
     return Outcome::converged;
 }
 
-// dq of minimum norm: the border was perpendicular to idle modes as they were before the last factorisation, which has
-// renewed them (saddle_point.hpp).
+// Removes the idle part of dq (minimum norm): the border held the idle modes as they were before
+// the last factorisation, which has updated them (saddle_point.hpp).
 void leave_out_idle_motion(March<double>& s) {
     const Held<double>& held = s.system.held;
     for (int c = 0; c < held.idle; ++c) {
@@ -97,7 +103,7 @@ void leave_out_idle_motion(March<double>& s) {
     }
 }
 
-// The method's matrix at q, factorised.
+// Factorises the method's matrix at q.
 Outcome factorise(March<double>& s, const Method& method) {
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
     if (std::holds_alternative<Linear>(method.kind)) return Outcome::converged;

@@ -1,4 +1,5 @@
-// How a state answers small disturbances: one more use of the matrix that a method factorises at every step.
+// Linear response (compliance) of a state to small disturbances.
+// It uses the matrix that a method factorises at every step.
 #pragma once
 
 #include <span>
@@ -8,22 +9,25 @@
 
 namespace elastocheck::recursive {
 
-// (dr, dπ) of every body for a unit of each disturbance, at the poses and the load factor of `state`:
+// Response (dr, dπ) of every body to a unit of each disturbance, at the poses and load factor of
+// `state`:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ dq ⎫   ⎧ (f, s × f + m) ⎫        ⎧    0    ⎫
-// ⎣ Φ_q   0   ⎦ ⎩ dλ ⎭ = ⎩       0        ⎭   or   ⎩ -∂Φ/∂c  ⎭ ,   c the offset that is moved      (24)
+// ⎣ Φ_q   0   ⎦ ⎩ dλ ⎭ = ⎩       0        ⎭   or   ⎩ -∂Φ/∂c  ⎭ ,   c the offset that moves    (24)
 //
-// with K of (19) where the method has it, which knows nothing of the forces already stored: published, closed,
-// balanced. Else with the consistent tangent ∂G/∂q(q, λ) in its place (tangent.hpp), λ from one solve with K first:
+// with K of (19) for the methods that use it and ignore stored forces: published, closed, balanced.
+// Else the consistent tangent ∂G/∂q(q, λ) replaces K (tangent.hpp), with λ from one solve with K:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
-// ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      whose Δq is zero where q is an equilibrium      (24)
+// ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
 //
-// One factorisation (two with the tangent), one back-substitution a disturbance; in double precision.
+// One factorisation (two with the tangent), one back-substitution per disturbance; in double
+// precision.
 //
-// singular, not_finite: the matrix. loaded_idle_mode: what holds an idle mode would have to answer the disturbance.
-// inconsistent_constraints: redundant joints do not let the offset move. std::invalid_argument: what is disturbed is not of
-// the model, the joint has no offset, the state is of another model; or as solve() throws it.
+// Outcomes: singular and not_finite refer to the matrix. loaded_idle_mode: the disturbance loads an
+// idle mode. inconsistent_constraints: redundant joints do not allow the offset to move. Throws
+// std::invalid_argument where the disturbed object is not in the model, the joint has no offset, or
+// the state is of another model; else as solve().
 Response respond(const Model& model, const Branch& branch, const Equilibrium& state,
                  std::span<const Disturbance> disturbances, const Method& method, const Analysis& analysis);
 Response respond(const Model& model, const Branch& branch, const Equilibrium& state,

@@ -1,10 +1,11 @@
-// The matrix of eq. (24), kept where bodies and constraints meet:
+// Block-sparse storage of the matrix of eq. (24):
 //
-// ⎡ K    Φ_qᵀ ⎤     K      a 6 × 6 block for every body, and for every ordered pair that something connects
-// ⎣ Φ_q   0   ⎦     Φ_q    two parts of 6 for every row, one for each of its bodies; Φ_qᵀ is the same again
+// ⎡ K    Φ_qᵀ ⎤     K      a 6 × 6 block for every body, and for every ordered connected pair
+// ⎣ Φ_q   0   ⎦     Φ_q    two parts of 6 for every row, one per body; Φ_qᵀ uses the same values
 //
-// so that it grows with the model and not with its square. What it is assembled from writes blocks by their row and
-// column, as if it were whole. Where a block lies is decided by the model alone (`saddle_matrix`, pattern.hpp).
+// Storage grows with the model and not with its square. Assembly writes blocks by row and column,
+// as in the full matrix. The positions of the blocks depend on the model alone (`saddle_matrix`,
+// pattern.hpp).
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -21,10 +22,11 @@ struct SaddleMatrix {
     int n = 0, m = 0;                         // 6nb, rows of Φ
     std::vector<int> first, neighbour;        // of every body, ascending: neighbour[first[b] ... first[b+1])
     std::vector<std::array<BodyId, 2>> ends;  // of every row of Φ: the bodies of its two parts
-    // Blocks column by column, those of the bodies, then those of their neighbours; then the parts of the rows.
+    // Blocks column by column: those of the bodies, then those of their neighbours; then the parts
+    // of rows.
     std::vector<Real> values;
 
-    // Where the block of two bodies begins in `values`; -1 where nothing connects them.
+    // Start of the block of two bodies in `values`; -1 where nothing connects them.
     int block_at(BodyId a, BodyId b) const {
         if (a == b) return 36 * a;
         const auto from = neighbour.begin() + first[static_cast<std::size_t>(a)],
@@ -35,21 +37,21 @@ struct SaddleMatrix {
     int part_at(int row, int end) const { return 36 * blocks() + 12 * row + 6 * end; }
     int blocks() const { return n / 6 + static_cast<int>(neighbour.size()); }
 
-    // A piece of K, as of the whole matrix; it does not reach over the edge of a pair's block.
+    // A part of K, addressed as in the full matrix; it must lie within the block of one pair.
     template <int rows, int columns>
     auto block(Eigen::Index i, Eigen::Index j) {
         const auto a = static_cast<int>(i), b = static_cast<int>(j);
         return Eigen::Map<Eigen::Matrix<Real, rows, columns>, 0, Eigen::OuterStride<6>>(
             values.data() + block_at(a / 6, b / 6) + 6 * (b % 6) + a % 6);
     }
-    // What a row of Φ_q has of one of its bodies.
+    // The part of a row of Φ_q for one of its two bodies.
     Eigen::Map<Vector6<Real>> part(int row, int end) {
         return Eigen::Map<Vector6<Real>>(values.data() + part_at(row, end));
     }
     Eigen::Map<const Vector6<Real>> part(int row, int end) const {
         return Eigen::Map<const Vector6<Real>>(values.data() + part_at(row, end));
     }
-    // Where entry (i, j) of the whole lies in `values`; -1 where there can be none.
+    // Position of entry (i, j) of the full matrix in `values`; -1 for a structural zero.
     int at(int i, int j) const {
         if (i < n && j < n) {
             const int block = block_at(i / 6, j / 6);
@@ -69,7 +71,7 @@ struct SaddleMatrix {
     }
 };
 
-// Calls sink(i, j, where in `values`) for every entry of the whole matrix that is kept, both halves.
+// Calls sink(i, j, position in `values`) for every stored entry of the full matrix, both halves.
 template <class Real, class Sink>
 void for_each_entry(const SaddleMatrix<Real>& M, Sink&& sink) {
     const auto block = [&](BodyId a, BodyId b, int from) {
@@ -92,7 +94,7 @@ void for_each_entry(const SaddleMatrix<Real>& M, Sink&& sink) {
         }
 }
 
-// f = Φ_qᵀ λ [6nb], with the Φ_q of the matrix. Nothing is allocated.
+// f = Φ_qᵀ λ [6nb], with the Φ_q of the matrix. Allocates nothing.
 template <class Real, class Lambda>
 void constraint_force(const SaddleMatrix<Real>& M, const Lambda& lambda, Vector<Real>& f) {
     f.setZero(M.n);
@@ -103,7 +105,7 @@ void constraint_force(const SaddleMatrix<Real>& M, const Lambda& lambda, Vector<
         }
 }
 
-// The largest on the diagonal of K.
+// Largest absolute value on the diagonal of K.
 template <class Real>
 Real stiffest(const SaddleMatrix<Real>& M) {
     Real largest = 0;
@@ -112,7 +114,7 @@ Real stiffest(const SaddleMatrix<Real>& M) {
     return largest;
 }
 
-// The whole of it, both halves [(n+m) × (n+m)]; what happens to be zero is there as a zero.
+// The full matrix, both halves [(n+m) × (n+m)]; stored zeros are kept.
 template <class Real>
 Eigen::SparseMatrix<Real> sparse(const SaddleMatrix<Real>& M) {
     std::vector<Eigen::Triplet<Real>> entries;

@@ -3,19 +3,20 @@
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩ 0 ⎭      [(6nb + m) × (6nb + m)]      (24)
 //
-// The raw matrix mixes N/m, N·m and pure numbers, so it is scaled symmetrically to M̂ = D M D with unit rows
-// (Ruiz) before anything is judged on it. D holds powers of two: scaling changes no digit.
+// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M D
+// with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two, so scaling causes no
+// rounding.
 //
-// A motion z that nothing resists (idle mode), or a combination y of constraints that says nothing new, makes
-// M singular in a direction that is known beforehand (diagnosis.hpp). It is held by bordering,
+// A motion z that nothing resists (idle mode), or a redundant combination y of constraints, makes M
+// singular in a direction known from the diagnosis (diagnosis.hpp). Bordering holds that direction,
 //
 // ⎡ M̂   b ⎤ ⎧ x̂ ⎫   ⎧ f̂ ⎫                       ⎡ M̂   b ⎤ ⎧ n ⎫   ⎧ 0 ⎫
-// ⎣ bᵀ  0 ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭    and, for next time,  ⎣ bᵀ  0 ⎦ ⎩ ν ⎭ = ⎩ 1 ⎭      b = (W² z, 0) or (0, y)
+// ⎣ bᵀ  0 ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭    and, for next time, ⎣ bᵀ  0 ⎦ ⎩ ν ⎭ = ⎩ 1 ⎭   b = (W² z, 0) or (0, y)
 //
-// with the same factors. bᵀ x = 0 is what singles out the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ
-// of minimum norm. n is the null vector of the present configuration and gives z (y) for the next step. Only
-// the Δq part of an idle n is kept (and the λ part of a redundant one): the other part is the constraint
-// error that the published method leaves, and feeding it back grows it.
+// with the same factors. bᵀ x = 0 selects the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ of
+// minimum norm. n is the null vector at the present configuration and gives z (y) for the next
+// step. Only the Δq part of an idle n is kept (and the λ part of a redundant one). The other part
+// is the constraint error of the published method, and feeding it back amplifies it.
 #pragma once
 
 #include <map>
@@ -25,21 +26,23 @@
 
 namespace elastocheck::recursive {
 
-// The directions that are held: idle modes first, then redundant combinations, each with the places where it may be
-// other than zero. Those that have places in common have them all in common, and follow each other.
+// Held directions: idle modes first, then redundant combinations, each with its places, which are
+// the entries that may be non-zero. Two directions share all their places or none; those that share
+// them are consecutive.
 template <class Real>
 struct Held {
-    int idle = 0;              // how many are idle modes
-    std::vector<int> first;    // of every direction, and where the last one ends [d + 1]
-    std::vector<int> with;     // the first of those that a direction shares its places with [d]
-    std::vector<int> row;      // of every entry, rising within a direction: whole bodies of an idle mode
-    std::vector<Real> value;   // z or y, physical units, unit in `weight`
+    int idle = 0;            // number of idle modes
+    std::vector<int> first;  // index of each direction's first entry, and the end [d + 1]
+    std::vector<int> with;   // first direction with the same places [d]
+    // of each entry, ascending within a direction; all six rows of a body for an idle mode
+    std::vector<int> row;
+    std::vector<Real> value;   // z or y, physical units, of unit norm in `weight`
     std::vector<Real> border;  // b in scaled coordinates, of unit length
 
     int size() const { return static_cast<int>(with.size()); }
     int begin(int c) const { return first[static_cast<std::size_t>(c)]; }
     int end(int c) const { return first[static_cast<std::size_t>(c) + 1]; }
-    // Where the entries of a body are among those of an idle mode; -1 where the mode leaves it alone.
+    // Position of a body's entries in an idle mode; -1 where the mode does not move the body.
     int at(int c, BodyId b) const {
         const auto from = row.begin() + begin(c), to = row.begin() + end(c);
         const auto found = std::lower_bound(from, to, 6 * b);
@@ -63,8 +66,8 @@ struct SaddlePoint {
     Vector<Real> scale;    // D, powers of two
     Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
     Held<Real> held;
-    // M̂ with its border, entry by entry of the pattern; where an entry of M lies among its values, and what it is
-    // multiplied by (0 in the border); where the two of each entry of the border are.
+    // M̂ with its border, in the order of the pattern: values, the scaling of each entry (0 in the
+    // border), its position in M, and the two positions of each border entry.
     std::vector<Real> values, scaling;
     std::vector<int> source;
     std::vector<std::array<int, 2>> border_at;
@@ -74,7 +77,8 @@ struct SaddlePoint {
     int borders() const { return held.size(); }
 };
 
-// D of the matrix M, by a few Ruiz sweeps: every row of D M D has its largest entry in (½, 2].
+// D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry in (½,
+// 2].
 template <class Real>
 Vector<Real> equilibration(const SaddleMatrix<Real>& M) {
     Vector<Real> d = Vector<Real>::Ones(M.n + M.m), largest(M.n + M.m);
@@ -98,7 +102,8 @@ auto weights(const SaddlePoint<Real>& system, int c) {
     };
 }
 
-// Makes the held directions unit, and those with places in common mutually perpendicular, in the norm W.
+// Makes the held directions orthonormal in the norm W; those without common places are orthogonal
+// already.
 template <class Real>
 void orthonormalise(SaddlePoint<Real>& system) {
     Held<Real>& held = system.held;
@@ -118,7 +123,7 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// The border of every held direction around the pattern of M.
+// Pattern of M bordered by the held directions.
 template <class Real>
 Pattern bordered(const Pattern& inner, const Held<Real>& held) {
     const int N = inner.size, d = held.size();
@@ -146,7 +151,7 @@ Pattern bordered(const Pattern& inner, const Held<Real>& held) {
     return all;
 }
 
-// Gathers M̂ and its border from M and what is held.
+// Computes M̂ and its border from M and the held directions.
 template <class Real>
 void scale_entries(SaddlePoint<Real>& system) {
     Held<Real>& held = system.held;
@@ -168,15 +173,17 @@ void scale_entries(SaddlePoint<Real>& system) {
         for (const int e : system.border_at[b]) values[e] = held.border[b];
 }
 
-// The places of the directions in the columns of `null_space`: of an idle mode the bodies that it moves, wherever
-// the branch leads; of a redundant combination all rows of the loops of joints that it is in (`loop` of every row:
-// joints of two loops know nothing of each other). Directions that share a place are given all of each other's.
+// Places of the directions in the columns of `null_space`. An idle mode has the bodies that it
+// moves, at any point of the branch. A redundant combination has all rows of its loops of joints
+// (`loop` of every row: joints of different loops are independent). Directions that share a place
+// get each other's places.
 inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
                            const Vector<double>& weight, int n, const std::vector<int>& loop) {
     using Column = Eigen::SparseMatrix<double>::InnerIterator;
     const auto at = [](auto k) { return static_cast<std::size_t>(k); };
     const auto d = static_cast<int>(null_space.cols());
-    // A place is a body, or, behind the bodies, a loop. Each remembers the first direction there.
+    // A place is a body or a loop (numbered after the bodies), with the first direction found
+    // there.
     const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
     std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
     std::vector<std::vector<int>> of_leader(at(d));
@@ -186,7 +193,7 @@ inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_spa
     };
     for (int c = 0; c < d; ++c) {
         leader[at(c)] = c;
-        std::map<int, double> share;  // squared, of each place
+        std::map<int, double> share;  // squared norm in each place
         double whole = 0;
         for (Column e(null_space, c); e; ++e) {
             const auto row = static_cast<int>(e.row());
@@ -212,7 +219,7 @@ inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_spa
     for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
     std::vector<int> order(at(d));
     for (int c = 0; c < d; ++c) order[at(c)] = c;
-    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations share nothing
+    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations have no common places
 
     Held<double> held;
     held.idle = idle;
@@ -234,9 +241,9 @@ inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_spa
     return held;
 }
 
-// Fixes the scaling from the matrix now in M, what to hold, `idle` modes first, then redundant combinations,
-// in the columns of `null_space` [(n+m) × d], and the order of elimination; `inner` is what of M can be other
-// than zero, `loop` the loop of joints of every row of Φ.
+// Fixes the scaling from the matrix now in M, the held directions in the columns of `null_space`
+// [(n+m) × d] (`idle` modes first, then redundant combinations), and the elimination order. `inner`
+// is the pattern of M, `loop` the loop of joints of every row of Φ.
 inline void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
                     const Pattern& inner, const std::vector<int>& loop) {
     const int N = system.n + system.m;
@@ -268,7 +275,7 @@ inline void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMa
     analyse(system.lu, pattern, system.values.data());
 }
 
-// The same system in another arithmetic, in the order of elimination of this one; not factorised yet.
+// The same system in another arithmetic, with this elimination order; not factorised.
 template <class Real>
 SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
     SaddlePoint<Real> system;
@@ -292,8 +299,8 @@ inline SaddlePoint<double> in_arithmetic(const SaddlePoint<double>& from) {
     return from;
 }
 
-// x = (Δq, λ) for the right-hand side (f, lower),
-// with the factors of the last `factorise`. Nothing is allocated.
+// Solves for x = (Δq, λ) with the right-hand side (f, lower) and the factors of the last
+// `factorise`. Allocates nothing.
 template <class Real>
 void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower,
                      Vector<Real>& x) {
@@ -305,14 +312,15 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
     x.array() = system.scale.array() * system.solution.head(n + m).array();
 }
 
-// Factorises the matrix now in M and renews what is held. Nothing is allocated. Returns the smallest over the
-// largest pivot of the scaled, bordered matrix; the caller judges it.
+// Factorises the matrix now in M and updates the held directions. Allocates nothing. Returns the
+// ratio of the smallest to the largest pivot of the scaled, bordered matrix, which the caller
+// checks.
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
     scale_entries(system);
     const Real pivot_ratio = factorise(system.lu, system.values.data());
 
-    // An answer to e_c of the border, at the places of the direction alone.
+    // The solution for e_c of the border, at the places of the direction only.
     Held<Real>& held = system.held;
     for (int c = 0; c < held.size(); ++c) {
         const int from = held.begin(c), count = held.end(c) - from;

@@ -1,5 +1,6 @@
-// From the design position to the equilibrium under what is held, t from 0 to 1 (march.hpp): preloads, static
-// loads, what the drivers start at, joints that are not closed as drawn.
+// Settling: homotopy from the design position to the equilibrium at the start of the branch.
+// t goes from 0 to 1 (march.hpp), under preloads, static loads, start values of drivers and joints
+// that are open as drawn.
 #pragma once
 
 #include "recursive/idle.hpp"
@@ -9,12 +10,12 @@
 
 namespace elastocheck::recursive {
 
-// Whether the design position, where it is an equilibrium, is also where the branch begins.
+// Whether no driver moves the start, so that a design position in equilibrium is the start.
 inline bool starts_as_drawn(const Branch& branch) {
     return std::ranges::all_of(branch.drivers, [](const Driver& driver) { return driver.start == 0; });
 }
 
-// What pushes an idle mode is asked where the modes are known best: as drawn.
+// Whether the forces load an idle mode, tested as drawn, where the modes are most accurate.
 template <class Real>
 bool pushes_idle_mode(const March<Real>& s) {
     Vector<Real> f_ext, f_elast;
@@ -27,8 +28,8 @@ bool pushes_idle_mode(const March<Real>& s) {
              rounding + Real(guard::share_per_error) * blur);
 }
 
-// Joints that are open as drawn, and that settling has not closed: an angle counts as closed on its own side
-// only (u_i·w = 0 has two).
+// Whether joints that are open as drawn are still open after settling. An angle counts as closed on
+// one side only (u_i·w = 0 has two solutions).
 template <class Real>
 bool stayed_open(const March<Real>& s, Real share) {
     const Real open = s.Phi_d.norm();
@@ -43,7 +44,7 @@ bool stayed_open(const March<Real>& s, Real share) {
     }
     return !(Phi.norm() <= share * open + rounding);
 }
-// What settling came to, where the joints were open: that they cannot be closed explains the rest.
+// Outcome of settling: joints that were open and cannot be closed explain other failures.
 template <class Real>
 Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
     if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
@@ -51,15 +52,15 @@ Outcome settled(const March<Real>& s, Outcome outcome, Real share) {
         return outcome;
     const bool was_open = s.Phi_d.norm() > Real(0);
     if (outcome != Outcome::converged) return was_open ? Outcome::inconsistent_constraints : outcome;
-    // What linear steps open that was closed is their error, not the joints'.
+    // A gap that linear steps open between closed joints is a step error, not inconsistency.
     return was_open && stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
 }
 
-// With the stiffness of (19): in one step where the design position is an equilibrium, which gives λ⁻¹; else
-// in `steps` of them, as the branch is gone.
+// Settles with the stiffness of (19): in one step where the design position is an equilibrium,
+// which gives λ⁻¹; else in `steps` steps, as on the branch.
 template <class Real>
 Outcome settle(March<Real>& s, const Linear& method, int steps) {
-    // What one linear step gets wrong is the square of its size: here less than rounding.
+    // The error of one linear step is the square of its size: below rounding for this size.
     const Real at_rest = Real(1e-6) * static_cast<Real>(s.length);
     for (const int N : {1, steps}) {
         s.consistent = false;
@@ -74,7 +75,7 @@ Outcome settle(March<Real>& s, const Linear& method, int steps) {
         s.element.clear();
         for (std::size_t k = 0; k < s.model.elastics.size(); ++k)
             s.element.push_back(element_force<Real>(s.model.elastics[k].kind, s.inputs.rest[k], s.q));
-        drive_at(s, Drive::start, Real(1), s.q);
+        drive_at(s, Drive::start, Real(1), s.q, s.lambda);
         if (s.upper.isZero(0) && s.lower.isZero(0)) {  // nothing is held: λ⁻¹ = 0
             go_to(s, {1, 0});
             return Outcome::converged;
@@ -85,25 +86,26 @@ Outcome settle(March<Real>& s, const Linear& method, int steps) {
         const bool rested = outcome == Outcome::converged && s.last.norm() <= at_rest;
         s.swings = 0;
         s.last.setZero();
-        // What the linear steps leave open falls with their number; more than half is not being closed.
+        // The gap left by linear steps falls with their number; a gap of more than half is not
+        // closing.
         if (rested || N == steps) return settled(s, outcome, Real(0.5));
     }
     return Outcome::converged;
 }
 
-// With the consistent tangent and the true forces: by steps of its own, each halved until it is believed,
-// and at the end to round-off.
+// Settles with the consistent tangent and the true forces: variable steps, each halved until
+// accepted, and Newton corrections down to round-off at the end.
 template <class Real>
 Outcome settle_truly(March<Real>& s) {
     s.consistent = true;
     go_to(s, {1, 0});
     if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
     const Real length = static_cast<Real>(s.length);
-    // On the way a step need only be near enough to the path for Newton's method to stay on it.
+    // Steps before the end need only stay in the convergence region of Newton's method.
     const Going<Real> going{Drive::start, Real(1e-4) * length, Real(1e-4)};
     Node<Real> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     go_to(s, {0, 0});
-    drive_at(s, Drive::start, Real(1), s.q);
+    drive_at(s, Drive::start, Real(1), s.q, s.lambda);
     if (!s.upper.isZero(0) || !s.lower.isZero(0)) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
@@ -124,8 +126,8 @@ Outcome settle_truly(March<Real>& s) {
             }
         }
     }
-    // To round-off: corrections fall quadratically until they are it. Where they begin stiffly they need not fall at once,
-    // and what does not come to rest has not settled.
+    // Corrections fall quadratically down to round-off. From a stiff start they need not fall at
+    // once. If they do not become small, the outcome is branch_lost.
     constexpr int most = 24;
     const Real enough = 100 * std::numeric_limits<Real>::epsilon() * length;
     const Real rest = std::max(Real(1e-6) * length, 1000 * enough);
@@ -143,7 +145,7 @@ Outcome settle_truly(March<Real>& s) {
     }
     if (says_twice(s)) {
         residual_at(s, node.q, node.lambda);
-        --s.counts.evaluations;  // judges, finds nothing
+        --s.counts.evaluations;  // a check only: not counted
         if (contradict(s, node.q)) return Outcome::inconsistent_constraints;
     }
     s.q = s.before = node.q;
@@ -157,11 +159,12 @@ Outcome settle(March<Real>& s) {
     return settled(s, settle_truly(s), Real(0));
 }
 
-// What has settled, whose matrix is in the system. Settling from a drawing that is far from rest may lead to an unstable
-// equilibrium, and so may a drawing that is at rest.
+// Stability of the settled start, whose matrix is in the system. Settling from a drawing far from
+// rest may lead to an unstable equilibrium, and a drawing at rest may be one.
 template <class Real>
 Outcome judge_start(March<Real>& s) {
-    Softest<Real> softest;  // what is soft beside the stiffest is below the rounding of the whole
+    // modes soft relative to the stiffest are below the rounding of is_unstable()
+    Softest<Real> softest;
     const LeastStiffness least = least_stiffness(s, softest);
     s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
                         (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);

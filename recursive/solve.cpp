@@ -7,8 +7,10 @@
 
 #include "recursive/account.hpp"
 #include "recursive/adaptive.hpp"
+#include "recursive/centred.hpp"
 #include "recursive/delay.hpp"
 #include "recursive/finite.hpp"
+#include "recursive/grown.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/sweep.hpp"
 #include "recursive/watch.hpp"
@@ -16,7 +18,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-// A value of the branch's parameter as it is spoken of: "1200 N", "35.2 mm".
+// A parameter value with its unit for messages: "1200 N", "35.2 mm".
 std::string in_unit(ParameterUnit unit, double a) {
     switch (unit) {
         case ParameterUnit::newton: return fmt::format("{:.6g} N", a);
@@ -28,7 +30,7 @@ std::string in_unit(ParameterUnit unit, double a) {
     return {};
 }
 
-// Of joints that say a thing twice and contradict each other as drawn, which: "'upper', 'lower'"; empty where none is known.
+// Names of the redundant joints that are inconsistent as drawn: "'upper', 'lower'"; empty if none.
 std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
     std::string names;
     for (const auto& redundancy : diagnosis.redundant)
@@ -83,9 +85,9 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
             break;
         case Outcome::not_finite:
         case Outcome::branch_lost:
-        case Outcome::not_conservative:      // of the energy
-        case Outcome::too_large:             // likewise
-        case Outcome::outside_table: break;  // found in compare/
+        case Outcome::not_conservative:      // energy leg only
+        case Outcome::too_large:             // energy leg only
+        case Outcome::outside_table: break;  // set in compare/
     }
     return detail;
 }
@@ -100,7 +102,7 @@ EquilibriumPath sweep(Precision precision, const Model& model, const Branch& bra
     return {};
 }
 
-// As the method finds it.
+// solve() without error bounds.
 EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
@@ -113,8 +115,8 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
                                                : branch.steps;
         return series::sample(model, series::follow(model, branch, *how, analysis), branch, points, visit);
     }
-    // A method that takes equal steps may step over where the branch ends, and one with the stiffness of (19) does not see
-    // it at all: it is told beforehand, and its points past that are none.
+    // A method with equal steps may step across the end of the branch, and one with the stiffness
+    // of (19) cannot detect it. So the end is located first, and points past it are dropped.
     const bool linear = std::holds_alternative<Linear>(options.method.kind);
     std::optional<Event> event;
     if (has_steps(options.method)) event = watch(model, branch, analysis);
@@ -125,7 +127,7 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     Stop stop;
     EquilibriumPath path =
         sweep(options.precision, model, branch, options, analysis, visit && event ? until : visit, stop);
-    // What a method with the consistent tangent has noticed by itself has a name, too.
+    // If a method with the consistent tangent stopped by itself, find_event() determines the cause.
     const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
     if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stop.at))
         event = find_event(model, branch, analysis);
@@ -146,15 +148,19 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     return path;
 }
 
-}  // namespace
+// Moves a point of the centred model back by c. The error bound grows by the rounding of the moved
+// positions to double.
+void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
+    double reach = 0;
+    for (Pose& pose : point.poses) {
+        pose.r += c;
+        reach = std::max(reach, pose.r.norm());
+    }
+    point.bound.length += std::numeric_limits<double>::epsilon() * reach;
+}
 
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit) {
-    check(model, branch);
-    if (std::isnan(analysis.diagnosis.constraint_error))
-        return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}, {}};
-    if (options.account_every < 1)
-        throw std::invalid_argument("account is given of every n-th point, n from 1");
+EquilibriumPath with_accounts(const Model& model, const Branch& branch, const Options& options,
+                              const Analysis& analysis, const Visit& visit) {
     if (!options.account) return found(model, branch, options, analysis, visit);
     const auto* series = std::get_if<Series>(&options.method.kind);
     const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);
@@ -172,6 +178,54 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
             points.push_back(std::move(point));
     });
     path.points = std::move(points);
+    return path;
+}
+
+// Whether settling, which ended so, may reach an equilibrium by another homotopy. The linear methods that store forces have
+// their own settling, step by step, of which the path is a part.
+bool settles_otherwise(const Method& method, Outcome outcome) {
+    const auto* linear = std::get_if<Linear>(&method.kind);
+    return (!linear || linear->follow == everything) &&
+           (outcome == Outcome::limit_point || outcome == Outcome::dividing_point ||
+            outcome == Outcome::singular || outcome == Outcome::branch_lost);
+}
+
+EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, const Branch& branch,
+                              const Options& options, const Analysis& analysis, const Visit& visit) {
+    Equilibrium moved;
+    const Visit visit_moved = [&](const Equilibrium& point) {
+        moved = point;
+        move_back(moved, c);
+        visit(moved);
+    };
+    EquilibriumPath path = solve(centred(model, c), branch, options, analysis, visit ? visit_moved : Visit{});
+    for (Equilibrium& point : path.points) move_back(point, c);
+    return path;
+}
+
+}  // namespace
+
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+                      const Analysis& analysis, const Visit& visit) {
+    check(model, branch);
+    if (const auto c = far_centre(model)) return solve_centred(model, *c, branch, options, analysis, visit);
+    if (std::isnan(analysis.diagnosis.constraint_error))
+        return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}, {}};
+    if (options.account_every < 1)
+        throw std::invalid_argument("account is given of every n-th point, n from 1");
+    bool begun = false;
+    const Visit counted = [&](const Equilibrium& point) {
+        begun = true;
+        visit(point);
+    };
+    EquilibriumPath path = with_accounts(model, branch, options, analysis, visit ? counted : Visit{});
+    if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome)) return path;
+    // Where a drawing far from rest has several equilibria, homotopies may settle at different ones: no error bound is claimed.
+    if (const auto other = grown(model, branch)) {
+        EquilibriumPath again =
+            found(other->model, other->branch, options, analyse(other->model), visit ? counted : Visit{});
+        if (begun || !again.points.empty()) return again;
+    }
     return path;
 }
 

@@ -1,4 +1,4 @@
-// The linear recursive formula, eqs. (25)-(29), and the methods that grew from it.
+// The linear recursive formula, eqs. (25)-(29), and derived methods: solve() along a branch.
 #pragma once
 
 #include "models/equilibrium_path.hpp"
@@ -12,33 +12,37 @@ namespace elastocheck::recursive {
 enum class Precision { single, twofold, extended };
 
 struct Options {
-    Method method = {};  // published; what a method can be told besides is in its kind
-    int steps = 0;       // equal increments of the parameter over the branch; 0: as many as the branch says
-    int record = 0;      // equal increments between recorded points, a divisor of steps; 0: every step
+    Method method = {};  // published; its kind holds the method's own settings
+    // equal increments of the parameter over the branch; 0: the branch's own number
+    int steps = 0;
+    int record = 0;  // equal increments between recorded points, a divisor of steps; 0: every step
     Precision precision = Precision::twofold;
-    bool account = false;   // points carry their bound, and the stiffness that is left there (account.hpp):
-    int account_every = 1;  // of those that are recorded each such, and the last
+    // compute the error bound and remaining stiffness (account.hpp) at recorded points
+    bool account = false;
+    int account_every = 1;  // ... at every so many of them, and at the last
 };
 
-// Along one branch, from load factor 0 to branch.to: the recorded points, record + 1 (or steps + 1) of them.
-// A point carries its configuration, |Φ| of eq. (31), and the joint wrenches. While nothing follows the
-// bodies these are λⁿ⁻¹ with the Jacobian it was solved with, eq. (22); else λ with the present one.
+// Follows one branch from load factor 0 to branch.to and returns the recorded points, record + 1
+// (or steps + 1) of them. A point holds its configuration, |Φ| of eq. (31), and the joint wrenches.
+// In methods without following forces these are λⁿ⁻¹ with the Jacobian of its solve, eq. (22); else
+// λ with the current Jacobian.
 //
-// The published method takes one factorisation per step, and one more where static loads or preloads ask for
-// λ⁻¹. `adaptive` takes steps of its own and evaluates the recorded points between them,
-// as does `series`, in double precision only: std::invalid_argument for another.
+// The published method takes one factorisation per step, and one more where static loads or
+// preloads require λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded
+// points between them. `series` exists in double precision only: std::invalid_argument for another
+// precision.
 //
-// What is told of the model alone (analysis.hpp) can be given, and then serves any number of branches and,
-// being constant, threads; std::invalid_argument where it is of another model.
+// The analysis of the model (analysis.hpp) may be passed in and shared between branches and
+// threads; std::invalid_argument where it is of another model.
 //
-// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
+// Thread-safe: calls keep no state and may share a model that no thread changes meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit = {});
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {},
                       const Visit& visit = {});
 
-// How well a state, from any leg, satisfies the full nonlinear equations as this leg writes them; balances
-// are formed from Equilibrium::reactions.
+// Residuals of a state from any leg in the full nonlinear equations of this leg; balances are
+// formed from Equilibrium::reactions.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::recursive

@@ -1,19 +1,19 @@
-// LU factors of a matrix whose zeros never move and whose pivots hardly do, behind three calls:
+// Sparse LU factorisation with a fixed pattern and a reused pivot order, in three calls:
 //
-//   analyse     pattern and a typical matrix → order of elimination and what it fills in, once for a model
+//   analyse     pattern and typical values → elimination order and fill, once per model
 //   factorise   values → factors, in that order
 //   solve       right-hand side → solution
 //
-// Which entries of eq. (24) can be other than zero is decided by who is connected to whom (pattern.hpp), so
-// the order is chosen once (pivot_search.hpp), and afterwards only what can be other than zero is kept and touched:
-// row i of L and U in the order of the pivots follows from row i of A and the rows of U above it,
+// The pattern of eq. (24) depends on the connections of the model (pattern.hpp). The pivot order is
+// chosen once (pivot_search.hpp), and afterwards only structural non-zeros are stored and updated.
+// Row i of L and U in pivot order follows from row i of A and the rows of U above it,
 //
-//   w ← A_i,     l_ik = w_k / u_kk,   w ← w - l_ik U_k   for every k < i where w can be other than zero,     U_i ← w
+//   w ← A_i,   l_ik = w_k / u_kk,   w ← w - l_ik U_k   for every k < i in the pattern,   U_i ← w
 //
-// in one row w of full length. The choice stands while no multiplier of L exceeds a hundred (or what the caller bears);
-// when one does, the order is chosen anew from the values of the moment.
+// in one full-length row w. The order is kept while no multiplier of L exceeds a hundred (or the
+// caller's `largest_multiplier`); beyond it a new order is chosen from the current values.
 //
-// Values are those of the pattern's entries, in its order.
+// Values are those of the pattern's entries, in the order of the pattern.
 #pragma once
 
 #include <cstring>
@@ -22,38 +22,38 @@
 
 namespace elastocheck::recursive {
 
-// The order of elimination, and what it fills in, row by row of L and U.
+// Elimination order and fill, by rows of L and U.
 struct Elimination {
     Pattern pattern;
     std::vector<int> row, col;        // the k-th pivot is A(row[k], col[k])
-    std::vector<int> row_of, col_of;  // ... and the other way round
-    // Of row i, as numbers of columns: what A has there, with which entry of the pattern that is; what elimination
-    // alone fills; what L has, and U beside the pivot, both rising.
+    std::vector<int> row_of, col_of;  // ... and the inverse permutations
+    // Per row i, as column numbers: the entries of A with their positions in the pattern; the
+    // entries that are fill only; the entries of L, and of U beside the pivot, both ascending.
     std::vector<int> to, entry, first_entry, fill, first_fill, left, first_left, right, first_right;
-    // Of column k of L: the rows, and where in L these entries are.
+    // Per column k of L: the rows, and the positions of these entries in L.
     std::vector<int> below, place, first_below;
-    int parity = 1;  // of the two permutations `row` and `col` together: +1 or -1
+    int parity = 1;  // sign of the product of the permutations `row` and `col`: +1 or -1
 };
 
 template <class Real>
 struct SparseLU {
     Elimination order;
-    std::vector<Real> L, U;            // without the diagonals, as `left` and `right`
+    std::vector<Real> L, U;            // without the diagonals, in the order of `left` and `right`
     std::vector<Real> inverse;         // 1 / pivots
-    std::vector<Real> w;               // a row while it is eliminated
-    std::vector<Real> y;               // the solution in the order of the pivots
-    std::vector<Real> known, unknown;  // the same where it is zero but for a few, zero in between ...
-    std::vector<int> reached;          // ... which these are,
-    std::vector<char> queued;          // and which are to come: 1
+    std::vector<Real> w;               // the row being eliminated
+    std::vector<Real> y;               // the solution in pivot order
+    std::vector<Real> known, unknown;  // workspace of solve_unit, zero between calls:
+    std::vector<int> reached;          // the non-zeros found so far
+    std::vector<char> queued;          // 1: queued
     PivotSearch<Real> search;
-    int orders = 0;       // how often the order was chosen here
+    int orders = 0;       // number of orders chosen by this object
     int orientation = 0;  // sign of the determinant of the last matrix factorised
 
-    double largest_multiplier = 100;  // until the order is chosen anew
+    double largest_multiplier = 100;  // limit above which a new order is chosen
     std::size_t size() const { return static_cast<std::size_t>(order.pattern.size); }
 };
 
-// Room for what a solution and a row need.
+// Allocates the workspace of elimination and solution.
 template <class Real>
 void reserve(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
@@ -61,14 +61,14 @@ void reserve(SparseLU<Real>& lu) {
     lu.queued.assign(n, 0);
     lu.reached.reserve(2 * n);
 }
-// ... and what the factors need.
+// ... and the factors.
 template <class Real>
 void reserve_factors(SparseLU<Real>& lu) {
     lu.L.resize(lu.order.left.size());
     lu.U.resize(lu.order.right.size());
 }
 
-// +1 or -1, as an even or an odd number of swaps makes the permutation.
+// Sign of a permutation: +1 if even, -1 if odd.
 inline int parity(std::vector<int>& permutation, std::vector<char>& seen) {
     int sign = 1;
     std::fill(seen.begin(), seen.end(), 0);
@@ -81,8 +81,9 @@ inline int parity(std::vector<int>& permutation, std::vector<char>& seen) {
     return sign;
 }
 
-// Sorts numbers of columns into rows (or the other way round) by counting: each(put) calls put(row, column, which) for
-// all of them, twice. Within a row they stay in the order in which they come.
+// Sorts column numbers into rows (or row numbers into columns) by counting: each(put) calls
+// put(row, column, which) for all entries, and runs twice. The order within a row is that of the
+// calls.
 template <class Each>
 void sort_into_rows(std::size_t n, std::vector<int>& first, std::vector<int>& column, std::vector<int>* which,
                     Each&& each) {
@@ -100,7 +101,7 @@ void sort_into_rows(std::size_t n, std::vector<int>& first, std::vector<int>& co
     first[0] = 0;
 }
 
-// Lays the rows of L and U out along the pivots that `search` has found.
+// Stores the rows of L and U for the pivots found by `search`.
 template <class Real>
 void lay_out(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
@@ -117,7 +118,8 @@ void lay_out(SparseLU<Real>& lu) {
     const auto in = [](const std::vector<int>& first, std::size_t k, auto&& visit) {
         for (int e = first[k]; e < first[k + 1]; ++e) visit(static_cast<std::size_t>(e));
     };
-    // From below and right in numbers of A, twice turned round: the columns of each row rise.
+    // Two counting sorts of `below` and `right`, from numbers of A, put the columns of each row in
+    // order.
     const auto of_row = [&](std::size_t e) { return order.row_of[static_cast<std::size_t>(found.below[e])]; };
     const auto of_col = [&](std::size_t e) { return order.col_of[static_cast<std::size_t>(found.right[e])]; };
     sort_into_rows(n, order.first_left, order.left, nullptr, [&](auto&& put) {
@@ -129,7 +131,8 @@ void lay_out(SparseLU<Real>& lu) {
             in(order.first_left, i,
                [&](std::size_t e) { put(order.left[e], static_cast<int>(i), static_cast<int>(e)); });
     });
-    sort_into_rows(n, order.first_fill, order.fill, nullptr, [&](auto&& put) {  // columns of U, for a moment
+    // columns of U, temporarily
+    sort_into_rows(n, order.first_fill, order.fill, nullptr, [&](auto&& put) {
         for (std::size_t k = 0; k < n; ++k)
             in(found.first_right, k, [&](std::size_t e) { put(of_col(e), static_cast<int>(k), 0); });
     });
@@ -168,7 +171,7 @@ void lay_out(SparseLU<Real>& lu) {
     reserve_factors(lu);
 }
 
-// Chooses the order of elimination from `values`.
+// Chooses the elimination order from `values`.
 template <class Real>
 void choose_order(SparseLU<Real>& lu, const Real* values) {
     ++lu.orders;
@@ -176,7 +179,7 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     lay_out(lu);
 }
 
-// Makes everything ready for matrices of this pattern, in the order of elimination that suits `values`.
+// Prepares for matrices of this pattern, with the elimination order chosen from `values`.
 template <class Real>
 void analyse(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
     lu.order = {};
@@ -185,7 +188,7 @@ void analyse(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
     reserve(lu);
     choose_order(lu, values);
 }
-// The same in an order chosen before, for matrices of the same pattern in any arithmetic.
+// The same with a given order, for matrices of the same pattern in any arithmetic.
 template <class Real>
 void analyse(SparseLU<Real>& lu, const Elimination& order) {
     lu.order = order;
@@ -194,8 +197,8 @@ void analyse(SparseLU<Real>& lu, const Elimination& order) {
     reserve_factors(lu);
 }
 
-// Eliminates in the order chosen. Returns the smallest over the largest pivot, 0 where one is exactly zero,
-// NaN for a matrix that is not finite; `largest` gets the largest multiplier.
+// Eliminates in the chosen order. Returns the ratio of the smallest to the largest pivot, 0 for a
+// zero pivot, NaN for a matrix that is not finite; `largest` returns the largest multiplier.
 template <class Real>
 Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
     const std::size_t n = lu.size();
@@ -224,7 +227,7 @@ Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
         }
         for (int r = first_right[i]; r < first_right[i + 1]; ++r) U[r] = w[right[r]];
         const Real size = std::abs(w[i]);
-        if (!(size > 0)) {  // whether it is finite is not yet known of the rows to come
+        if (!(size > 0)) {  // the remaining rows may still hold a NaN
             for (std::size_t e = 0; e < order.pattern.entries(); ++e) sum += std::abs(values[e]);
             return std::isnan(size) || !std::isfinite(sum) ? std::numeric_limits<Real>::quiet_NaN() : Real(0);
         }
@@ -246,8 +249,8 @@ Real log_determinant(const SparseLU<Real>& lu) {
     return sum;
 }
 
-// Factorises the matrix with these values, in the order of last time if that still serves. Returns the
-// smallest over the largest pivot. Nothing is allocated.
+// Factorises the matrix with these values, in the last order if its multipliers stay small. Returns
+// the ratio of the smallest to the largest pivot. Allocates only when a new order is chosen.
 template <class Real>
 Real factorise(SparseLU<Real>& lu, const Real* values) {
     Real largest = 0;
@@ -257,7 +260,7 @@ Real factorise(SparseLU<Real>& lu, const Real* values) {
     return eliminate(lu, values, largest);
 }
 
-// x with A x = b, for the last matrix factorised. Nothing is allocated.
+// Solves A x = b with the last factors. Allocates nothing.
 template <class Real>
 void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
     const std::size_t n = lu.size();
@@ -277,16 +280,17 @@ void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
     }
 }
 
-// Of A x = e_j the unknowns `wanted` alone: from row j on only what is reached is touched, and of x only what the
-// wanted ones follow from. What falls below the rounding of the one that it begins with is reached no more: where x is
-// zero but for a few places (a motion of one body), so is the work.
+// Solves A x = e_j for the unknowns `wanted` only. Forward substitution visits only the rows
+// reached from row j, back substitution only the rows that the wanted unknowns depend on. Values
+// below rounding relative to the start are not propagated. The work is small where x has few
+// non-zeros (a motion of one body).
 template <class Real>
 void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x) {
     const Elimination& order = lu.order;
     const auto at = [](int k) { return static_cast<std::size_t>(k); };
     const Real rounding = 4 * std::numeric_limits<Real>::epsilon();
     const auto n = static_cast<int>(lu.size());
-    const auto next = [&](int k) {  // that is queued, from k on
+    const auto next = [&](int k) {  // next queued index from k on
         const void* const found = std::memchr(lu.queued.data() + k, 1, at(n - k));
         return found == nullptr ? n : static_cast<int>(static_cast<const char*>(found) - lu.queued.data());
     };

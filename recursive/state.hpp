@@ -1,4 +1,4 @@
-// Where the bodies are, and how an increment moves them: eqs. (4)-(5).
+// State of the bodies (positions and orientations), and its update by an increment: eqs. (4)-(5).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -41,7 +41,7 @@ struct BodyState {
     }  // s = A s'
 };
 
-// The generalised coordinates q. Ground is a body like any other, at rest in slot 0.
+// The generalised coordinates q. Ground is a body like the others, fixed, in slot 0.
 template <class Real>
 struct State {
     std::vector<BodyState<Real>> slots;
@@ -77,7 +77,8 @@ Eigen::Quaternion<Real> exponential(const Vector3<Real>& dpi) {
     using std::cos;
     using std::sin;
     const Real half = dpi.norm() / 2;
-    // sin(h)/h loses nothing for any h > 0 that can be squared; its limit serves below that.
+    // sin(h)/h is accurate for every h > 0 whose square does not underflow; below that its limit is
+    // used.
     const Real sinc = half > 0 ? sin(half) / half : Real(1);
     const Vector3<Real> v = sinc / 2 * dpi;
     return {cos(half), v.x(), v.y(), v.z()};

@@ -1,13 +1,12 @@
-// One increment of the parameter, eqs. (25)-(29), and its kin.
+// One increment of the parameter, eqs. (25)-(29), with K or with the consistent tangent.
 #pragma once
 
 #include "recursive/march.hpp"
 
 namespace elastocheck::recursive {
 
-// f_ext for the coming step to `next`, less what is still held of the imbalance as drawn. Where the load does
-// not follow, what is already applied keeps its moment, and only the increment is formed at the present
-// lever.
+// f_ext for the step to `next`, minus the held part of the imbalance as drawn. Where the load does
+// not follow, the applied load keeps its moment and only the increment acts at the current lever.
 template <class Real>
 void apply_load(March<Real>& s, const Follow& follow, Drive drive, Real amount, Real held) {
     if (follow.load) {
@@ -19,13 +18,13 @@ void apply_load(March<Real>& s, const Follow& follow, Drive drive, Real amount, 
     }
 }
 
-// f_elast at the configuration just reached, as far as it follows:
+// f_elast at the new configuration, according to `follow`:
 //
-//   nothing   f_elast⁺ = f_ext - Φ_q(qⁿ)ᵀ λⁿ: the upper row just solved. With it the next right-hand side
-//             f_ext - f_elast is that of (29), and by induction that of (28)
-//   lever     each element's sum of K_T Δr', K_R Δπ, at the present position of its attachment points
-//   axis      each element's true force, its increments added up at the levers of their time
-//   both      the law itself, which the next step asks for when it knows its inputs
+//   nothing   f_elast⁺ = f_ext - Φ_q(qⁿ)ᵀ λⁿ: the upper row just solved. With it the next right-
+//             hand side f_ext - f_elast is that of (29), and by induction that of (28)
+//   lever     each element's sum of K_T Δr', K_R Δπ, at the current attachment points
+//   axis      each element's true force, its increments added at the levers of their step
+//   both      the law itself, evaluated by store_driven() at the inputs of the next step
 template <class Real>
 void store(March<Real>& s, const Follow& follow) {
     if (follow.lever && follow.axis) return;
@@ -61,7 +60,8 @@ void store(March<Real>& s, const Follow& follow) {
     }
 }
 
-// What the drivers change of f_elast at qⁿ by the coming step: ∂f_elast/∂a Δa on top of what is stored.
+// Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to the stored
+// forces.
 template <class Real>
 void store_driven(March<Real>& s, const Follow& follow, Drive drive, Real amount) {
     if (follow.lever && follow.axis) return elastic_force<Real>(s.model, s.inputs, s.q, s.stored);
@@ -75,8 +75,8 @@ void store_driven(March<Real>& s, const Follow& follow, Drive drive, Real amount
                                });
 }
 
-// Whether the coming step drives an angle by more than a rotation can be linearised. Where Φ is asked how far
-// there is to go, half a turn and a whole one look like none.
+// Whether the step drives an angle beyond the range of the linearised rotation. Φ itself cannot
+// show it: half a turn and a whole turn look like none.
 template <class Real>
 bool turns_too_far(const March<Real>& s, Drive drive, Real amount) {
     for (const auto& driver : s.branch.drivers) {
@@ -90,19 +90,19 @@ bool turns_too_far(const March<Real>& s, Drive drive, Real amount) {
     return false;
 }
 
-// From (qⁿ, aⁿ) to (qⁿ⁺¹, aⁿ⁺¹), or from tⁿ to tⁿ⁺¹ while settling.
+// One step from (qⁿ, aⁿ) to (qⁿ⁺¹, aⁿ⁺¹), or from tⁿ to tⁿ⁺¹ while settling.
 //
 // ⎡ K(qⁿ)    Φ_q(qⁿ)ᵀ ⎤ ⎧ Δq ⎫ⁿ   ⎧ f_ext - f_elast - ∂f_elast/∂a Δa ⎫
 // ⎣ Φ_q(qⁿ)     0     ⎦ ⎩ λ  ⎭  = ⎩    -∂Φ/∂a Δa   or   -Φ(qⁿ; aⁿ⁺¹)    ⎭      (28), (29)
 //
-// λ is the total multiplier, so that Φ_qᵀ λⁿ⁻¹ on both sides need not be written.
+// λ is the total multiplier, so that Φ_qᵀ λⁿ⁻¹ on both sides cancels.
 template <class Real>
 Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
     const Drive drive = next.t != s.place.t ? Drive::start : Drive::rate;
     const Real amount = drive == Drive::start ? next.t - s.place.t : next.a - s.place.a;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
     const Place<Real> here = s.place;
-    if (!method.closed) {  // the lower row of (29), at (qⁿ, aⁿ)
+    if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
         s.lower.setZero();
         add_constraint_rate<Real>(s.model, s.branch, s.inputs, drive, -amount, s.q, s.lower);
         if (drive == Drive::start) s.lower -= amount * s.Phi_d;
@@ -133,26 +133,28 @@ Outcome step(March<Real>& s, const Linear& method, Place<Real> next) {
     return Outcome::converged;
 }
 
-// The same with the consistent tangent ∂G/∂q in place of K, and the true forces.
+// The same step with the consistent tangent ∂G/∂q in place of K, and the true forces.
 //
-// A matrix tells about its own side of a kink. Over one, the step is made with the matrix of qⁿ alone: with that of
-// the other side, half a step ahead or once more, it would be thrown back before the kink, each time anew.
+// A matrix is valid on its own side of a kink. Across a kink the step uses the matrix of qⁿ alone.
+// With the matrix of the other side (midpoint, or second solve) each step would be thrown back
+// before the kink.
 template <class Real>
 Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     const int n = s.n(), m = s.m();
     if (turns_too_far(s, Drive::rate, next.a - s.place.a)) return Outcome::diverged;
     go_to(s, next);
-    external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);  // what idle modes are checked against
+    // for the check of idle modes
+    external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged) return outcome;
     if (const Outcome outcome = judge_push(s, s.q, s.missed); outcome != Outcome::converged) return outcome;
-    // A determinant that has changed its sign since a = 0 went through zero on the way: there the branch
-    // turned back, divided, or lost its stability.
+    // A determinant with another sign than at a = 0 has passed through zero: there the branch
+    // turned back, bifurcated or became unstable.
     if (s.system.lu.orientation != s.orientation) return Outcome::singular;
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
     s.before = s.q;
     if (method.solve == Consistent::Solve::midpoint) {
-        // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix from half a step ahead.
+        // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix half a step ahead.
         s.dq = s.x.head(n) / 2;
         advance(s.q, s.dq);
         if (beyond_a_kink(s, s.q)) {
@@ -187,7 +189,8 @@ Outcome step(March<Real>& s, const Consistent& method, Place<Real> next) {
     return Outcome::converged;
 }
 
-// Where a step led is judged by the next one, the last by this: whether what is held is idle there, and nothing pushes it.
+// Checks the held modes at the end of the last step, as each next step does for the one before it:
+// whether they are still idle and not loaded.
 template <class Real>
 Outcome check_what_is_held(March<Real>& s) {
     if (s.pushing.empty()) return Outcome::converged;
@@ -195,11 +198,11 @@ Outcome check_what_is_held(March<Real>& s) {
     return judge_push(s, s.q, s.consistent ? s.missed : Real(0));
 }
 
-// What the step just taken missed, with its own factors: the next step would have shown it, after the last
-// one nothing else does.
+// Error of the last step, by a correction with its own factors; for other steps the next step shows
+// it.
 template <class Real>
 Outcome check_last_step(March<Real>& s) {
-    if (s.kinked > 0) return Outcome::converged;  // there is nothing to compare it with
+    if (s.kinked > 0) return Outcome::converged;  // the step is not comparable
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
     return disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0)) ? Outcome::diverged

@@ -1,12 +1,14 @@
-// What stiffness is left of what is free: with Z the motions that the joints allow and something resists, the least
-// eigenvalue μ of ZᵀKZ, K = ∂G/∂q, in the norm |W x|² = |Δr|² + L² |Δπ|². The factors of (24) hold its inverse:
+// Least reduced stiffness: with Z a basis of the motions that the joints allow and something
+// resists, the smallest eigenvalue μ of ZᵀKZ, K = ∂G/∂q, in the norm |W x|² = |Δr|² + L² |Δπ|². It
+// is found by subspace iteration with the factors of (24), which give the inverse:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ v ⎫   ⎧ W² u ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ · ⎭ = ⎩  0   ⎭      v = T u,  T = Z (ZᵀKZ)⁻¹ Zᵀ W²
 //
-// Repeated on three vectors U at once, which begin where those of the place before ended, the eigenvalues θ of Uᵀ W² T U
-// become the largest of T, and 1/θ the least stiffnesses. Where the path turns back or divides one θ goes to infinity;
-// past that it is negative, and two that have changed their signs at once are both seen, as the determinant does not.
+// The iteration is repeated on three vectors U at once, starting from those of the point before.
+// The eigenvalues θ of Uᵀ W² T U converge to the largest of T, and 1/θ to the least stiffnesses.
+// Where the path turns back or bifurcates one θ goes to infinity; beyond that point θ is negative.
+// Two eigenvalues that change sign at once are both seen, which the determinant does not show.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -16,7 +18,8 @@
 
 namespace elastocheck::recursive {
 
-// Numbers in (-½, ½) that know nothing of the model: fractions of multiples of the golden ratio.
+// Quasi-random start values in (-½, ½), independent of the model: fractions of multiples of the
+// golden ratio.
 template <class Real>
 Real scattered(Eigen::Index k) {
     return std::fmod(Real(0.6180339887498948482L) * static_cast<Real>(k + 1), Real(1)) - Real(0.5);
@@ -29,13 +32,13 @@ struct Softest {
 
 struct LeastStiffness {
     double value = std::numeric_limits<
-        double>::infinity();  // μ; its modulus where forces have no energy. ∞: nothing is free
-    bool of_energy = true;    // whether K is symmetric, so that its sign tells stability
+        double>::infinity();  // μ; its modulus where forces have no energy. ∞: no motion is free
+    bool of_energy = true;    // whether K is symmetric, so that the sign of μ decides stability
 };
 
 namespace detail {
 
-// Makes the columns of U orthonormal in W; those that add nothing are left out.
+// Orthonormalises the columns of U in W and drops dependent ones.
 template <class Real>
 void orthonormalise(const Vector<Real>& weight, Matrix<Real>& U) {
     constexpr Real nothing = Real(1e-9);
@@ -55,9 +58,10 @@ void orthonormalise(const Vector<Real>& weight, Matrix<Real>& U) {
     U.conservativeResize(Eigen::NoChange, kept);
 }
 
-// Of the eigenvalues θ of H: the negative one of the largest size, else the largest; 1/θ.
+// 1/θ for the negative eigenvalue θ of H of largest modulus, else for the largest θ.
 inline LeastStiffness least_of(const Eigen::MatrixXd& H) {
-    // Where an energy makes K symmetric so is H, nearly: each θ of H = S + N is within |N| of one of S (Bauer and Fike).
+    // If K is symmetric, H is nearly so: each θ of H = S + N is within |N| of one of S (Bauer and
+    // Fike 1960).
     constexpr double rounding = 1e-6, may_matter = 1e-3;
     if (H.size() == 0 || !H.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), true};
     const Eigen::MatrixXd S = (H + H.transpose()) / 2;
@@ -71,7 +75,7 @@ inline LeastStiffness least_of(const Eigen::MatrixXd& H) {
 
 }  // namespace detail
 
-// With the factors now in the system, which are of the consistent tangent.
+// Least stiffness with the factors in the system, which must be those of the consistent tangent.
 template <class Real>
 LeastStiffness least_stiffness(March<Real>& s, Softest<Real>& kept) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
@@ -92,7 +96,7 @@ LeastStiffness least_stiffness(March<Real>& s, Softest<Real>& kept) {
         Matrix<Real> V(n, U.cols());
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
             s.upper = U.col(c).array() * W2;
-            back_substitute(s.system, s.upper, s.lower, s.x);  // judges, finds nothing: not counted
+            back_substitute(s.system, s.upper, s.lower, s.x);  // a check only: not counted
             V.col(c) = s.x.head(n);
         }
         H = (U.transpose() * W2.matrix().asDiagonal() * V).template cast<double>();

@@ -1,20 +1,21 @@
-// Whether a long step went straight: what Newton's method finds at its end need not be the branch's, and a sign that the
-// determinant keeps does not tell.
+// Checks that a long step stayed on the branch.
+// Newton's method at its end may converge to another branch while the determinant keeps its sign.
 #pragma once
 
 #include "recursive/walk.hpp"
 
 namespace elastocheck::recursive {
 
-// Whether an element has turned over on the way: a spring that points the other way has gone through a length of nothing,
-// a bushing whose rotation does has gone through half a turn. Its force jumps there, and Newton's method lands beyond.
+// Whether an element has reversed within the step. A spring that points the other way has passed
+// through zero length, a bushing with reversed rotation through half a turn. The force jumps there,
+// and Newton's method converges beyond the jump.
 template <class Real>
 bool turned_over(const AxialSpring& e, const State<Real>& from, const State<Real>& to) {
     return !(deformation<Real>(e, from).D.dot(deformation<Real>(e, to).D) > 0);
 }
 template <class Real>
 bool turned_over(const Bushing& e, const State<Real>& from, const State<Real>& to) {
-    constexpr Real quarter = 1.5;  // of a turn [rad], nearly
+    constexpr Real quarter = 1.5;  // about a quarter of a turn [rad]
     const Vector3<Real> before = deformation<Real>(e, from).theta(), after = deformation<Real>(e, to).theta();
     return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
 }
@@ -25,7 +26,7 @@ bool any_turned_over(const Model& model, const State<Real>& from, const State<Re
     });
 }
 
-// The chord from one node to the next against the tangents at its ends, and nothing turned over.
+// The chord between the nodes agrees with the tangents at its ends, and no element has reversed.
 template <class Real>
 bool is_straight(const March<Real>& s, const Going<Real>& going, const Node<Real>& from,
                  const Node<Real>& to) {
@@ -36,7 +37,8 @@ bool is_straight(const March<Real>& s, const Going<Real>& going, const Node<Real
         chord.template segment<3>(6 * b + 3) = logarithm<Real>(turned);
     }
     const Vector<Real> mean = (to.p - from.p) / 2 * (from.dq + to.dq);
-    constexpr Real straight = Real(0.25);  // of the chord, that it may be from the mean of the tangents
+    // allowed distance of the chord from the mean tangent, as a fraction
+    constexpr Real straight = Real(0.25);
     return share<Real>(going, chord - mean) <= straight * share<Real>(going, chord) + 1 &&
            !any_turned_over(s.model, from.q, to.q);
 }

@@ -1,6 +1,6 @@
-// The one loop of all methods that take steps: settle at a = 0, then N increments, eqs. (25)-(29), or
-// steps of the method's own. Instantiated once per arithmetic (sweep_*.cpp), since each takes its time to
-// compile.
+// Sweep along a branch, shared by all stepping methods: settle at a = 0, then N increments, eqs.
+// (25)-(29), or the steps of the adaptive method. Instantiated once per arithmetic (sweep_*.cpp) to
+// compile in parallel.
 #pragma once
 
 #include "recursive/adaptive.hpp"
@@ -8,15 +8,15 @@
 
 namespace elastocheck::recursive {
 
-// Where a sweep did not converge: the parameter, NaN while settling; and whether that is because what has settled there is
-// no stable equilibrium.
+// Where a sweep stopped: the parameter, NaN while settling; and whether the cause is that the
+// settled start is unstable.
 struct Stop {
     double at = std::numeric_limits<double>::quiet_NaN();
     bool begins_unstable = false;
 };
 
-// The recorded points as far as the sweep comes, unless somebody visits them; where it does not converge, `stop` says
-// where, and the words for it are the caller's.
+// Returns the recorded points up to the end or the failure; with a visitor they are streamed
+// instead. On failure `stop` says where; the caller writes the message.
 template <class Real>
 EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit, Stop& stop) {
@@ -38,7 +38,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
             recording.keep(s.model, s.inputs, s.q, where_lambda_acts, s.lambda, a);
         };
         keep(0);
-        pass_kinks(s);  // where it settled
+        pass_kinks(s);  // kinks at the settled start
         s.kinked = 0;
         for (int k = 1; k <= N; ++k) {
             stopped = branch.to * k / N;
@@ -72,7 +72,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
                 const Outcome o = adapt(s, method, branch.to, recording);
                 return finish(o, static_cast<double>(s.a));
             },
-            [&](const Series&) { return finish(Outcome::not_finite, settling); },  // never asked
+            [&](const Series&) { return finish(Outcome::not_finite, settling); },  // never called
         },
         options.method.kind);
 }

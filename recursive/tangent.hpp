@@ -1,15 +1,16 @@
-// The consistent tangent: what K of eq. (19) leaves out.
+// Consistent tangent ∂G/∂q: geometric stiffness, constraint curvature and load stiffness.
 //
 // With the residual of the full equations
 //
 //   G(q, λ) = f_elast(q) + Φ_q(q)ᵀ λ - f_ext(q, a)
 //
-// ∂G/∂q has, beside the material stiffness, the turning of the forces that are already there: the elastic
-// geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load stiffness. Increments are
-// (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from equilibrium.
+// ∂G/∂q has, beside the material stiffness K of (19), the rotation of the present forces: the
+// elastic geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load
+// stiffness. Increments are (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from
+// equilibrium.
 //
-// Everything below is a variation of a force F at a lever,
-// written as 3×12 matrices over (Δr_i, Δπ_i, Δr_j, Δπ_j):
+// Everything below is a variation of a force F at a lever, written as 3×12 matrices over (Δr_i,
+// Δπ_i, Δr_j, Δπ_j):
 //
 //   δp = δr - s̃ δπ,   δu = -ũ δπ,   δ(x × F) = -F̃ δx + x̃ δF .
 #pragma once
@@ -25,8 +26,8 @@ namespace detail {
 template <class Real>
 using Variation = Eigen::Matrix<Real, 3, 12>;
 
-// δp of a point with lever s on the first (slot 0) or second
-// (slot 1) body, and δu of a direction fixed in it.
+// δp of a point with lever s on the first (slot 0) or second (slot 1) body; below, δu of a fixed
+// direction.
 template <class Real>
 Variation<Real> of_point(int slot, const Vector3<Real>& s) {
     Variation<Real> v = Variation<Real>::Zero();
@@ -56,7 +57,8 @@ Variation<Real> of_cross(const Vector3<Real>& x, const Variation<Real>& dx, cons
     return tilde(x) * dF - tilde(F) * dx;
 }
 
-// Adds the variation of the generalised force (F, M about the origin) on one body of the pair (i, j).
+// Adds the variation of the generalised force (F, M about the origin) on one body of the pair (i,
+// j).
 template <class Real, class Target>
 void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variation<Real>& dM,
          Target& target) {
@@ -100,8 +102,9 @@ Matrix6<Real> strain_rate(const Bushing& e, const Spatial<Real>& g, const Matrix
     return E;
 }
 
-// How the forces F_x, M_φ of a constant stress σ turn: ∂(F_x, M_φ)/∂(x, φ) [6 × 6]. With the frame on i only the
-// moment does, ∂(Hᵀ M')/∂φ. In the middle, with δS = S δη̃, δη = P δφ and Pᵀ = ½ S (I + t̃),
+// Rotation of the forces F_x, M_φ of a constant stress σ: ∂(F_x, M_φ)/∂(x, φ) [6 × 6]. With the
+// frame on i only the moment rotates, ∂(Hᵀ M')/∂φ. In the middle, with δS = S δη̃, δη = P δφ and
+// Pᵀ = ½ S (I + t̃),
 //
 //   δ(S F') = -S F̃' δη
 //   δ(Pᵀ k) = ½ S ( -κ̃ δη - k̃ δt + (I + t̃) δk ),   κ = k + t × k,   k = d × F',   δk = -F̃' δd
@@ -125,7 +128,7 @@ Matrix6<Real> turning_stress(const Bushing& e, const Spatial<Real>& g, const Mat
 }
 
 // Bushing: F = A_i F_x, M = A_i M_φ, the two functions of x and B;
-//   on j: (F, s_j × F + M)      on i: -(F, ρ × F + M),   ρ = p_j - r_i, or s_i without the moment of the offset
+//   on j: (F, s_j × F + M)    on i: -(F, ρ × F + M),   ρ = p_j - r_i, or s_i without offset moment
 //   δx = A_iᵀ (δp_j - δr_i - δπ_i × (s_i + D)),   δφ = A_iᵀ (δπ_j - δπ_i)
 template <class Real, class Target>
 void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
@@ -140,7 +143,8 @@ void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q,
     const Matrix6<Real> E = strain_rate<Real>(e, g, H);
     const ElementForce<Real> force = force_of_stress<Real>(e, g, stress);
 
-    // ∂(F_x, M_φ)/∂(x, φ): what does work on e does it through E; F_x alone where the offset's moment is left out.
+    // ∂(F_x, M_φ)/∂(x, φ): conjugate forces act through E; F_x alone where the offset's moment is
+    // left out.
     Matrix6<Real> through = E;
     if (!e.formulation.conjugate) through.setIdentity();
     if (!e.formulation.offset_moment) through.template topRightCorner<3, 3>().setZero();
@@ -160,8 +164,8 @@ void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q,
               target);
 }
 
-// λ[n  s_i × n; -n  -s_j × n] and its relatives (constraints.hpp), with λ n = F turning as the constraint
-// says.
+// Curvature of λ [n  s_i × n; -n  -s_j × n] and its variants (constraints.hpp): the force λ n = F
+// rotates as the constraint prescribes.
 template <class Real, class Target>
 void add_curvature(const CoincidentPoints& c, Real, const State<Real>& q, const Real* lambda,
                    Target& target) {
@@ -222,7 +226,7 @@ void add_curvature(const DistanceBetween& c, Real length, const State<Real>& q, 
               target);
 }
 
-// A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ. A dead moment has none.
+// A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ. A dead moment has no load stiffness.
 template <class Real, class Target>
 void add_load_stiffness(const DeadForce& force, Real factor, const State<Real>& q, Target& target) {
     const BodyId b = force.at.body;
@@ -231,7 +235,8 @@ void add_load_stiffness(const DeadForce& force, Real factor, const State<Real>& 
 }
 template <class Real, class Target>
 void add_load_stiffness(const DeadMoment&, Real, const State<Real>&, Target&) {}
-// Followers turn: -δf = f̃ δπ for the force, for its moment s × f as for any moment.
+// Follower loads rotate: -δf = f̃ δπ for the force, and the same for its moment s × f and for any
+// moment.
 template <class Real, class Target>
 void add_load_stiffness(const FollowerForce& force, Real factor, const State<Real>& q, Target& target) {
     const BodyId b = force.at.body;
@@ -247,7 +252,7 @@ void add_load_stiffness(const FollowerMoment& moment, Real factor, const State<R
 
 }  // namespace detail
 
-// The parts of ∂G/∂q [6nb × 6nb], added to the top left of `target`: of the elements, of the joints' reactions, of loads.
+// Parts of ∂G/∂q [6nb × 6nb], added to the top left of `target`: elements, joint reactions, loads.
 template <class Real, class Target>
 void add_elastic_tangent(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
                          Target& target) {

@@ -1,18 +1,19 @@
-// Along a path of equilibria by steps of its own: a node, and what it takes to believe in the next.
+// Predictor-corrector continuation along a path of equilibria: nodes and accepted steps.
 //
-// A node is a point z = (q, λ) of the path with its derivative z' = dz/dp, p the parameter that moves (t
-// while settling, a on the branch): ∂G z' = what the drivers add, one more right-hand side for factors that
-// are there anyway. From one node to the next:
+// A node is a point z = (q, λ) of the path with its derivative z' = dz/dp, p the parameter (t while
+// settling, a on the branch): ∂G z' = the drivers' terms, one more right-hand side for the factors
+// of the node. From one node to the next:
 //
-//   forecast     z⁺ = z + h z' + ½ h² z'', z'' from the last two derivatives
-//   corrections  Newton steps, each with its own factors: their sizes fall quadratically, so the last one
-//                squared over the one before is what is left. (With the factors of the old node they hardly
-//                fall at all: where stiff bushings turn beside soft springs, the error of old factors is
-//                their angle times the ratio of the rates.)
+//   predictor    z⁺ = z + h z' + ½ h² z'', z'' from the last two derivatives
+//   corrector    Newton steps, each with fresh factors: their sizes fall quadratically, so the
+//                square of the last one over the one before estimates the remaining error. (With
+//                the factors of the old node they hardly fall: where stiff bushings rotate beside
+//                soft springs, the error of old factors is the angle of rotation times the ratio of
+//                the rates.)
 //
-// Newton's method knows nothing of branches: past a limit point it is glad to land on whatever equilibrium
-// there is. So a step is believed only where the determinant of the matrix has not changed its sign, and
-// where all corrections together are less than half of what was forecast.
+// Newton's method is not bound to the branch: past a limit point it converges to any other
+// equilibrium. So a step is accepted only where the determinant of the matrix keeps its sign and
+// the sum of all corrections is less than half of the predictor step.
 #pragma once
 
 #include "recursive/march.hpp"
@@ -27,7 +28,7 @@ struct Node {
     int orientation = 0;  // sign of the determinant
 };
 
-// Which way is gone, and how near is near enough.
+// The parameter that moves, and the tolerances of the corrector.
 template <class Real>
 struct Going {
     Drive drive = Drive::rate;
@@ -36,18 +37,18 @@ struct Going {
     Place<Real> place(Real p) const { return drive == Drive::start ? Place<Real>{p, 0} : Place<Real>{1, p}; }
 };
 
-// z' at the node, with the factors now in the system.
+// z' at the node, with the factors in the system.
 template <class Real>
 void differentiate(March<Real>& s, const Going<Real>& going, Node<Real>& node) {
     go_to(s, going.place(node.p));
-    drive_at(s, going.drive, Real(1), node.q);
+    drive_at(s, going.drive, Real(1), node.q, node.lambda);
     back_substitute(s);
     node.dq = s.x.head(s.n());
     node.dlambda = s.x.tail(s.m());
     node.orientation = s.system.lu.orientation;
 }
 
-// The motion dq as a share of the tolerances: the worst of any body.
+// Size of the motion dq in units of the tolerances: the largest over all bodies.
 template <class Real, class Motion>
 Real share(const Going<Real>& going, const Motion& dq) {
     Real worst = 0;
@@ -58,12 +59,12 @@ Real share(const Going<Real>& going, const Motion& dq) {
     return worst;
 }
 
-// One Newton correction of (q, lambda) at p; its share of the tolerance goes to `size`.
+// One Newton correction of (q, lambda) at p; `size` returns it in units of the tolerance.
 template <class Real>
 Outcome correct(March<Real>& s, const Going<Real>& going, State<Real>& q, Vector<Real>& lambda, Real p,
                 Real& size) {
     go_to(s, going.place(p));
-    external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);  // what idle modes are checked against
+    external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);  // for the check of idle modes
     if (const Real held = 1 - s.place.t; held != Real(0)) s.applied -= held * s.R_d;
     if (const Outcome outcome = factorise_at(s, q, lambda); outcome != Outcome::converged) return outcome;
     residual_at(s, q, lambda);
@@ -79,24 +80,25 @@ Outcome correct(March<Real>& s, const Going<Real>& going, State<Real>& q, Vector
     return Outcome::converged;
 }
 
-// What a step came to.
+// Result of a step.
 enum class Verdict {
     believed,
-    unsolved,        // the corrections do not fall, or leave too much
-    another_branch,  // an equilibrium, but not the one that was forecast
-    dips,            // on this path, but nearly singular on the way
-    turned_over      // on this path, but past a point where the matrix is singular
+    unsolved,        // the corrections do not fall, or the remaining error is too large
+    another_branch,  // an equilibrium, but far from the predictor
+    dips,            // on this path, but nearly singular in between
+    turned_over      // on this path, but beyond a point where the matrix is singular
 };
 
 template <class Real>
 struct Trial {
     Outcome outcome = Outcome::converged;  // of the linear algebra
     Verdict verdict = Verdict::unsolved;
-    Real left = std::numeric_limits<Real>::infinity();  // of the corrections, as a share of the tolerance
+    // remaining error of the corrector, in units of the tolerance
+    Real left = std::numeric_limits<Real>::infinity();
 };
 
-// From `node` to next.p; `curvature` is z'' (q part, λ part) as far as known. Fills `next`, with derivative
-// where the verdict is another one than `unsolved`.
+// Tries a step from `node` to next.p; `curvature` and `lambda_curvature` estimate z''. Fills
+// `next`, with its derivative unless the verdict is `unsolved`.
 template <class Real>
 Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>& node,
                      const Vector<Real>& curvature, const Vector<Real>& lambda_curvature, Node<Real>& next) {
@@ -105,7 +107,7 @@ Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>&
     next.q = node.q;
     next.lambda = node.lambda + h * node.dlambda + h * h / 2 * lambda_curvature;
     s.dq = h * node.dq + h * h / 2 * curvature;
-    // What the linearisation is worth ends at a radian.
+    // The linearisation of a rotation is invalid beyond one radian.
     for (int b = 0; b < s.n() / 6; ++b)
         if (!(s.dq.template segment<3>(6 * b + 3).norm() <= Real(guard::largest_turn))) return trial;
     const Real forecast = share<Real>(going, s.dq);
@@ -115,15 +117,16 @@ Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>&
         trial.outcome = correct(s, going, next.q, next.lambda, next.p, size);
         if (trial.outcome != Outcome::converged) return trial;
         if (!(size < before)) break;  // not falling: the step is too long
-        // The first correction has no ratio yet; one far below the tolerance may be rounding, whose ratio
-        // says nothing.
+        // The first correction has no ratio yet. A correction far below the tolerance may be
+        // rounding, whose ratio means nothing.
         trial.left = k == 0 || size <= Real(1e-3) ? size : size * (size / before);
         before = size;
         corrected += size;
     }
     if (!(trial.left <= Real(0.01))) return trial;
     differentiate(s, going, next);
-    // The forecast is of second order: where the corrections are half of it, it forecast something else.
+    // The predictor is of second order: corrections of half its step mean that it predicted another
+    // branch.
     const bool continues = corrected <= forecast / 2 + 1;
     trial.verdict = !continues                             ? Verdict::another_branch
                     : next.orientation != node.orientation ? Verdict::turned_over
@@ -131,13 +134,13 @@ Trial<Real> try_step(March<Real>& s, const Going<Real>& going, const Node<Real>&
     return trial;
 }
 
-// Whether the joints contradict each other at the node whose factors are in the system: what stays open when corrections
-// with them have come to rest. q and lambda are room for that.
+// Whether redundant joints are inconsistent at the node whose factors are in the system, by the gap
+// that remains after corrections with these factors. q and lambda are workspace.
 template <class Real>
 bool contradict_at(March<Real>& s, const Node<Real>& node, State<Real>& q, Vector<Real>& lambda) {
     constexpr int corrections = 3;  // each a thousandth of the one before, or less
     if (!says_twice(s)) return false;
-    const Counts counts = s.counts;  // judges, finds nothing: not counted
+    const Counts counts = s.counts;  // a check only: not counted
     q = node.q;
     lambda = node.lambda;
     for (int k = 0; k < corrections; ++k) {
@@ -152,15 +155,16 @@ bool contradict_at(March<Real>& s, const Node<Real>& node, State<Real>& q, Vecto
     return contradict(s, q);
 }
 
-// Why a path does not go on from `node`, judged by the smallest trial of length h that failed.
+// Why the path ends at `node`, judged by the smallest rejected step, of length h.
 template <class Real>
 Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vector<Real>& curvature, Real h,
                     Real length) {
     if (trial.outcome == Outcome::not_finite || trial.outcome == Outcome::loaded_idle_mode)
         return trial.outcome;
-    // Where a singular matrix still has the drivers' rate in its range, z' stays finite and the path goes on past the
-    // point: another crosses it there. Where it has not, z' ~ (p* - p)^-½ and the path turns back at p*; then
-    // z'' (p* - p) = ½ z', and h is about p* - p. A z' that is rounding tells nothing.
+    // If the drivers' rate is in the range of the singular matrix, z' stays finite and the path
+    // continues past a bifurcation point, where another path crosses. If not, z' ~ (p* - p)^-½ and
+    // the path turns back at a limit point p*; then z'' (p* - p) = ½ z', and h is about p* - p. A
+    // z' at rounding level decides nothing.
     const bool moves = node.dq.norm() * (std::abs(node.p) + std::abs(h)) > Real(1e-9) * length;
     if (moves && curvature.norm() * std::abs(h) > Real(0.02) * node.dq.norm()) return Outcome::limit_point;
     if (trial.outcome == Outcome::singular || trial.verdict == Verdict::dips) return Outcome::singular;

@@ -1,11 +1,21 @@
-// Whether a branch goes on as far as it is asked for: what K of (19) cannot see, and a method that steps along it steps
-// over.
+// Detects limit and bifurcation points that K of (19) misses and fixed steps skip.
 //
-// The true branch is followed ahead of the method by a few long tangents (walk.hpp): steps of a quarter of the way at
-// most, each corrected to an equilibrium, believed where the corrections are small beside the step, the determinant of
-// the consistent matrix keeps its sign and the chord agrees with the tangents at its ends; and at the end no stiffness is
-// negative (stiffness.hpp, inertia.hpp), nor is one where it begins. That is a handful of factorisations. Where a step is not believed however it is halved,
-// `adaptive` goes the same way with all its care, and its word is taken: the method ends where the branch does.
+// Before the method runs, the true branch is followed by a few long predictor-corrector steps
+// (walk.hpp) of at most a quarter of the branch, each corrected to an equilibrium. A step is
+// accepted if the corrections are small compared with the step, the determinant of the consistent
+// matrix keeps its sign, and the chord agrees with the tangents at its ends. No stiffness may be
+// negative at the start and at the end of the branch (stiffness.hpp, inertia.hpp).
+//
+// These tests do not detect stability that is lost inside a step and regained before its end. The
+// determinant is therefore evaluated at the midpoint of the first and the last step, and of the two
+// steps at a node where it has a minimum; then at the minimum of the parabola through its three
+// lowest values while that is near zero. Where it changes its sign or nearly vanishes, and where a
+// tried step ends unstable, bisection locates the point. An unstable interval is missed if it is so
+// short that these values of the determinant show no dip; no minimum length is guaranteed.
+//
+// The cost is about fifteen factorisations. If a step is rejected at every length, or stability is
+// lost, `adaptive` follows the same branch. The method then ends where `adaptive` ends, or where
+// bisection found the loss of stability, whichever comes first.
 #pragma once
 
 #include <optional>
@@ -14,17 +24,20 @@
 
 namespace elastocheck::recursive {
 
-// Where the branch ends: limit_point, dividing_point, singular or branch_lost, at this value of its parameter.
+// End of the branch at this parameter value: limit_point, dividing_point, singular, branch_lost,
+// inconsistent_constraints, or from settling loaded_idle_mode.
 struct Event {
     Outcome outcome = Outcome::singular;
-    double load = 0;               // NaN: while what is held at its start settles
-    bool begins_unstable = false;  // what settles there
+    double load = 0;               // NaN: while settling to the start of the branch
+    bool begins_unstable = false;  // whether the start of the branch is unstable
 };
 
-// Looked for with all care; none where `adaptive` comes through, or fails for another reason.
+// Follows the branch with `adaptive`; none where `adaptive` reaches the end or fails for another
+// reason.
 std::optional<Event> find_event(const Model& model, const Branch& branch, const Analysis& analysis);
 
-// None where the few tangents come through, else that; or how settling ended.
+// Follows the branch by few long steps. None if they reach its end and it stays stable; else the
+// failure of settling, the result of find_event(), or the loss of stability found by bisection.
 std::optional<Event> watch(const Model& model, const Branch& branch, const Analysis& analysis);
 
 }  // namespace elastocheck::recursive

@@ -1,7 +1,7 @@
-// Eigen's decompositions of a MatrixXd, compiled once (dense.cpp) instead of in every file that uses one.
+// Explicit instantiation of Eigen's dense decompositions of MatrixXd (in dense.cpp).
 //
-// Part of the precompiled headers and of nothing else. Nothing is defined here: a file that includes Eigen alone
-// compiles its own, which is the same.
+// Included by the precompiled headers only. It defines nothing: a file that includes only Eigen
+// instantiates the same code itself.
 #pragma once
 
 #include <Eigen/Dense>

@@ -9,30 +9,29 @@
 namespace elastocheck::importer {
 namespace {
 
-constexpr int samples = 16;  // a piece
+constexpr int samples = 16;  // per piece
 
 using Theirs = std::function<double(std::size_t piece, double x)>;
 
-double off(const Rows& rows, const Theirs& theirs) {
-    if (rows.size() < 2) return 0;
+Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::monotone) {
+    if (rows.size() < 2) return {};
     std::vector<reader::TablePoint> points;
     double largest = 0;
     for (const auto& [x, f] : rows) {
-        if (!points.empty() && !(x > points.back().x && f >= points.back().f)) return 0;
+        if (!points.empty() && !(x > points.back().x && f >= points.back().f)) return {};
         points.push_back({x, f});
         largest = std::max(largest, std::abs(f));
     }
-    if (!(largest > 0)) return 0;
-    const Curve ours = reader::interpolant(points);
-    double worst = 0;
+    const Curve ours = between == Between::straight ? reader::polygon(points) : reader::interpolant(points);
+    Apart worst{.of = largest};
     for (std::size_t k = 0; k + 1 < rows.size(); ++k)
         for (int n = 1; n < samples; ++n) {
-            const double t = (rows[k + 1].first - rows[k].first) * n / samples;
+            const double t = (rows[k + 1].first - rows[k].first) * n / samples, x = rows[k].first + t;
             const auto& c = ours.pieces[k + 1];
-            worst = std::max(
-                worst, std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, rows[k].first + t)));
+            const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, x));
+            if (force > worst.force) worst.force = force, worst.at = x;
         }
-    return worst / largest;
+    return worst;
 }
 
 double hermite(const Rows& rows, const std::vector<double>& slope, std::size_t k, double x) {
@@ -48,11 +47,12 @@ double secant(const Rows& rows, std::size_t k) {
 
 }  // namespace
 
-// The slope at a point is the mean of the secants beside it, each weighted by how much the two beyond the other differ;
-// beyond the ends the secants go on linearly.
-double off_akima(const Rows& rows) {
+// Akima's slope at a point is a weighted mean of the two adjacent secants. The weight of each is
+// the difference of the two secants on the other side. Beyond the ends the secants are extrapolated
+// linearly.
+Apart off_akima(const Rows& rows, Between ours) {
     const std::size_t n = rows.size();
-    if (n < 2) return 0;
+    if (n < 2) return {};
     std::vector<double> m(n + 3);  // m[k + 2] is the secant behind row k
     for (std::size_t k = 0; k + 1 < n; ++k) m[k + 2] = secant(rows, k);
     const double second = n > 2 ? m[3] : m[2], last_but_one = n > 2 ? m[n - 1] : m[n];
@@ -65,13 +65,14 @@ double off_akima(const Rows& rows) {
         const double a = std::abs(m[k + 3] - m[k + 2]), b = std::abs(m[k + 1] - m[k]);
         slope[k] = a + b > 0 ? (a * m[k + 1] + b * m[k + 2]) / (a + b) : 0.5 * (m[k + 1] + m[k + 2]);
     }
-    return off(rows, [&](std::size_t k, double x) { return hermite(rows, slope, k, x); });
+    return off(
+        rows, [&](std::size_t k, double x) { return hermite(rows, slope, k, x); }, ours);
 }
 
 // Second derivatives M by the tridiagonal equations, zero at the ends.
-double off_natural(const Rows& rows) {
+Apart off_natural(const Rows& rows) {
     const std::size_t n = rows.size();
-    if (n < 2) return 0;
+    if (n < 2) return {};
     const auto h = [&](std::size_t k) { return rows[k + 1].first - rows[k].first; };
     std::vector<double> M(n, 0), diagonal(n, 1), right(n, 0);
     for (std::size_t k = 1; k + 1 < n; ++k) {
@@ -91,13 +92,17 @@ double off_natural(const Rows& rows) {
     });
 }
 
-double off_straight(const Rows& rows) {
+Apart off_straight(const Rows& rows) {
     return off(rows, [&](std::size_t k, double x) {
         return rows[k].second + secant(rows, k) * (x - rows[k].first);
     });
 }
 
-double off_power(const Rows& rows, double factor, double exponent) {
+bool is_straight(const Curve& law) {
+    return std::ranges::all_of(law.pieces, [](const auto& c) { return c[2] == 0 && c[3] == 0; });
+}
+
+Apart off_power(const Rows& rows, double factor, double exponent) {
     return off(rows, [&](std::size_t, double x) { return factor * std::pow(x, exponent); });
 }
 

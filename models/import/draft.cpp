@@ -15,9 +15,9 @@ using Eigen::Vector3d;
 constexpr std::size_t widest = 118;
 constexpr std::size_t longest_name = 64;
 constexpr double same_place = 1e-9;  // of the model's size
-const Vector3d askew =
-    Vector3d(0.6299, 0.5774, 0.5195).normalized();  // x, tilted out of all planes that models have points in
-constexpr std::size_t most_told = 40;               // of one kind in the head of a scene
+// x, tilted out of the planes in which models have points.
+const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();
+constexpr std::size_t most_told = 40;  // parts listed for one kind of note, in the head of a scene
 
 bool is_letter_or_digit(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -35,7 +35,7 @@ std::string told(const Place& place) {
                           : printable(place.what);
 }
 
-// An entry of a section, broken at commas where it is long; the place it comes from at its end, or above it.
+// Writes an entry of a section, with line breaks at commas; its source goes at the end or above.
 void write_entry(const Entry& entry, Text& text) {
     const auto put = [&](const std::string& line) {
         text.yaml += line + "\n";
@@ -65,7 +65,7 @@ void write_section(const char* name, const std::vector<Entry>& entries, Text& te
     for (const Entry& entry : entries) write_entry(entry, text);
 }
 
-// YAML takes a title in quotes whatever it says.
+// Quotes a title for YAML.
 std::string in_quotes(std::string_view title) {
     std::string result = "\"";
     for (const char c : printable(title)) {
@@ -75,7 +75,7 @@ std::string in_quotes(std::string_view title) {
     return result + "\"";
 }
 
-// Text of any length in lines that begin with a mark.
+// Writes text as comment lines.
 void comment(std::string_view what, Text& text, std::string_view indent = "") {
     std::string line = "# ", words(what);
     while (!words.empty()) {
@@ -145,16 +145,62 @@ std::string Names::take(std::string_view wanted) {
     }
 }
 
+void Hardpoints::add(const Vector3d& position, std::string_view wanted, const Place& from) {
+    by_x_.emplace(position.dot(askew), positions_.size());
+    positions_.push_back(position);
+    entries_.push_back({names_.take(wanted), triple(position, size_), from});
+}
+
 std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
     const double near = same_place * size_, key = position.dot(askew);
     for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near;
          ++found)
         if ((positions_[found->second] - position).norm() <= near) return entries_[found->second].name;
-    by_x_.emplace(key, positions_.size());
-    positions_.push_back(position);
-    entries_.push_back({names_.take(wanted), triple(position, size_), from});
+    add(position, wanted, from);
     return entries_.back().name;
 }
+
+namespace {
+
+using Warning = std::pair<Place, std::string>;
+struct Kind {
+    const Warning* worst;  // the one with the largest first number
+    double size;
+    std::vector<const Warning*> all;
+};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Groups warnings that differ only in their numbers, in the order of their first occurrence.
+std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
+    std::vector<Kind> result;
+    std::map<std::string, std::size_t> by_text;
+    for (const Warning& warning : warnings) {
+        std::string text;
+        double first = -1;
+        const std::string& what = warning.second;
+        for (std::size_t k = 0; k < what.size();) {
+            if (!is_digit(what[k])) {
+                text += what[k++];
+                continue;
+            }
+            double number = 0;
+            const auto [end, error] = std::from_chars(what.data() + k, what.data() + what.size(), number);
+            if (first < 0 && error == std::errc{}) first = number;
+            k = static_cast<std::size_t>(end - what.data());
+            if (error != std::errc{}) ++k;
+            text += '#';
+        }
+        const auto [found, is_new] = by_text.try_emplace(text, result.size());
+        if (is_new) result.push_back({&warning, first, {}});
+        Kind& kind = result[found->second];
+        kind.all.push_back(&warning);
+        if (first > kind.size) kind.worst = &warning, kind.size = first;
+    }
+    return result;
+}
+
+}  // namespace
 
 std::vector<std::string> told(const Notes& notes) {
     std::vector<std::string> lines;
@@ -169,13 +215,32 @@ std::vector<std::string> told(const Notes& notes) {
         if (what.size() > most_told) list += fmt::format("; and {} more", what.size() - most_told);
         lines.push_back(fmt::format("Left out, {}: {}.", why, list));
     }
-    for (const auto& [place, what] : notes.warnings)
-        lines.push_back(fmt::format("Warning: {}: {}.", told(place), what));
+    for (const Kind& kind : kinds(notes.warnings)) {
+        const auto& [place, what] = *kind.worst;
+        std::string line = fmt::format("Warning: {}: {}", told(place), what);
+        if (kind.all.size() > 1) {
+            line += fmt::format(" ({} of this kind, this the largest; also ", kind.all.size());
+            std::string others;
+            std::size_t shown = 0;
+            for (const auto* warning : kind.all)
+                if (warning != kind.worst && ++shown <= most_told)
+                    others += (others.empty() ? "" : "; ") + told(warning->first);
+            if (shown > most_told) others += fmt::format("; and {} more", shown - most_told);
+            line += others + ")";
+        }
+        lines.push_back(line + ".");
+    }
     for (const auto& [place, what] : notes.missing)
         lines.push_back(fmt::format("MISSING: {}: {}.", told(place), printable(what)));
     if (!notes.missing.empty())
         lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
     return lines;
+}
+
+std::string commented(std::string_view what) {
+    Text text;
+    comment(what, text);
+    return text.yaml;
 }
 
 Text write(const Draft& draft) {

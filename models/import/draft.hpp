@@ -1,5 +1,5 @@
-// What an importer understood, on its way to the text of a scene: entries as a person would write them, in the order of the
-// file they come from, each with the place it came from. One writer for all formats.
+// Draft of an imported scene: its entries as text, each with its source line.
+// Entries are in the order of the source file. One writer serves all formats.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,17 +14,18 @@
 
 namespace elastocheck::importer {
 
-// A line of a file, and what stands there: "line 80, JOINT/1 'knuckle'".
+// Source line and statement: "line 80, JOINT/1 'knuckle'".
 struct Place {
     int line = 0;
     std::string what;
 };
 
-// ---- Numbers and fields as they stand in a scene.
+// ---- Numbers and fields in the format of a scene.
 
 std::string number(double x);  // the shortest text that reads back as x
 std::string computed(double x,
-                     double scale = 1);  // twelve digits, and nothing below 1e-12 of scale: x was calculated
+                     // for calculated numbers: twelve digits, 0 below 1e-12 of scale
+                     double scale = 1);
 std::string triple(const Eigen::Vector3d& v, double scale = 1);  // "[1, 2, 3]", computed
 std::string direction(const Eigen::Vector3d& u);                 // "x", "-y", "[0.6, 0, 0.8]"
 std::string table(const std::vector<std::pair<double, double>>& rows);
@@ -45,22 +46,24 @@ struct Entry {
     Place from;
 };
 
-// ---- Names: of a scene's letters, each once in its section.
+// ---- Names: of characters allowed in a scene, unique in their section.
 
 class Names {
   public:
-    std::string take(std::string_view wanted);  // the nearest that is allowed and free
+    std::string take(std::string_view wanted);  // the closest name that is allowed and unused
 
   private:
     std::set<std::string> taken_;
     std::unordered_map<std::string, int> last_;
 };
 
-// Hardpoints: one name for each position, to 1e-9 of the model's size.
+// Hardpoints: `at` returns one name for each position, equal to 1e-9 of the model's size; `add`
+// adds a separate hardpoint even at the same position.
 class Hardpoints {
   public:
     explicit Hardpoints(double size = 1) : size_(size) {}
     std::string at(const Eigen::Vector3d& position, std::string_view wanted, const Place& from);
+    void add(const Eigen::Vector3d& position, std::string_view wanted, const Place& from);
     const std::vector<Entry>& entries() const { return entries_; }
 
   private:
@@ -71,13 +74,15 @@ class Hardpoints {
     std::multimap<double, std::size_t> by_x_;
 };
 
-// ---- What is told in the head of the scene, and by the command.
+// ---- Notes in the head of the scene and in the output of the command.
 
 struct Notes {
-    std::map<std::string, int> understood;               // "JOINT" -> 12
-    std::map<std::string, std::vector<Place>> left_out;  // why -> what: it has no static meaning
+    std::map<std::string, int> understood;  // "JOINT" -> 12
+    // reason -> parts without effect in statics
+    std::map<std::string, std::vector<Place>> left_out;
     std::vector<std::pair<Place, std::string>> warnings;
-    std::vector<std::pair<Place, std::string>> missing;  // it has a static meaning, and the scene has it not
+    // parts with an effect in statics that the scene cannot represent
+    std::vector<std::pair<Place, std::string>> missing;
 
     void count(const std::string& kind) { ++understood[kind]; }
     void leave_out(const std::string& why, Place what) { left_out[why].push_back(std::move(what)); }
@@ -87,9 +92,9 @@ struct Notes {
 
 struct Draft {
     std::string title;                  // of the scene
-    std::string source;                 // the file, as the user named it
+    std::string source;                 // the file, as given by the user
     std::string format;                 // "ADAMS dataset"
-    std::vector<std::string> remarks;   // on the head: units, axes
+    std::vector<std::string> remarks;   // for the head: units, axes
     std::string units;                  // "{length: mm, angle: rad, force: N}"
     std::optional<std::string> mirror;  // "left -> right"
     Hardpoints points{1};
@@ -99,14 +104,19 @@ struct Draft {
     Notes notes;
 };
 
-// The text of the scene, read by the ordinary reader. `line_of[n]` is the line of the source of the scene's line n + 1.
+// The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line
+// n + 1.
 struct Text {
     std::string yaml;
     std::vector<Place> line_of;
 };
 Text write(const Draft& draft);
 
-// What the head of the scene says of the notes, and the command after it; a line each, without a mark before it.
+// A line of the head, wrapped, each with its mark and its end.
+std::string commented(std::string_view what);
+
+// The notes as lines of text, for the head of the scene and the output of the command; without
+// comment marks.
 std::vector<std::string> told(const Notes& notes);
 
 }  // namespace elastocheck::importer

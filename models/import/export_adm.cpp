@@ -1,4 +1,4 @@
-// The statements of a scene, one by one, the other way round than adm/joints.cpp and adm/forces.cpp read them.
+// Writes the ADAMS statements of a scene: the inverse of adm/joints.cpp and adm/forces.cpp.
 #include "models/import/export_adm.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/curve.hpp"
+#include "models/import/curves.hpp"
 #include "models/overloaded.hpp"
 #include "models/reader/scene_file.hpp"
 
@@ -21,10 +23,10 @@ std::string list(const Vector3d& v) {
     return fmt::format("{}, {}, {}", real(v.x()), real(v.y()), real(v.z()));
 }
 
-// Body-fixed about z, the new x, the new z [rad].
+// Euler angles 3-1-3: body-fixed about z, the new x, the new z [rad].
 Vector3d euler_313(const Matrix3d& A) {
     const double b = std::atan2(std::hypot(A(0, 2), A(1, 2)), A(2, 2));
-    if (std::hypot(A(0, 2), A(1, 2)) < 1e-14)  // a and c turn about the same axis
+    if (std::hypot(A(0, 2), A(1, 2)) < 1e-14)  // gimbal lock: a and c rotate about the same axis
         return {std::atan2(A(1, 0), A(0, 0)), A(2, 2) > 0 ? 0 : std::acos(-1.0), 0};
     return {std::atan2(A(0, 2), -A(1, 2)), b, std::atan2(A(2, 0), A(2, 1))};
 }
@@ -52,7 +54,7 @@ class Writer {
 
     void whole() {
         std::string& t = result_.text;
-        // A title of its own, whatever the name says.
+        // A fixed form of title, with unprintable characters replaced.
         std::string title = scene_.name;
         for (char& c : title)
             if (c < 0x20 || c > 0x7E) c = '?';
@@ -111,7 +113,7 @@ class Writer {
         result_.text += fmt::format(", I = {}\n, J = {}\n", i, j);
     }
 
-    // ---- Joints. Bodies begin parallel to ground: a direction has the same components on both.
+    // ---- Joints. Bodies start parallel to ground: a direction has the same components on both.
 
     void on_axis(const Joint& joint, const char* kind, const Point& i, const Point& j,
                  const Direction& axis_i, const Direction& axis_j) {
@@ -124,7 +126,7 @@ class Writer {
         statement("JPRIM", next_primitive_++, joint.name, kind, I, J);
     }
 
-    // How much of the first branch's way a drive of this joint makes in one second; 0 where it is held.
+    // Rate of a joint's drive: the first branch that drives it takes one second; 0 if it is held.
     double rate_of(const Joint& joint) const {
         for (const Branch& branch : scene_.branches)
             for (const Driver& driver : branch.drivers)
@@ -134,7 +136,8 @@ class Writer {
         return 0;
     }
 
-    // The drive of a joint that is written already: "crank.drive". A jack, and what stands on some branches alone, is not there.
+    // Writes the drive of an exported joint, "crank.drive". Drives active on some branches only,
+    // such as jacks, are left out.
     void drive(const Joint& joint, const char* kind, double offset) {
         if (joint.only_where_driven)
             return result_.notes.leave_out("standing only where a branch drives it",
@@ -210,22 +213,31 @@ class Writer {
 
     // ---- Elements
 
-    // The points of a curve that an interpolant was made of; empty where it is another one.
-    static std::vector<std::pair<double, double>> points(const Curve& curve) {
-        std::vector<std::pair<double, double>> rows;
+    // The table points from which an interpolating curve was made; empty for any other curve.
+    static Rows points(const Curve& curve) {
+        Rows rows;
         for (std::size_t k = 0; k < curve.knots.size(); ++k)
             rows.emplace_back(curve.knots[k], curve.pieces[k + 1][0]);
         return rows;
     }
-    int spline(const Curve& curve, const std::string& name) {
+    int spline(const Rows& rows, const Curve& law, const std::string& name) {
         std::string x, y;
-        for (const auto& [a, b] : points(curve)) {
+        for (const auto& [a, b] : rows) {
             x += (x.empty() ? "" : "\n, ") + real(a);
             y += (y.empty() ? "" : "\n, ") + real(b);
         }
+        const bool straight = rows.size() > 2 && is_straight(law);
+        const Apart apart = off_akima(rows, straight ? Between::straight : Between::monotone);
+        if (apart.force > 1e-9 * apart.of)
+            result_.notes.warn(
+                {0, "element '" + name + "'"},
+                fmt::format(
+                    "ADAMS runs Akima's curve through its points, a scene {}: up to {:.3g} of {:.3g} N or Nm "
+                    "apart",
+                    straight ? "straight lines" : "the monotone interpolant", apart.force, apart.of));
         called(name + ".spline");
         result_.text += fmt::format("SPLINE/{}\n{}, X = {}\n, Y = {}\n", next_spline_,
-                                    curve.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
+                                    law.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
         return next_spline_++;
     }
 
@@ -240,9 +252,8 @@ class Writer {
     void write(const Elastic& elastic, const AxialSpring& spring) {
         const auto* curve = std::get_if<Curve>(&spring.law);
         const bool is_stop = elastic.written_as == WrittenAs::stop;
-        if (curve && (is_stop ? curve->knots.size() != 1 : curve->knots.size() < 2))
-            return miss("element '" + elastic.name + "'",
-                        "a stop with a curve has no function of ADAMS'; give it a rate");
+        if (curve && !is_stop && curve->knots.size() < 2)
+            return miss("element '" + elastic.name + "'", "its law is no table, and no SPLINE has it");
         const int I = marker(spring.i.body, spring.i.s_local), J = marker(spring.j.body, spring.j.s_local);
         if (!curve) {
             statement("SPRINGDAMPER", next_force_++, elastic.name, "TRANSLATIONAL", I, J);
@@ -250,7 +261,8 @@ class Writer {
                                         real(spring.free_length));
             return;
         }
-        if (is_stop) {  // one knot: a rate on one side of it, nothing on the other
+        if (is_stop && curve->knots.size() > 1) return write_contact(elastic.name, spring, *curve, I, J);
+        if (is_stop) {  // one knot: a rate on one side of it, zero force on the other
             const double touches = spring.free_length + curve->knots[0];
             const double below = curve->pieces[0][1], above = curve->pieces[1][1];
             statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
@@ -263,33 +275,58 @@ class Writer {
                                 J, real(-touches), real(above));
             return;
         }
-        const int points_of = spline(*curve, elastic.name);
+        const int points_of = spline(points(*curve), *curve, elastic.name);
         statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
         result_.text += fmt::format(", FUNCTION = -AKISPL(DM({}, {}) - {}, 0, {})\n", I, J,
                                     real(spring.free_length), points_of);
-        result_.notes.warn({0, "element '" + elastic.name + "'"},
-                           "ADAMS runs Akima's curve through its points, a scene the monotone interpolant");
     }
 
-    void write(const Elastic& elastic, const Bushing& b) {
+    // Writes a stop with a table over its penetration, DIM(a, b) = max(a - b, 0).
+    void write_contact(const std::string& name, const AxialSpring& spring, const Curve& law, int I, int J) {
+        const Contact contact = contact_of(law);
+        const double touches = spring.free_length + contact.touches;
+        const int points_of = spline(contact.rows, law, name);
+        statement("SFORCE", next_sforce_++, name, "TRANSLATIONAL", I, J);
+        if (contact.is_bump)
+            result_.text += fmt::format(", FUNCTION = AKISPL(DIM({}, DM({}, {})), 0, {})\n", real(touches), I,
+                                        J, points_of);
+        else
+            result_.text += fmt::format(", FUNCTION = -AKISPL(DIM(DM({}, {}), {}), 0, {})\n", I, J,
+                                        real(touches), points_of);
+    }
+
+    void write(const Elastic& elastic, const Bushing& bushing) {
+        // ADAMS uses the axes of marker J, which is marker i of a scene. A bushing with its frame
+        // on j is written with its markers swapped.
+        const bool is_on_j = bushing.formulation.frame == Formulation::Frame::on_j;
+        const Bushing b = is_on_j ? turned_round(bushing) : bushing;
         const Matrix3d A_i = b.i.A_local.toRotationMatrix(), A_j = b.j.A_local.toRotationMatrix();
-        // About one axis through one point, whatever the formulation: the same angle.
+        // One axis through one point: the angle is the same in every formulation.
         const auto* linear = std::get_if<LinearStiffness>(&b.law);
-        if (elastic.written_as == WrittenAs::torsion_spring && linear) {
+        if (elastic.written_as == WrittenAs::torsion_spring) {
             const int J = marker(b.i.body, b.i.s_local, A_i), I = marker(b.j.body, b.j.s_local, A_j);
-            statement("SPRINGDAMPER", next_force_++, elastic.name, "ROTATIONAL", I, J);
-            result_.text +=
-                fmt::format(", KT = {}\n, TORQUE = {}\n", real(linear->K(5, 5)), real(-b.preload[5]));
+            if (linear) {
+                statement("SPRINGDAMPER", next_force_++, elastic.name, "ROTATIONAL", I, J);
+                result_.text +=
+                    fmt::format(", KT = {}\n, TORQUE = {}\n", real(linear->K(5, 5)), real(-b.preload[5]));
+                return;
+            }
+            const auto& law = std::get<Curve>(std::get<PerAxis>(b.law).axis[5]);
+            const int points_of = spline(points(law), law, elastic.name);
+            statement("SFORCE", next_sforce_++, elastic.name, "ROTATIONAL", I, J);
+            result_.text += fmt::format(", FUNCTION = {} - AKISPL(AZ({}, {}), 0, {})\n", real(-b.preload[5]),
+                                        I, J, points_of);
             return;
         }
-        const Formulation adams{
-            .frame = Formulation::Frame::on_i, .angles = Formulation::Angles::projected, .conjugate = false};
-        if (!(b.formulation == adams))
+        if (!(b.formulation == adams_bushing)) {
             miss("element '" + elastic.name + "'",
                  "its formulation is not ADAMS' ({angles: projected, conjugate: false}), so the same rates "
-                 "are another law there");
-        if (elastic.written_as == WrittenAs::torsion_spring || !b.formulation.offset_moment) return;
-        // δ counts from J's origin: there the undeformed position is put. Angles have theirs in LENGTH.
+                 "are another law there; --formulation adams converts it, and says by how much the outputs "
+                 "move");
+            if (!b.formulation.offset_moment) return;
+        }
+        // δ is measured from J's origin, so that J is placed at the undeformed position. LENGTH
+        // holds the undeformed angles.
         const int J = marker(b.i.body, b.i.s_local + A_i * b.undeformed.head<3>(), A_i),
                   I = marker(b.j.body, b.j.s_local, A_j);
         const Vector6 force = -b.preload;
@@ -308,10 +345,12 @@ class Writer {
                 if (const auto* rate = std::get_if<LinearRate>(&axes->axis[k]))
                     functions += fmt::format(", {} = {} - {} * {}\\\n", components[k], real(at_zero),
                                              real(rate->k), x);
-                else
-                    functions += fmt::format(
-                        ", {} = {} - AKISPL({}, 0, {})\\\n", components[k], real(at_zero), x,
-                        spline(std::get<Curve>(axes->axis[k]), elastic.name + "." + components[k]));
+                else {
+                    const auto& curve = std::get<Curve>(axes->axis[k]);
+                    functions +=
+                        fmt::format(", {} = {} - AKISPL({}, 0, {})\\\n", components[k], real(at_zero), x,
+                                    spline(points(curve), curve, elastic.name + "." + components[k]));
+                }
             }
             called(elastic.name);
             result_.text += fmt::format("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n{}", next_gforce_++,
@@ -336,7 +375,7 @@ class Writer {
                         list(force.head<3>()), list(force.tail<3>()));
     }
 
-    // ---- Loads: on ground react what nobody asks for.
+    // ---- Loads; their reactions act on ground and are not used.
 
     void load(const std::string& name, BodyId body, const Vector3d& s, const Vector3d& force,
               const Vector3d& moment, bool follows) {
@@ -369,6 +408,19 @@ class Writer {
 
 }  // namespace
 
+Contact contact_of(const Curve& law) {
+    Contact contact{.is_bump = law.pieces.back() == std::array<double, 4>{}, .touches = 0, .rows = {}};
+    const double inward = contact.is_bump ? -1 : 1;
+    std::vector<double> knots = law.knots;
+    if (contact.is_bump) std::ranges::reverse(knots);
+    // the first knot of an open side lies beyond any motion (reader/curves.cpp)
+    if (!law.known_outside) knots.erase(knots.begin());
+    contact.touches = knots.front();
+    for (const double x : knots)
+        contact.rows.emplace_back(inward * (x - contact.touches), inward * force(law, x));
+    return contact;
+}
+
 void require_whole(const Exported& exported, const Scene& scene, bool allow_missing) {
     if (exported.notes.missing.empty() || allow_missing) return;
     std::string message;
@@ -377,8 +429,8 @@ void require_whole(const Exported& exported, const Scene& scene, bool allow_miss
     throw SceneError(message + "--allow-missing exports the rest, and says so in it");
 }
 
-Exported export_adm(const Scene& scene, bool allow_missing) {
-    Exported result;
+Exported export_adm(const Scene& scene, bool allow_missing, Notes notes) {
+    Exported result{.text = {}, .notes = std::move(notes)};
     Writer(scene, result).whole();
     require_whole(result, scene, allow_missing);
     return result;

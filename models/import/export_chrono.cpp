@@ -1,4 +1,4 @@
-// The entries of GenericWheeledSuspension, the other way round than chrono/chrono.cpp reads them.
+// Writes the entries of GenericWheeledSuspension: the inverse of chrono/chrono.cpp.
 #include "models/import/export_chrono.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +8,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
+#include <set>
 
+#include "models/curve.hpp"
+#include "models/import/chrono/suspension.hpp"
+#include "models/import/curves.hpp"
 #include "models/overloaded.hpp"
 #include "models/reader/scene_file.hpp"
 
@@ -56,7 +61,7 @@ class Writer {
             const Name& name = names_[b];
             if (name.side < 0 || static_cast<BodyId>(b) == spindle_ ||
                 static_cast<BodyId>(b) == other_spindle_)
-                continue;  // its image stands for it; Chrono has spindles of its own
+                continue;  // written by its mirror image, or a spindle, which Chrono adds itself
             root["Bodies"].push_back({{"Name", name.stem},
                                       {"Mirrored", twice_ || name.side != 0},
                                       {"Position", list(scene_.bodies[b].design.r)},
@@ -66,7 +71,10 @@ class Writer {
                                       {"Products of Inertia", {0, 0, 0}}});
         }
         for (const Joint& joint : scene_.joints) write(root, joint);
-        for (const Elastic& elastic : scene_.elastics) write(root, elastic);
+        // Springs first: they include their stops.
+        for (const bool stops : {false, true})
+            for (const Elastic& elastic : scene_.elastics)
+                if ((elastic.written_as == WrittenAs::stop) == stops) write(root, elastic);
         for (const Load& load : scene_.static_loads)
             miss("load '" + load.name + "'", "a suspension carries none of its own");
         for (const Branch& branch : scene_.branches)
@@ -82,12 +90,12 @@ class Writer {
   private:
     struct Name {
         std::string stem;
-        int side = 0;  // of one of a pair
+        int side = 0;  // if one of a pair
     };
 
     void miss(const std::string& what, const std::string& why) { result_.notes.miss({0, what}, why); }
 
-    // "arm_left" and "arm_right", drawn as each other's image.
+    // Pairs "arm_left" and "arm_right" if they are mirror images as drawn.
     void pair_bodies() {
         const auto& bodies = scene_.bodies;
         for (const Body& body : bodies) names_.push_back({body.name});
@@ -116,7 +124,7 @@ class Writer {
     }
     Vector3d drawn(const Point& point) const { return drawn(point.body, point.s_local); }
 
-    // Of a body that a fixed joint alone holds to another: the other one.
+    // For a body held only by a fixed joint: the body that it is fixed to.
     BodyId held_by(BodyId id) const {
         BodyId carrier = ground;
         int uses = 0;
@@ -197,7 +205,7 @@ class Writer {
                                return id != ground && (id == spindle_ || id == other_spindle_);
                            };
                            if (!is_spindle(k.i.body) && !is_spindle(k.j.body))
-                               plain("Lock", k);  // else Chrono's own
+                               plain("Lock", k);  // else Chrono adds the joint itself
                        },
                        [&](const InLine& k) { plain("Point Line", k, with_x(k.axis_j.u_local)); },
                        [&](const InPlane& k) {
@@ -227,13 +235,14 @@ class Writer {
 
     void write(json& root, const Elastic& elastic, const AxialSpring& spring) {
         const auto* curve = std::get_if<Curve>(&spring.law);
-        if (elastic.written_as == WrittenAs::stop || (curve && curve->knots.size() < 2))
-            return miss("element '" + elastic.name + "'",
-                        "stops in Chrono are of one hard-coded curve, which this is not");
+        if (elastic.written_as == WrittenAs::stop) return require_written(elastic, spring);
+        if (curve && curve->knots.size() < 2)
+            return miss("element '" + elastic.name + "'", "its law is no table, and no entry has it");
         json& one = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
         one["Point1"] = list(drawn(spring.i));
         one["Point2"] = list(drawn(spring.j));
         one["Free Length"] = spring.free_length;
+        stops_of(one, spring);
         if (!curve) {
             one["Spring Coefficient"] = std::get<LinearRate>(spring.law).k;
             return;
@@ -242,11 +251,71 @@ class Writer {
         for (std::size_t k = 0; k < curve->knots.size(); ++k)
             rows.push_back({curve->knots[k], curve->pieces[k + 1][0]});
         one["Spring Curve Data"] = rows;
-        result_.notes.warn({0, "element '" + elastic.name + "'"},
-                           "Chrono runs straight between the rows and holds the ends, a scene smoothly");
+        result_.notes.warn(
+            {0, "element '" + elastic.name + "'"},
+            is_straight(*curve)
+                ? "Chrono holds the ends of a table, a scene goes on or ends there"
+                : "Chrono runs straight between the rows and holds the ends, a scene smoothly");
     }
 
-    // Chrono's: one frame, isotropic in displacements, of rotations one rate about z and one across.
+    // ---- Stops. Chrono creates them between the ends of a spring, with one fixed curve, if both
+    // lengths are given.
+
+    static bool is_between_same(const AxialSpring& a, const AxialSpring& b) {
+        const auto same = [](const Point& p, const Point& q) {
+            return p.body == q.body && p.s_local == q.s_local;
+        };
+        return same(a.i, b.i) && same(a.j, b.j);
+    }
+
+    // For a stop with Chrono's curve (its forces at the rows, constant beyond them): whether it is
+    // a bump stop, and the length at which it touches [m]; else none.
+    static std::optional<std::pair<bool, double>> touching(const AxialSpring& stop) {
+        const auto& law = std::get<Curve>(stop.law);
+        const Contact contact = contact_of(law);
+        const double inward = contact.is_bump ? -1 : 1, largest = chrono::stop_table.back().second;
+        const auto is_off = [&](double p, double f) {
+            return std::abs(inward * force(law, contact.touches + inward * p) - f) > 1e-9 * largest;
+        };
+        for (const auto& [p, f] : chrono::stop_table)
+            if (is_off(p, f)) return std::nullopt;
+        if (!law.known_outside || is_off(1, largest)) return std::nullopt;
+        return std::pair{contact.is_bump, stop.free_length + contact.touches};
+    }
+
+    void stops_of(json& one, const AxialSpring& spring) {
+        constexpr double never = 1e3;  // [m]
+        std::optional<double> least, most;
+        for (const Elastic& elastic : scene_.elastics) {
+            const auto* stop = std::get_if<AxialSpring>(&elastic.kind);
+            if (elastic.written_as != WrittenAs::stop || !is_between_same(*stop, spring)) continue;
+            const auto touches = touching(*stop);
+            auto& length = touches && touches->first ? least : most;
+            if (!touches || length) continue;
+            length = touches->second;
+            written_.insert(elastic.name);
+            if (is_straight(std::get<Curve>(stop->law))) continue;
+            const Apart apart = off_straight(chrono::stop_table);
+            result_.notes.warn(
+                {0, "element '" + elastic.name + "'"},
+                fmt::format("Chrono runs straight between the rows of its stop, a scene smoothly: "
+                            "up to {:.3g} of {:.3g} N apart",
+                            apart.force, apart.of));
+        }
+        if (!least && !most) return;
+        one["Minimum Length"] = least.value_or(0);
+        one["Maximum Length"] = most.value_or(never);
+    }
+
+    void require_written(const Elastic& elastic, const AxialSpring& stop) {
+        if (written_.contains(elastic.name)) return;
+        miss("element '" + elastic.name + "'",
+             touching(stop) ? "Chrono's stops belong to a spring between the same points, one each way"
+                            : "stops in Chrono are of one hard-coded curve, which this is not");
+    }
+
+    // Bushings that Chrono can represent: one frame, isotropic in displacement, with one rotational
+    // rate about z and one across.
     void write(json& root, const Elastic& elastic, const Bushing& b) {
         const std::string what = "element '" + elastic.name + "'";
         const auto* linear = std::get_if<LinearStiffness>(&b.law);
@@ -266,9 +335,8 @@ class Writer {
             return miss(what, "Chrono's bushing has one frame, rates along its axes and no preload");
         const Vector6 k = linear->K.diagonal();
         const bool round = k[3] == k[4] && k[4] == k[5];
-        const Formulation theirs{.conjugate = false};
         if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
-            !(b.formulation == theirs || (round && b.formulation == Formulation{})))
+            !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))
             return miss(what,
                         "Chrono's bushing is alike in all directions, and about z and across it; others are "
                         "another law there");
@@ -288,14 +356,15 @@ class Writer {
     const Scene& scene_;
     Exported& result_;
     std::vector<Name> names_;
-    bool twice_ = false;  // the scene is the left side of two
+    std::set<std::string> written_;  // stops, with their springs
+    bool twice_ = false;             // the scene is the left side of two
     BodyId spindle_ = ground, other_spindle_ = ground;
 };
 
 }  // namespace
 
-Exported export_chrono(const Scene& scene, bool allow_missing) {
-    Exported result;
+Exported export_chrono(const Scene& scene, bool allow_missing, Notes notes) {
+    Exported result{.text = {}, .notes = std::move(notes)};
     Writer(scene, result).whole();
     require_whole(result, scene, allow_missing);
     return result;

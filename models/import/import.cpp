@@ -20,7 +20,7 @@ std::string where(const Place& place) {
     return place.line > 0 ? fmt::format(":{}", place.line) : std::string();
 }
 
-// All that is missing, a line each, as one error.
+// Throws one error with all missing parts, one a line.
 [[noreturn]] void refuse(const std::string& file, const Notes& notes) {
     std::string message;
     for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
@@ -36,7 +36,7 @@ std::string where(const Place& place) {
     throw SceneError(message);
 }
 
-// What the reader says of the scene, with the place in the file that the line of the scene came from.
+// Throws the reader's error with the source line of the scene's line.
 [[noreturn]] void explain(const std::string& file, const Text& text, std::string_view message) {
     int line = 0;
     if (message.starts_with(name_of_text)) {
@@ -70,6 +70,9 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
                 "{} is no ending that is known here; allowed: .adm (ADAMS datasets), .json (Chrono::Vehicle "
                 "suspensions), .sub (hardpoints of Adams/Car)",
                 reader::quote(ending)));
+    if (!options.axes.empty() && ending != ".sub")
+        reader::fail(file, 0, "--axes",
+                     "for hardpoints of Adams/Car (.sub) alone; the axes of a model are those of its file");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                                             : import_subsystem(text, file, options);
@@ -82,7 +85,7 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
     result.joints = static_cast<int>(draft.joints.size());
     result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() + draft.stops.size() +
                                        draft.torsion_springs.size());
-    if (ending != ".sub") {  // hardpoints alone are no scene yet
+    if (ending != ".sub") {  // hardpoints only: not a scene
         try {
             const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
             result.bodies = static_cast<int>(scene.bodies.size());
@@ -97,7 +100,7 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
 
 Imported import_file(const std::filesystem::path& file, const Options& options) {
     const std::string name = file.string();
-    const reader::TextFile read = reader::read_text(file, largest_file);
+    const reader::TextFile read = reader::read_text(file, reader::Pipes::refused, largest_file);
     if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
     if (read.text.size() > largest_file)
         reader::fail(name, 0, "", "larger than 16 MiB, which no model of a suspension is");

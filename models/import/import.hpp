@@ -1,5 +1,5 @@
-// Models of other programs as scenes: a file in, the text of a scene out, which the ordinary reader then reads.
-// What each format means, and what of it a scene can say: README.md.
+// Imports models of other programs: converts a file to the text of a scene for the ordinary reader.
+// README.md describes each format and what a scene can represent of it.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,18 @@
 namespace elastocheck::importer {
 
 struct Options {
-    std::string wheel;  // the body that is the wheel carrier, or a marker on it; empty: what the format says
-    bool drop_dynamics =
-        false;  // what acts against motion alone is left out whole: dampers, friction, masses without gravity
-    bool allow_missing = false;  // what cannot be represented is a warning instead of an error
+    // wheel carrier, or a marker on it; empty: the default of the format
+    std::string wheel;
+    // leave out all that acts only against motion: dampers, friction, masses without gravity
+    bool drop_dynamics = false;
+    bool allow_missing = false;  // a part that cannot be represented is a warning, not an error
+    // of a table of hardpoints: "x-rearward,y-right"; empty: the default of the format
+    std::string axes = {};
 };
+
+// Allowed values of `axes`: x, then y; z completes the right-handed frame.
+inline constexpr const char* axes_of_tables[] = {"x-forward,y-left", "x-rearward,y-right",
+                                                 "x-forward,y-right", "x-rearward,y-left"};
 
 struct Imported {
     std::string yaml;
@@ -24,13 +31,15 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// By its name: .adm, .json, .sub. Throws SceneError "file:line: ...": what is wrong with it, or has no place in a scene.
+// Selects the format by extension: .adm, .json, .sub. Throws SceneError "file:line: ..." for errors
+// in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
-// The same from text. `file` stands for it in messages and in the head of the scene, and says the format.
+// The same from text. `file` names it in messages and in the head of the scene, and gives the
+// format.
 Imported import_text(std::string_view text, const std::string& file, const Options& options);
 
-// ---- One for each format.
+// ---- Importers, one per format.
 Draft import_adm(std::string_view text, const std::string& file, const Options& options);
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);

@@ -15,12 +15,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double parallel = 1e-6;  // sine of the angle between directions that are taken for one
+constexpr double parallel = 1e-6;  // sine of the angle below which directions count as parallel
 
-// ---- The course: where it runs.
+// ---- Path of the beam.
 
 struct Course {
-    std::vector<std::string> hardpoints;  // that it goes through
+    std::vector<std::string> hardpoints;  // on the path
     std::vector<Vector3d> nodes;          // from end to end [m]
     std::vector<std::size_t> corners;     // positions in `nodes` of the hardpoints
     BodyId first = ground, last = ground;
@@ -28,8 +28,9 @@ struct Course {
     std::size_t segments() const { return nodes.size() - 1; }
 };
 
-// The segments of each leg: one each, and always one more where they are longest. Of equal legs the first comes
-// first, then the last, and so inwards, which keeps what is symmetric symmetric wherever the number allows.
+// Segments of each leg: one each, and further ones where segments are longest. Among equal legs the
+// first is served first, then the last, and so inwards, which keeps a symmetric beam symmetric
+// where possible.
 std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
     const std::size_t legs = lengths.size();
     std::vector<std::size_t> inwards;
@@ -87,14 +88,14 @@ Course read_course(const Cursor& at, const Definitions& defs) {
     return course;
 }
 
-// Whether the points, taken from the other end, are their own image in the mirror.
+// Whether the points in reverse order are their own mirror image.
 bool is_own_image(const std::vector<Vector3d>& points) {
     for (std::size_t k = 0; k < points.size(); ++k)
         if (!((reflected(points[k]) - points[points.size() - 1 - k]).norm() <= coincident)) return false;
     return true;
 }
 
-// Whether both sides share the beam so that its first half is the image of its second.
+// Whether both sides share the beam and its first half is the mirror image of its second.
 bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions& defs) {
     const BodyId image =
         course.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(course.first)];
@@ -110,11 +111,11 @@ bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions&
     return true;
 }
 
-// ---- The bodies at its nodes.
+// ---- Bodies at the nodes.
 
 std::string numbered(const std::string& name, std::size_t k) { return fmt::format("{}.{}", name, k); }
 
-// Adds the bodies 1, 2, ... of the beam `name` at the nodes inside, under the names they go by.
+// Adds the bodies 1, 2, ... of the beam `name` at its inner nodes, with all their names.
 void add_bodies(const Cursor& at, const std::string& name, const Course& course, Definitions& defs) {
     const auto id = [&](std::size_t node) { return static_cast<BodyId>(defs.bodies.size() + node - 1); };
     for (std::size_t k = 1; k < course.segments(); ++k)
@@ -141,13 +142,13 @@ Course image(Course course, const Mirror& mirror) {
     return course;
 }
 
-// ---- The cross-section, and the stiffness of a segment.
+// ---- Cross-section, and stiffness of a segment.
 
 struct CrossSection {
     double EA = 0;              // [N]
     double EI_y = 0, EI_z = 0;  // [N·m²]
     double GJ = 0;              // [N·m²]
-    double GA_y = 0, GA_z = 0;  // [N]; 0 where shear bends nothing
+    double GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
     bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
 };
 
@@ -166,7 +167,7 @@ Unit power_of_length(const Units& u, int n) {
     return {u.length.name + (n == 2 ? "²" : "⁴"), std::pow(u.length.divide, n)};
 }
 
-// Of a rod, or a tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
+// Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
 CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, double G, const Units& units) {
     for (const char* field : {"A", "I_y", "I_z", "J", "shear_y", "shear_z", "up"})
         if (const auto given = at.optional(field))
@@ -212,7 +213,7 @@ Matrix6 stiffness(const CrossSection& s, double L) {
     return k.asDiagonal();
 }
 
-// The direction that z is nearest to; none for a round section, for which any will do.
+// Direction closest to z; none for a round section, where any direction will do.
 std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section, const Definitions& defs) {
     if (const auto up = at.optional("up")) return direction(*up, defs);
     if (!section.is_round())
@@ -220,7 +221,7 @@ std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section, c
     return std::nullopt;
 }
 
-// x along the leg, z across it towards `up`.
+// x along the leg, z perpendicular to it towards `up`.
 Eigen::Quaterniond axes(const Cursor& at, const Vector3d& leg, const std::optional<Vector3d>& up) {
     const Vector3d x = leg.normalized();
     const Vector3d across = up ? Vector3d(*up - up->dot(x) * x) : x.unitOrthogonal();

@@ -1,13 +1,13 @@
-// Branches: what moves, how far, and what is held meanwhile.
+// Reads branches: drivers, range, and values held constant.
 //
-// Each term of a branch is start + rate·a in the units that the file declares for it, a in the unit of the branch:
+// Each term of a branch is start + rate·a in the declared units, a in the unit of the branch:
 //
 //   load, at least one force   a [force]         force [-], moment [moment/force]
 //   load, moments only         a [moment]        moment [-]
 //   drive                      a [unit of the first quantity driven], rates per unit of a
 //   static_loads, hold         rate 0
 //
-// One entry of `loads` may serve all of these, so only the branch knows its unit.
+// The same entry of `loads` may be used in all these ways, so its unit depends on the branch.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ bool is_zero(const Load& load) {
                       load.kind);
 }
 
-// The parameter's unit, and what it is in SI.
+// Kind and unit of the parameter.
 struct Parameter {
     ParameterUnit kind;
     Unit unit;
@@ -46,7 +46,7 @@ double weight_of(const Term& term, const char* what) {
     return weight;
 }
 
-// The moment as what is per unit of a force.
+// Converts the moment to moment per unit of force.
 void in_arms(Load& load, const Unit& arm) {
     const auto convert = [&](Eigen::Vector3d& m) {
         m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
@@ -78,7 +78,7 @@ Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Bran
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
         const double rate = weight_of(term, "drives nothing: a value that is kept goes into hold");
-        // From units of the quantity per unit of a, and 1 to 1 where the two are the same.
+        // Rate in quantity units per unit of a; exactly 1 for equal units.
         const double si = quantity.unit.name == parameter->unit.name
                               ? rate
                               : quantity.unit.si(rate) / parameter->unit.si(1);
@@ -117,7 +117,7 @@ void require_different(const Cursor& branch, const std::vector<Driver>& drivers)
         }
 }
 
-// `from` and `to` in SI, and the steps between them.
+// Reads `from` and `to` in SI, and the number of steps.
 void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies, Branch& branch) {
     const Cursor to = at.require("to");
     const auto from = at.optional("from");
@@ -132,7 +132,8 @@ void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies
                         "other side, or 0",
                         from->found()));
     const Cursor steps = at.require("steps");
-    branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, most_steps);  // one each way at least
+    // at least one per side
+    branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, most_steps);
     if (branch.steps * static_cast<double>(bodies) > most_poses)
         steps.fail(fmt::format("{} steps of {} bodies are too many positions to keep; allowed: {:.0f}",
                                branch.steps, bodies, std::floor(most_poses / static_cast<double>(bodies))));
@@ -157,7 +158,7 @@ Branch read_branch(const std::string& name, const Cursor& at, const Units& units
     return branch;
 }
 
-// ---- What a branch moves must be there still when the scene is compiled.
+// ---- Checks that the drivers of a branch survive compilation.
 
 std::string reason(const Model& model, const std::string& what) {
     for (const Omission& omission : model.left_out)

@@ -18,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
-constexpr double parallel = 1e-6;    // sine of the angle between axes that are taken for one
+constexpr double parallel = 1e-6;    // sine of the angle below which axes count as parallel
 
 Vector3d rates(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "rates");
@@ -31,7 +31,8 @@ using Axes = Matrix3d;  // columns: the frame's axes in ground axes
 
 struct FrameField {
     Axes axes = Axes::Identity();
-    std::optional<int> only_axis;  // if only this one was given, the other two are any perpendicular pair
+    // set if one axis was given: the other two are any perpendicular pair
+    std::optional<int> only_axis;
 };
 
 // The right-handed frame with the axes a and b (0 x, 1 y, 2 z) along e_a and e_b.
@@ -62,7 +63,7 @@ FrameField read_frame(const Cursor& at, const Definitions& defs) {
     return {completed(a, e_a, b, across.normalized()), std::nullopt};
 }
 
-// The axes on the second body, where it is turned against the first as drawn.
+// Axes on the second body, if the bodies are rotated relative to each other as drawn.
 Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& defs) {
     const FrameField other = read_frame(at, defs);
     if (frame.only_axis || other.only_axis)
@@ -74,9 +75,9 @@ Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& 
 
 // ---- The stiffness of a bushing.
 
-// S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do not mix
-// units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a row that is not zero makes S
-// clearly indefinite.
+// S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do
+// not mix units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a non-zero row
+// makes S clearly indefinite.
 Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
     const auto one_if_zero = [](double x) { return x == 0 ? 1 : x; };
     Vector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
@@ -104,9 +105,9 @@ void require_symmetric(const Cursor& at, const Matrix6& K) {
                                     j + 1, K(i, j), j + 1, i + 1, K(j, i)));
 }
 
-// The unit of each of the four blocks; both off-diagonal ones are force/angle, so that the 6×6 is symmetric as
-// written in any units. That is no congruence (√(force/length · moment/angle) is another unit than
-// force/angle), so what is judged is the matrix in SI units, never the one that was written.
+// Units of the four blocks. Both off-diagonal blocks are force/angle, so that the 6×6 is symmetric
+// as written in any units. This scaling is no congruence (√(force/length · moment/angle) differs
+// from force/angle), so definiteness is tested on the matrix in SI units.
 const Unit& unit_of_entry(int i, int j, const Units& units) {
     if ((i < 3) != (j < 3)) return units.coupling;
     return i < 3 ? units.rate : units.rotational_rate;
@@ -129,7 +130,7 @@ Matrix6 read_stiffness(const Cursor& at, const Units& units) {
     return K;
 }
 
-// ---- The law: a stiffness, or one law for each axis where some have curves.
+// ---- The law: a stiffness matrix, or one law per axis if any axis has a curve.
 
 constexpr const char* axis_names[] = {"x", "y", "z", "rx", "ry", "rz"};
 
@@ -141,7 +142,7 @@ Matrix6 read_rates(const Cursor& bushing, const Units& units) {
     return K;
 }
 
-// On axes with a curve it stands in place of the rate.
+// A curve replaces the rate of its axis.
 PerAxis read_curves(const Cursor& at, const Matrix6& K, const Definitions& defs) {
     at.only_keys({std::begin(axis_names), std::end(axis_names)});
     if (at.value->keys.empty()) at.fail("empty; a curve for one of the axes is needed");
@@ -183,7 +184,7 @@ SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
     return LinearStiffness{K};
 }
 
-// Three numbers of a translation and three of a rotation, zero where they are not given.
+// Three translational and three rotational numbers; zero where not given.
 Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, const char* theta,
                   const Unit& unit_theta) {
     Vector6 pair = Vector6::Zero();
@@ -192,7 +193,7 @@ Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, cons
     return pair;
 }
 
-// The first of each is what a bushing has unless it says otherwise.
+// Defaults: the first choice of each field.
 Formulation read_formulation(const Cursor& at) {
     at.only_keys({"frame", "angles", "conjugate", "offset_moment"});
     using Frame = Formulation::Frame;
@@ -212,10 +213,10 @@ Formulation read_formulation(const Cursor& at) {
     return result;
 }
 
-// ---- Whether one axis says enough about the frame.
+// ---- Check that one axis defines the frame.
 
-// A quarter turn is enough to tell: a tensor of second order or a vector that
-// survives it survives any turn. It only swaps entries, so nothing is rounded.
+// A quarter turn suffices for the test: a second-order tensor or vector that is invariant under it
+// is invariant under any rotation. It only swaps entries, without rounding.
 Matrix6 quarter_turn(int axis) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     Matrix3d turn = Matrix3d::Zero();
@@ -227,8 +228,8 @@ Matrix6 quarter_turn(int axis) {
     return turn_both;
 }
 
-// The rates of the law, or none where it has a curve across the axis: a sum of laws of two components is the same
-// all round where they are one square law.
+// The rates of the law, or none if an axis across has a curve: a sum of two scalar laws is
+// rotationally symmetric only if both are the same quadratic law.
 std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
     const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
         Matrix6 K = Matrix6::Zero();
@@ -243,7 +244,7 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
         overloaded{[](const LinearStiffness& u) { return std::optional<Matrix6>(u.K); }, of_axes}, law);
 }
 
-// Refuses a frame of this axis alone, unless the bushing stays the same when it turns about the axis.
+// Rejects a frame with only this axis unless the bushing is rotationally symmetric about it.
 void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) {
     const auto refuse = [&](const char* why) {
         frame.fail(fmt::format("one axis is not enough, as {}; give a second one", why));

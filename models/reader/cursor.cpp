@@ -13,13 +13,13 @@
 namespace elastocheck::reader {
 namespace {
 
-// The size of a number that is not zero: no conversion, product or quotient then leaves the range of double.
+// Range of non-zero numbers: no conversion, product or quotient then leaves the range of double.
 constexpr double least_size = 1e-30, largest_size = 1e30;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
-// Letters of any language, digits, _ and, not first, - + . and spaces inside: what survives as a file name,
-// as the head of a column and on a command line.
+// Letters of any language, digits, _ and, not first, - + . and inner spaces: safe in file names,
+// column heads and command lines.
 bool is_name(std::string_view name) {
     const auto is_letter = [](char c) {
         const bool is_ascii = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -39,7 +39,7 @@ void Cursor::fail(const std::string& what) const {
 }
 
 Cursor Cursor::at(const Value& other, const std::string& its_path) const {
-    return {&other, its_path, file, numbers};
+    return {&other, its_path, file, numbers, {}, accesses};
 }
 
 std::string Cursor::found() const {
@@ -64,6 +64,7 @@ void Cursor::only_keys(const std::vector<std::string>& allowed) const {
 }
 
 std::optional<Cursor> Cursor::optional(const std::string& key) const {
+    if (accesses) accesses->looked_for[value].insert(key);
     const auto found = std::find(value->keys.begin(), value->keys.end(), key);
     if (found == value->keys.end()) return std::nullopt;
     return at(value->items[static_cast<std::size_t>(found - value->keys.begin())], child_path(path, key));
@@ -92,6 +93,7 @@ std::vector<Cursor::Named> Cursor::entries() const {
 }
 
 std::vector<Cursor> Cursor::items() const {
+    if (accesses) accesses->read.insert(value);
     std::vector<Cursor> items;
     for (std::size_t k = 0; k < value->items.size(); ++k) {
         items.push_back(at(value->items[k], path));
@@ -107,6 +109,7 @@ std::vector<Cursor> Cursor::list(std::size_t size, const std::string& what) cons
 }
 
 const std::string& Cursor::text(const std::string& what) const {
+    if (accesses) accesses->read.insert(value);
     if (value->kind != Value::Kind::scalar || value->text.empty())
         fail(fmt::format("expected {}, found {}", what, found()));
     if (std::any_of(value->text.begin(), value->text.end(), is_control))
@@ -115,6 +118,7 @@ const std::string& Cursor::text(const std::string& what) const {
 }
 
 double Cursor::number(const std::string& unit) const {
+    if (accesses) accesses->read.insert(value);
     std::string_view digits = value->text;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     double x = 0;
@@ -123,6 +127,7 @@ double Cursor::number(const std::string& unit) const {
     if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
         std::isnan(x))
         fail(fmt::format("expected a number, found {}", found()));
+    if (value->is_string) fail(fmt::format("expected a number, found the string \"{}\"", value->text));
     const double size = std::abs(x);
     if (error != std::errc() || (size != 0 && !(size >= least_size && size <= largest_size)))
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(), least_size,
@@ -134,6 +139,7 @@ double Cursor::number(const std::string& unit) const {
 bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
 
 int Cursor::whole_number(int least, int most) const {
+    if (accesses) accesses->read.insert(value);
     const std::string& digits = value->text;
     int n = 0;
     const char* const end = digits.data() + digits.size();

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double round_off = 1e-12;  // relative, of forces that should be equal
 
-// Where a stop is open it is known for ever: its law has a knot beyond all that moves [m].
+// An open stop has a known law (zero force): its first knot lies beyond any motion [m].
 constexpr double beyond_all = 1e6;
 
-// The points of x ≥ 0 and, before them, their mirror images -f(-x).
+// The points with x ≥ 0, preceded by their mirror images -f(-x).
 std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& half) {
     if (half.front().x != 0 || half.front().f != 0)
         at.fail("the table of a symmetric curve begins with [0, 0], and the other half is made from it");
@@ -42,19 +42,25 @@ void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) 
     }
 }
 
+Curve through(const Cursor& curve, const std::vector<TablePoint>& points) {
+    const auto way = curve.optional("interpolation");
+    const bool is_linear = way && way->one_of("a way between the rows", {"monotone", "linear"}) == 1;
+    return is_linear ? polygon(points) : interpolant(points);
+}
+
 bool is_known_outside(const Cursor& curve) {
     const auto outside = curve.optional("outside");
     return !outside || outside->one_of("a way to go on", {"linear", "unknown"}) == 0;
 }
 
-// The force over the penetration s: zero up to s = 0.
+// Force over the penetration s: zero up to s = 0.
 Curve read_contact(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"table", "file", "scale", "outside"});
+    at.only_keys({"table", "file", "scale", "interpolation", "outside"});
     auto points = read_table(at, of_lengths(defs.units), defs);
     if (points.front().x != 0 || points.front().f != 0)
         at.fail("the table of a stop begins with [0, 0], where it touches");
     if (const auto factor = at.optional("scale")) scale(*factor, points);
-    Curve contact = interpolant(points);
+    Curve contact = through(at, points);
     contact.pieces.front() = {};
     contact.known_outside = is_known_outside(at);
     if (!contact.known_outside) {
@@ -67,13 +73,13 @@ Curve read_contact(const Cursor& at, const Definitions& defs) {
 }  // namespace
 
 Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& defs) {
-    at.only_keys({"table", "file", "scale", "offset", "symmetric", "outside"});
+    at.only_keys({"table", "file", "scale", "offset", "symmetric", "interpolation", "outside"});
     auto points = read_table(at, units, defs);
     if (const auto symmetric = at.optional("symmetric"); symmetric && symmetric->yes_or_no())
         points = odd(*symmetric, points);
     if (const auto factor = at.optional("scale")) scale(*factor, points);
     if (const auto offset = at.optional("offset")) shift(*offset, units.deflection, points);
-    Curve curve = interpolant(points);
+    Curve curve = through(at, points);
     curve.known_outside = is_known_outside(at);
     return curve;
 }
@@ -103,8 +109,8 @@ Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
     return stop == Stop::rebound ? law : reversed(law);
 }
 
-// f never falls. Outside the knots it goes on straight; on an interval whose ends are on both sides of the force, halves
-// are taken until no number is between them.
+// f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
+// bisection runs to the last bit.
 double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit) {
     const auto& x = curve.knots;
     const auto at_knot = [&](std::size_t k) { return curve.pieces[k + 1][0]; };

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 struct Moment {
-    const char *name, *dot, *star;  // "N·m", and as keyboards have it
+    const char *name, *dot, *star;  // "N·m", and its keyboard forms
     double divide, multiply;
 };
 constexpr Moment moments[] = {{"N·m", "N*m", "Nm", 1, 1},

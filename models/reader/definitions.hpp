@@ -1,4 +1,4 @@
-// What the rest of a scene file refers to: units, hardpoints, bodies.
+// Definitions that the rest of a scene file refers to: units, hardpoints, bodies.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ struct Units {
     Unit rate;             // force/length
     Unit coupling;         // force/angle
     Unit rotational_rate;  // moment/angle
-    Unit arm;              // moment/force: a length, of a moment that grows with a force
+    Unit arm;              // moment/force: a length, for a moment proportional to a force
 };
 
 struct Definitions {
@@ -36,14 +36,14 @@ struct Definitions {
     std::optional<Mirror> mirror;
     std::map<std::string, Eigen::Vector3d> points;  // [m], ground axes
     std::map<std::string, BodyId> body_ids;         // with ground
-    std::vector<Body> bodies;                       // twins behind the others
-    std::vector<BodyId> twin_of;                    // of each body; itself where it is shared
-    std::optional<std::filesystem::path> folder;    // where the files that the scene names are
+    std::vector<Body> bodies;                       // twins at the end
+    std::vector<BodyId> twin_of;                    // of each body; itself if it is shared
+    std::optional<std::filesystem::path> folder;    // folder of the files that the scene refers to
 };
 
 Definitions read_definitions(const Cursor& scene);
 
-// Two hardpoints nearer than this are one [m]: a direction or a length between them would be round-off.
+// Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
 double rate(const Cursor& at, const Unit& unit);                                  // zero or more, SI
@@ -58,7 +58,7 @@ struct BodyPair {
 };
 BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], different
 
-// A ground position as a point of the body: s_local = p - r, as bodies begin parallel to ground.
+// A ground position as a point of the body: s_local = p - r, since bodies start parallel to ground.
 Point point_of(BodyId body, const Eigen::Vector3d& p, const Definitions& defs);
 
 }  // namespace elastocheck::reader

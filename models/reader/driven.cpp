@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr int no_joint = -1;
 
-// Bodies begin parallel to ground: a direction has the same components on both.
+// Bodies start parallel to ground: a direction has the same components on both.
 Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
     const Vector3d x = axis_j.u_local.unitOrthogonal();
     const Vector3d y = axis_j.u_local.cross(x).normalized();
@@ -65,7 +65,8 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
     }
 }
 
-// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is a free length.
+// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to a free
+// length.
 void add_spring(int k, const std::string& name, const AxialSpring& spring, const Units& units,
                 Drivables& result) {
     const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
@@ -89,7 +90,7 @@ void add_spring(int k, const std::string& name, const AxialSpring& spring, const
                spring.law);
 }
 
-// A torsion spring is preloaded about its axis alone.
+// A torsion spring has a preload about its axis only.
 void add_bushing(int k, const NamedElement& element, const Units& units, Drivables& result) {
     const bool is_torsion = element.path.starts_with("torsion_springs.");
     for (int axis = is_torsion ? 5 : 0; axis < 6; ++axis) {
@@ -105,7 +106,8 @@ void add_bushing(int k, const NamedElement& element, const Units& units, Drivabl
 }
 
 void add_elements(const Scene& scene, const Units& units, const NamedElements& elements, Drivables& result) {
-    for (const auto& entry : elements) {  // not taken apart: clang 14 lets no lambda have the parts
+    // no structured binding: clang 14 cannot capture its parts
+    for (const auto& entry : elements) {
         const int k = entry.first;
         const NamedElement& element = entry.second;
         std::visit(overloaded{[&](const AxialSpring& e) { add_spring(k, element.path, e, units, result); },
@@ -114,8 +116,8 @@ void add_elements(const Scene& scene, const Units& units, const NamedElements& e
     }
 }
 
-// A jack holds the wheel centre, or the contact patch, at a height: the ground point that it has at the design
-// position, and the plane z there.
+// A jack holds the wheel centre, or the contact patch, at a height: in the plane z through its
+// ground position in the design.
 void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
     for (const Wheel& wheel : scene.wheels) {
         const Vector3d& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;

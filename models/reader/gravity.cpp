@@ -19,7 +19,7 @@ Vector3d read_acceleration(const Cursor& at, const Definitions& defs) {
     return g;
 }
 
-// [kg]; none where the body has no mass
+// [kg]; none if the body has no mass
 std::optional<double> read_mass(const Cursor& body) {
     const auto mass = body.optional("mass");
     if (!mass) {

@@ -1,4 +1,4 @@
-// Joints: one entry of the table per type.
+// Reads joints: a table with one entry per type.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double square = 1e-9;  // largest cosine between axes that are to be perpendicular
+constexpr double square = 1e-9;  // largest cosine between axes that must be perpendicular
 
-// What every joint is read from. Its axes are fixed in both bodies, which begin parallel to ground.
+// Fields of a joint. Its axes are fixed in both bodies, which start parallel to ground.
 struct JointFields {
     const Cursor& at;
     const Definitions& defs;
@@ -28,7 +28,8 @@ struct JointFields {
     Direction axis_j(const char* key) const { return {bodies.j, direction(at.require(key), defs)}; }
 };
 
-// `axis_i` and `axis_j`, perpendicular as written to 1e-9 and made so to the last digit.
+// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then made exactly
+// perpendicular.
 std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     const Direction i = f.axis_i("axis_i");
     Direction j = f.axis_j("axis_j");
@@ -118,7 +119,8 @@ const JointType& joint_type(const Cursor& joint) {
         for (const std::string& field : type.fields)
             if (std::find(fields.begin(), fields.end(), field) == fields.end()) fields.push_back(field);
     }
-    // The fields of all types first, so that a misspelt `type` is an unknown field and not a missing one.
+    // Check against the fields of all types first: a misspelt `type` is then an unknown field, not
+    // a missing one.
     joint.only_keys(fields);
     return joint_types()[joint.require("type").one_of("a joint type", names)];
 }

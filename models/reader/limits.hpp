@@ -1,11 +1,11 @@
-// How much a scene may ask for. Every limit is said by a message that names the field, before it is worked on.
+// Size limits of a scene. Exceeding one is reported with the field, before any work is done.
 #pragma once
 
 #include <cstddef>
 
 namespace elastocheck::reader {
 
-inline constexpr std::size_t largest_text = 1 << 20;  // [bytes] of a scene, of a table beside it
+inline constexpr std::size_t largest_text = 1 << 20;  // [bytes] of a scene, or of a table file
 inline constexpr std::size_t deepest_nesting =
     16;  // a scene needs five: bushings, one bushing, stiffness, its rows
 inline constexpr std::size_t longest_name = 64;     // [bytes]

@@ -1,5 +1,6 @@
-// Loads, as written: what a moment is per unit of depends on the branch that uses it (branches.cpp). Bodies begin
-// parallel to ground, so that a follower has the same components in the axes of its body.
+// Reads loads (forces and moments) of a scene.
+// The unit of a moment depends on the branch that uses it (branches.cpp). Bodies start parallel to
+// ground, so that a follower has the same components in the axes of its body.
 #include <fmt/format.h>
 
 #include "models/reader/sections.hpp"

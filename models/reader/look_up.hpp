@@ -1,4 +1,4 @@
-// A name that refers to something defined elsewhere in the scene.
+// Looks up a name that is defined elsewhere in the scene.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 
 namespace elastocheck::reader {
 
-// What `at` names in the table; an error names the nearest entry.
-// `kind` says what the table holds, "hardpoint".
+// The table entry that `at` names; the error message suggests the nearest name. `kind` names the
+// kind of entry, e.g. "hardpoint".
 template <class T>
 const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
     const std::string& name = at.text("the name of a " + kind);

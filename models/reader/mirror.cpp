@@ -27,7 +27,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-// Every name in the sections of the scene.
+// Whether any name in the sections of the scene contains the mirrored word.
 bool any_name_turns(const Mirror& mirror, const Cursor& scene) {
     for (const Value& section : scene.value->items)
         for (const std::string& name : section.keys)
@@ -44,8 +44,8 @@ BodyId twin(BodyId body, const Definitions& defs) {
     return body == ground ? ground : defs.twin_of[static_cast<std::size_t>(body)];
 }
 
-// p' = S p:  s' = S (r + s) - r' = S s + (S r - r'), and the bracket is 0 to the bit unless the body is shared and
-// its origin is off the plane.
+// p' = S p:  s' = S (r + s) - r' = S s + (S r - r'). The bracket is exactly 0 unless the body is
+// shared and its origin is off the plane.
 Vector3d twin_place(BodyId body, const Vector3d& s_local, const Definitions& defs) {
     if (body == ground) return reflected(s_local);
     const auto origin = [&](BodyId b) { return defs.bodies[static_cast<std::size_t>(b)].design.r; };
@@ -59,7 +59,8 @@ Direction axial(const Direction& u, const Definitions& defs) {
     return {twin(u.body, defs), -reflected(u.u_local)};
 }
 
-// A' = S A S. The vector part of a quaternion is along the axis of its rotation, axial: v' = -S v.
+// A' = S A S. The vector part of a quaternion is parallel to its rotation axis, an axial vector:
+// v' = -S v.
 Marker twin(const Marker& m, const Definitions& defs) {
     const Vector3d v = -reflected(Vector3d(m.A_local.vec()));
     return {twin(m.body, defs), twin_place(m.body, m.s_local, defs),

@@ -1,4 +1,4 @@
-// What is read off a scene: wheels, probes, dampers, and the vehicle that they belong to.
+// Reads outputs of a scene: wheels, probes, dampers, and the vehicle data.
 #include <fmt/format.h>
 
 #include "models/reader/sections.hpp"
@@ -13,7 +13,7 @@ struct Place {
     Point point;
 };
 
-// An end of a steering axis: a hardpoint, which is fixed to the wheel's body, or one on another body.
+// An end of a steering axis: a hardpoint fixed to the wheel's body, or one on another body.
 Place end_of_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
     const bool elsewhere = at.value->kind == Value::Kind::map;
     if (elsewhere) at.only_keys({"on", "at"});

@@ -30,7 +30,7 @@ std::string capitals(std::string_view text) {
     return result;
 }
 
-// Words between blanks; what is in single quotes is one, without its padding.
+// Splits at blanks; text in single quotes is one word, without its padding.
 std::vector<std::string> words(std::string_view line) {
     std::vector<std::string> result;
     for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
@@ -48,7 +48,7 @@ std::vector<std::string> words(std::string_view line) {
     return result;
 }
 
-// Without a comment; a $ in quotes is none.
+// Removes a comment; a $ in quotes does not start one.
 std::string_view without_comment(std::string_view line) {
     bool quoted = false;
     for (std::size_t n = 0; n < line.size(); ++n) {
@@ -126,8 +126,9 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
     int line_number = 0;
     std::size_t rows = 0;
     const auto wrong = [&](const std::string& what) { fail(name, line_number, "", what); };
+    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::size_t end = std::min(text.find(line_end), text.size());
         std::string_view line = trimmed(without_comment(text.substr(0, end)));
         text.remove_prefix(std::min(end + 1, text.size()));
         ++line_number;
@@ -162,7 +163,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
             if (block.table.columns.empty()) wrong("a table without columns");
             continue;
         }
-        // A value, or a row of the table: in a row there is no "=" but in quotes.
+        // A value, or a row of the table: a row has "=" only in quotes.
         const std::size_t equals = line.find('='), quoted = line.find('\'');
         if (equals != line.npos && equals < quoted) {
             const auto given = words(line.substr(equals + 1));

@@ -1,11 +1,12 @@
-// Property files of Adams/Car in TeimOrbit's format: springs (.spr), bushings (.bus), bump and rebound stops (.bum, .reb),
-// and the tables of hardpoints in subsystems (.sub).
+// Reads property files of Adams/Car in TeimOrbit format.
+// Springs (.spr), bushings (.bus), bump and rebound stops (.bum, .reb), and the tables of
+// hardpoints in subsystems (.sub).
 //
 //   $ a comment              to the end of the line
 //   [BLOCK]                  a block; repeated ones are a list
 //   (SUBBLOCK)               a table within it
 //   {name name ...}          its columns, then rows of numbers or of words in single quotes
-//   NAME = value             a number, a word, or text in single quotes, which may be padded with blanks
+//   NAME = value             a number, a word, or text in single quotes, optionally with blanks
 #pragma once
 
 #include <filesystem>
@@ -25,7 +26,7 @@ struct PropertyTable {
 };
 
 struct PropertyBlock {
-    std::string name, subblock;  // "FX_CURVE"; of a subblock its own name as well
+    std::string name, subblock;  // "FX_CURVE"; a subblock has its own name too
     int line = 0;
     std::vector<std::pair<std::string, std::string>> values;  // in capitals, without quotes
     std::vector<int> lines;                                   // of each value
@@ -40,10 +41,11 @@ struct PropertyFile {
     const PropertyBlock* find(std::string_view block) const;
 };
 
-// Throws SceneError "file:line: ..." for what is none.
+// Throws SceneError "file:line: ..." for text in another format.
 PropertyFile parse_property_file(std::string_view text, const std::string& file);
 
-// The rows of a table of numbers, two columns, as a law is made of them: rising, the second not falling.
+// The rows of a table with two columns of numbers as points of a law: first ascending, second
+// non-decreasing.
 std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block, double x_unit,
                                    double f_unit);
 

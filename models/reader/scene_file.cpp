@@ -25,7 +25,8 @@ namespace {
 
 constexpr int format_version = 1;
 
-using Folder = std::optional<std::filesystem::path>;  // of the scene's file; none where it is text
+// of the scene's file; none if the scene is text
+using Folder = std::optional<std::filesystem::path>;
 
 void check_version(const Cursor& scene) {
     const Cursor version = scene.require("elastocheck");
@@ -34,7 +35,7 @@ void check_version(const Cursor& scene) {
                                  version.found(), format_version));
 }
 
-// Every body must be touched by some joint or element, or nothing would hold it.
+// Every body must be attached to some joint or element.
 void check_all_held(const Cursor& scene, const Scene& result) {
     std::vector<bool> held(result.bodies.size(), false);
     const auto hold = [&](BodyId body) {
@@ -50,7 +51,7 @@ void check_all_held(const Cursor& scene, const Scene& result) {
                 .fail("nothing holds it; a joint, spring or bushing is needed");
 }
 
-// An entry on the other side, still under its own name.
+// The mirrored entry, still with its own name.
 Joint reflected(Joint joint, const Definitions& defs) {
     joint.kind = twin(joint.kind, defs);
     return joint;
@@ -74,7 +75,8 @@ Damper reflected(Damper damper, const Definitions& defs) {
 }
 Wheel reflected(const Wheel& wheel, const Definitions& defs) { return twin(wheel, defs); }
 
-// The entries of a section, and behind them their twins. Sections of what may be on one side only have no check.
+// Reads the entries of a section and appends their twins. Sections that may exist on one side only
+// are not checked.
 enum class Sides { both, any };
 
 template <class T>
@@ -103,7 +105,7 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
         }
 }
 
-// A section of elements that branches speak of by their names there; not of the stops in a spring, say.
+// Reads a section of elements that branches refer to by name (excludes e.g. the stops of a spring).
 template <class Read>
 void read_elements(const Cursor& scene, const char* key, const Definitions& defs,
                    std::vector<Elastic>& elastics, NamedElements& named, Read read) {
@@ -111,7 +113,7 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
     read_section(scene, key, defs, Sides::both, elastics, read);
     const auto section = scene.optional(key);
     if (!section) return;
-    std::unordered_map<std::string, bool> is_written;  // false of a twin that is not
+    std::unordered_map<std::string, bool> is_written;  // false for a twin created by the mirror
     for (const std::string& name : section->value->keys) {
         is_written[name] = true;
         if (const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt)
@@ -122,7 +124,7 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
             named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name, !found->second};
 }
 
-// `wheel` is the short form for one that needs no name.
+// `wheel` is the short form for a single wheel without name.
 void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel>& wheels) {
     const auto one = scene.optional("wheel");
     if (one && scene.optional("wheels")) one->fail("given together with wheels; allowed: one of the two");
@@ -138,7 +140,7 @@ void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel
                  });
 }
 
-// The drives of held joints: they stand on every branch. Returns them by the joint that they hold.
+// Adds the drives of held joints, active on every branch. Returns them by the joint that they hold.
 std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene& result) {
     std::map<int, int> drives;
     const auto section = scene.optional("joints");
@@ -160,7 +162,7 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
     return drives;
 }
 
-// The names that the reader gives to stops, after what they are written in, must be free.
+// The names that the reader gives to stops must be unused.
 void require_own_names(const Cursor& scene, const Definitions& defs, const std::vector<Elastic>& elastics) {
     std::unordered_map<std::string, int> called;
     for (const Elastic& elastic : elastics) ++called[elastic.name];
@@ -200,7 +202,7 @@ void require_own_names(const Cursor& scene, const Scene& result) {
         }
 }
 
-// A number that is read in two places is one number of the file.
+// A number that is read twice is recorded once.
 void keep_each_once(std::vector<Number>& numbers) {
     std::set<std::string> seen;
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
@@ -272,7 +274,7 @@ Scene parse_scene(std::string_view text, const std::string& name, std::span<cons
 
 Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings) {
     const std::string name = file.string();
-    const reader::TextFile read = reader::read_text(file);
+    const reader::TextFile read = reader::read_text(file, reader::Pipes::allowed);
     if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
     return reader::read_whole(read.text, name, settings, file.parent_path());
 }

@@ -1,4 +1,4 @@
-// The sections of a scene file, each read by one function.
+// Readers of the sections of a scene file, one function each.
 #pragma once
 
 #include <map>
@@ -29,15 +29,17 @@ Vehicle read_vehicle(const Cursor& at, const Definitions& defs);
 // `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);
 
-// `tyres`: elements between ground and wheel, and what drives their road. The wheels are there already.
+// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the wheels are
+// read.
 void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result);
 
-// `trim`. All that can be adjusted, wheels and probes are there already; what it holds joins the static loads.
+// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to the static
+// loads.
 void read_trim(const Cursor& scene, const Units& units, const std::map<std::string, Load>& loads,
                Drivables& drivables, Scene& result);
 
-// The last section: all else that the scene has must be there. Adds the branches, the joints that their drives
-// need, and the loads that no branch uses to what is left out.
+// Reads the last section: all other parts must be read. Adds the branches, the joints that their
+// drives need, and lists unused loads in left_out.
 void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
                    Drivables& drivables, Scene& scene);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t longest_value = 256;
 
-// The names of a map's or list's entries, as a path has them.
+// Path names of the entries of a map or list.
 std::vector<std::string> names_in(const Value& value) {
     if (value.kind == Value::Kind::map) return value.keys;
     std::vector<std::string> names;
@@ -22,10 +22,10 @@ std::vector<std::string> names_in(const Value& value) {
     return names;
 }
 
-// How far a path leads: names may have dots in them, so every one that fits is tried.
+// Result of following a path. Names may contain dots, so every matching name is tried.
 struct Reached {
     Value* value;
-    std::string_view rest;  // of the path; empty where it leads all the way
+    std::string_view rest;  // unmatched part of the path; empty if the whole path matches
 };
 
 Reached follow(Value& value, std::string_view path) {

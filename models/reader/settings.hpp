@@ -1,4 +1,4 @@
-// Settings: values of the tree replaced by name, before anything is read from it.
+// Applies settings: replaces values of the tree by path before reading.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace elastocheck::reader {
 
-// Throws SceneError: a path that leads nowhere or not to one value, a path set twice, a value that is no line of
-// plain text.
+// Throws SceneError for a path that does not lead to one value, a path set twice, or a value that
+// is not one line of plain text.
 void apply(std::span<const Setting> settings, Value& tree, const std::string& file);
 
 }  // namespace elastocheck::reader

@@ -7,7 +7,7 @@
 namespace elastocheck::reader {
 namespace {
 
-// What lies between two points: a spring that is free at the design length.
+// Reads the two ends as a spring that is free at the design length.
 AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
     const auto [i, j] = body_pair(at.require("bodies"), defs);
     const Eigen::Vector3d from = hardpoint(at.require("from"), defs), to = hardpoint(at.require("to"), defs);
@@ -47,7 +47,7 @@ double free_length(const Cursor& spring, double length, const ScalarLaw& law, co
     return l0;
 }
 
-// The stops among these fields of an entry, called "NAME.FIELD".
+// Appends the stops given in these fields, with the names "NAME.FIELD".
 void add_stops(const std::string& name, const Cursor& at, const AxialSpring& ends, const char* bump,
                const char* rebound, const Definitions& defs, std::vector<Elastic>& list) {
     for (const auto& [field, kind] : {std::pair{bump, Stop::bump}, {rebound, Stop::rebound}})

@@ -45,8 +45,8 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
     return points;
 }
 
-// ---- CSV: two numbers a line and a comma between them; empty lines and lines that begin with # say nothing, and the
-// first of the others may name the columns.
+// ---- CSV: two comma-separated numbers per line. Empty lines and lines that start with # are
+// ignored; the first other line may be a header.
 
 std::string_view trimmed(std::string_view text) {
     const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -61,7 +61,7 @@ bool begins_with_number(std::string_view text) {
     return std::from_chars(text.data(), text.data() + text.size(), ignored).ec != std::errc::invalid_argument;
 }
 
-// The table as the scene would have it, with the lines of its own file.
+// Parses CSV to a list as in a scene, with the line numbers of the CSV file.
 Value rows_of(std::string_view text) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
@@ -91,7 +91,7 @@ struct FileBeside {
     std::string name, text;
 };
 
-// A file in the scene's folder.
+// Reads a file in the scene's folder.
 FileBeside read_beside(const Cursor& at, const Definitions& defs) {
     const fs::path name = at.text("the name of a file");
     if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
@@ -99,21 +99,31 @@ FileBeside read_beside(const Cursor& at, const Definitions& defs) {
                             at.found()));
     if (!defs.folder) at.fail("read from beside the scene's file, which there is none of here; give a table");
     const fs::path path = *defs.folder / name;
-    const TextFile file = read_text(path);
+    // Resolves symbolic links. A path that cannot be resolved cannot be read either, which is
+    // reported next.
+    std::error_code unknown;
+    const fs::path folder = fs::canonical(defs.folder->empty() ? "." : *defs.folder, unknown),
+                   target = fs::weakly_canonical(path, unknown);
+    if (!unknown && std::ranges::mismatch(folder, target).in1 != folder.end())
+        at.fail(fmt::format(
+            "{} is a symbolic link that leads out of the scene's folder; allowed: a file in it, or in a "
+            "folder below",
+            at.found()));
+    const TextFile file = read_text(path, Pipes::refused);
     if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
     if (file.text.size() > largest_text)
         at.fail(fmt::format("{}: larger than 1 MiB, which no table is", at.found()));
     return {path.string(), file.text};
 }
 
-// What a property file of Adams/Car is, by its name: spring, bump stop, rebound stop.
+// Whether the name is that of an Adams/Car property file: spring, bump stop, rebound stop.
 bool is_property_file(const std::string& name) {
     return name.ends_with(".spr") || name.ends_with(".bum") || name.ends_with(".reb");
 }
 
 std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units, const Definitions& defs) {
     const auto [file_name, text] = read_beside(at, defs);
-    if (is_property_file(file_name)) {  // in units of its own
+    if (is_property_file(file_name)) {  // with its own units
         if (units.deflection.name != defs.units.length.name)
             at.fail(fmt::format("{} is a curve of lengths, and this is one of angles", at.found()));
         const PropertyFile file = parse_property_file(text, file_name);

@@ -1,4 +1,4 @@
-// Tables of a scene: two columns, in the scene or in a CSV file beside it.
+// Reads tables of a scene: two columns, in the scene or in a CSV file beside it.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace elastocheck::reader {
 
-// What a law relates, and the units of its numbers.
+// Units of a law's deflection, force and rate.
 struct LawUnits {
     Unit deflection, force, rate;
-    bool of_spring =
-        false;  // whose property file (.spr) counts what it is shorter by, and what pushes its ends apart
+    bool of_spring = false;  // a property file (.spr) then has compression and pushing force as positive
 };
 LawUnits of_springs(const Units& units);  // of lengths
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 
-// The rows of `table` or `file` of a curve [SI]: at least two, deflections rising, forces not falling.
+// Rows of `table` or `file` of a curve [SI]: at least two, deflections ascending, forces
+// non-decreasing.
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units, const Definitions& defs);
 
 // The six curves of a bushing's property file (.bus), x y z rx ry rz [SI].

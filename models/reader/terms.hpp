@@ -1,4 +1,4 @@
-// What a field lists: one name, several, or names with a number each.
+// Lists in a field: one name, several names, or names with a number each.
 #pragma once
 
 #include <map>
@@ -18,7 +18,8 @@ struct Term {
     double number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
 };
 
-// A name, a list of names or a map of names to numbers; each name once. `what` completes "the name of ...".
+// A name, a list of names or a map of names to numbers, without repeats. `what` completes "the name
+// of ...".
 std::vector<Term> terms(const Cursor& at, const std::string& what);
 
 // The section `loads`, numbers as written.
@@ -27,7 +28,7 @@ const Load& look_up_load(const Term& term, const Loads& loads);
 
 bool is_moment(const Load& load);
 
-// How much of a load is held: a force, or a moment where it is one [N, N·m].
+// The constant value of a load: a force, or a moment for a moment load [N, N·m].
 double held_value(const Term& term, const Load& load, const Units& units);
 
 }  // namespace elastocheck::reader

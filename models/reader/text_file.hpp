@@ -1,4 +1,4 @@
-// Text files as they come, for the readers of scenes and tables.
+// Reads text files for the readers of scenes and tables.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,12 @@
 namespace elastocheck::reader {
 
 struct TextFile {
-    std::string text;     // one byte more than the largest at most: for the reader to refuse
-    std::string trouble;  // why there is none: "no such file"; empty where there is
+    std::string text;     // at most one byte more than `largest`, so that the caller can reject it
+    std::string trouble;  // error message such as "no such file"; empty on success
 };
-TextFile read_text(const std::filesystem::path& file, std::size_t largest = largest_text);
+// A scene may be read from a pipe. Files that a scene refers to and imported files must be regular:
+// reading a pipe would block.
+enum class Pipes { allowed, refused };
+TextFile read_text(const std::filesystem::path& file, Pipes pipes, std::size_t largest = largest_text);
 
 }  // namespace elastocheck::reader

@@ -21,7 +21,7 @@ SpatialLaw about_z(const ScalarLaw& law) {
 
 }  // namespace
 
-// A bushing whose z is the axis, and which resists θ_z alone: its x and y may be any.
+// A bushing with z along the axis that resists only θ_z; its x and y are arbitrary.
 Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs) {
     at.only_keys({"bodies", "at", "axis", "rate", "curve", "preload_moment"});
     const auto [i, j] = body_pair(at.require("bodies"), defs);

@@ -1,4 +1,4 @@
-// Trim: what is adjusted, until what holds, under which loads.
+// Reads a trim: adjustments, conditions, and loads.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +11,10 @@
 namespace elastocheck::reader {
 namespace {
 
-// ---- What is adjusted.
+// ---- Adjustments.
 
-// Whether it stands only on the branches that drive it: a jack, the drive of a joint that is not held, a tyre.
+// Whether it is active only on the branches that drive it: a jack, the drive of a joint not held, a
+// tyre.
 bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
     const auto* preload = std::get_if<Preload>(&quantity.what);
     return quantity.joint.has_value() ||
@@ -53,7 +54,7 @@ std::vector<Trim::Adjustment> read_adjustments(const Cursor& at, const Loads& lo
     return adjustments;
 }
 
-// ---- Until what holds.
+// ---- Conditions.
 
 struct Output {
     ConditionKind what;
@@ -109,7 +110,7 @@ void require_as_many(const Cursor& at, const Trim& trim) {
                             : (missing == 1 ? "adjustment is" : "adjustments are")));
 }
 
-// ---- Under which loads.
+// ---- Loads.
 
 Load scaled(Load load, double value) {
     std::visit(overloaded{[&](DeadForce& l) { l.f *= value; }, [&](DeadMoment& l) { l.m *= value; },

@@ -1,10 +1,11 @@
-// Tyres: a vertical rate under the contact patch.
+// Reads tyres: a vertical rate at the contact patch.
 //
-// A bushing from ground (i) to the wheel (j), both markers at the contact patch of the design position, ground axes:
-// d_z is how far the patch, a point of the wheel, has risen. With the road raised by h the tyre pushes the wheel up
-// by P - k (d_z - h). A bushing pulls j back by ∂U/∂d_z = k d_z + preload, so
+// A bushing from ground (i) to the wheel (j), both markers at the contact patch of the design
+// position, ground axes. d_z is the rise of the patch, a point of the wheel. With the road raised
+// by h the tyre pushes the wheel up by P - k (d_z - h). A bushing pulls j back by
+// ∂U/∂d_z = k d_z + preload, so
 //
-//   preload = -P - k h e_z:   the road is a preload along -k e_z that is driven by a length.
+//   preload = -P - k h e_z:   the road height drives a preload along -k e_z.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
 
 struct Tyre {
     double k = 0;  // [N/m] > 0
-    double P = 0;  // with which it pushes the wheel up at the design position [N]
+    double P = 0;  // force that pushes the wheel up at the design position [N]
 };
 
 Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {

@@ -21,8 +21,8 @@ namespace {
 
 int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 
-// Length of the UTF-8 sequence at the beginning of `text`, 0 if there is none (RFC 3629, table of well-formed
-// sequences).
+// Length of the UTF-8 sequence at the beginning of `text`, 0 if there is none (RFC 3629, table of
+// well-formed sequences).
 std::size_t utf8_length(std::string_view text);
 
 // Collects the parser's events into a tree of values.
@@ -59,11 +59,11 @@ class TreeBuilder final : public YAML::EventHandler {
     void OnMapEnd() override { end(); }
 
   private:
-    // A list or map whose end has not been reached, and the key of a map that still waits for its value.
+    // An unfinished list or map, and the key of a map that has no value yet.
     struct Open {
         Value value;
         std::string key{};
-        int key_line = 0;                                  // 0: no key waits
+        int key_line = 0;                                  // 0: no pending key
         std::unordered_map<std::string, int> key_lines{};  // of all keys so far
     };
 
@@ -117,9 +117,8 @@ class TreeBuilder final : public YAML::EventHandler {
         if (!is_own) fail_at(mark, fmt::format("tags ({}) are not part of the scene format", quote(tag)));
     }
 
-    // What the escapes of a quoted text come out as: names go into tables, scripts and terminals. Some of
-    // them
-    // (\N, \_) yaml-cpp turns into bytes that are not UTF-8.
+    // Names from quoted text go into tables, scripts and terminals. yaml-cpp turns some escapes
+    // (\N, \_) into bytes that are not UTF-8.
     void refuse_unprintable(const YAML::Mark& mark, const std::string& whole) const {
         std::string_view text = whole;
         for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
@@ -135,7 +134,7 @@ class TreeBuilder final : public YAML::EventHandler {
         }
     }
 
-    // The keys on the way to where the parser is, "joints.ball_joint".
+    // The keys from the root to the current position, "joints.ball_joint".
     std::string path() const {
         std::string path;
         for (const Open& level : open)
@@ -173,7 +172,7 @@ std::size_t utf8_length(std::string_view text) {
     return 0;
 }
 
-// yaml-cpp takes some control characters for the end of the text, and reports need valid UTF-8.
+// yaml-cpp treats some control characters as the end of the text, and reports need valid UTF-8.
 void refuse_binary(std::string_view text, const std::string& file) {
     int line = 1;
     for (std::size_t at = 0; at < text.size();) {

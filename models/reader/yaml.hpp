@@ -1,4 +1,4 @@
-// YAML text -> a plain tree that remembers its lines. yaml-cpp does the parsing.
+// Parses YAML text to a tree of values with line numbers, by yaml-cpp.
 #pragma once
 
 #include <string>
@@ -14,20 +14,22 @@ struct Value {
     std::vector<Value> items{};       // of a list or a map, in file order
     std::vector<std::string> keys{};  // of a map: one per item, all different
     int line = 1;                     // where it begins; where its key stands, if it has one
-    bool is_set = false;              // not as the file has it: a setting put it there
+    bool is_set = false;              // the value comes from a setting, not from the file
+    bool is_string = false;           // of JSON: in quotes, so no number
 };
 
-// Refuses, with the line: what is no YAML, duplicate keys, keys that are not plain text, aliases, tags, a
-// second document, nesting deeper than any scene, control characters and bytes that are not UTF-8, more than
-// 1 MiB. Throws SceneError.
+// Rejects, with the line: text that is not YAML, duplicate keys, keys that are not plain text,
+// aliases, tags, a second document, excessive nesting, control characters and bytes that are not
+// UTF-8, more than 1 MiB. Throws SceneError.
 Value parse_yaml(std::string_view text, const std::string& file);
 
 bool is_utf8(std::string_view text);
 
-// What tells an entry of a list in paths, "y" or "4": vectors have x, y, z, all other lists places from 1.
+// Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists positions from
+// 1.
 std::string place_in(const Value& list, std::size_t k);
 
-// Throws SceneError "file:line: field: what"; without the line (0) or the field (empty) where there is none.
+// Throws SceneError "file:line: field: what"; line 0 or an empty field are omitted.
 [[noreturn]] void fail(const std::string& file, int line, const std::string& field, const std::string& what);
 
 }  // namespace elastocheck::reader

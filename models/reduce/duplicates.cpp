@@ -1,4 +1,5 @@
-// Joints that repeat another. What else is redundant depends on the position and is found by whoever solves.
+// Removes joints that repeat another.
+// Other redundancy depends on the position and is found by the legs.
 #include <algorithm>
 #include <map>
 
@@ -24,7 +25,7 @@ bool same_pair(const T& a, const T& b, bool (*same_one)(const decltype(T::i)&, c
     return (same_one(a.i, b.i) && same_one(a.j, b.j)) || (same_one(a.i, b.j) && same_one(a.j, b.i));
 }
 
-// Whether the two are one equation, up to its sign.
+// Whether the two are the same equation up to sign.
 bool same(const CoincidentPoints& a, const CoincidentPoints& b) { return same_pair(a, b, same); }
 bool same(const PointInPlane& a, const PointInPlane& b) {
     if (!same(a.i, b.i) || !same(a.j, b.j)) return false;
@@ -73,7 +74,7 @@ void drop_duplicates(Scene& scene) {
                 if (l == k || !kept.joints[joints[l]] || !kept.joints[joints[k]]) continue;
                 if (!holds(equations[l], equations[k])) continue;
                 if (l > k && holds(equations[k], equations[l]))
-                    continue;  // of two that are the same the first stays
+                    continue;  // of two equal joints the first stays
                 kept.joints[joints[k]] = false;
                 leave_out(scene, named("joint", scene.joints[joints[k]].name),
                           "joint '" + scene.joints[joints[l]].name +

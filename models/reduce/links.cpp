@@ -1,7 +1,7 @@
-// Massless links with a ball at each end become distances.
+// Replaces massless links with a ball at each end by distance constraints.
 //
-// Nothing acts on such a body but its two joints, so that their forces are opposite and equal, and along the line between
-// the balls: what is left of it is that they keep their distance.
+// Only its two joints act on such a body. Their forces are equal and opposite, along the line
+// between the balls, so the link only keeps the distance of the balls.
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -16,14 +16,14 @@ struct Ball {
     Point on_link, on_other;
 };
 
-// What a body has of a spherical joint.
+// The two points of a spherical joint on a body.
 std::optional<Ball> ball(const Joint& joint, BodyId body) {
     const auto* s = std::get_if<Spherical>(&joint.kind);
     if (s == nullptr || joint.only_where_driven) return std::nullopt;
     return s->i.body == body ? Ball{s->i, s->j} : Ball{s->j, s->i};
 }
 
-// For each body the joints on it, as long as that is all it has.
+// The joints on each body, and whether anything else is attached.
 struct Attached {
     std::vector<std::vector<std::size_t>> joints;
     std::vector<bool> has_more;  // an element, a load, an output
@@ -61,7 +61,7 @@ void shorten_links(Scene& scene) {
     for (const Joint& joint : scene.joints) names.insert(joint.name);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         if (on.has_more[b] || on.joints[b].size() != 2) continue;
-        // Of two links on end, one stays: what the other was hung on is no ball any more.
+        // Of two links in series one stays: the joint of the other link is no ball any more.
         if (!kept.joints[on.joints[b][0]] || !kept.joints[on.joints[b][1]]) continue;
         const BodyId body = static_cast<BodyId>(b);
         Joint& joint = scene.joints[on.joints[b][0]];
@@ -69,7 +69,7 @@ void shorten_links(Scene& scene) {
         const auto first_ball = ball(joint, body), second_ball = ball(scene.joints[second], body);
         if (!first_ball || !second_ball || first_ball->on_other.body == second_ball->on_other.body) continue;
         const double length = (second_ball->on_link.s_local - first_ball->on_link.s_local).norm();
-        if (!(length > 1e-9)) continue;  // a double ball, which has no direction
+        if (!(length > 1e-9)) continue;  // coincident balls have no direction
 
         names.erase(joint.name), names.erase(scene.joints[second].name);
         std::string name = scene.bodies[b].name;

@@ -1,12 +1,12 @@
-// What does nothing, what never stands, what is within one body.
+// Removes parts without effect, parts that are never active, and parts within one body.
 #include "models/reduce/parts.hpp"
 #include "models/reduce/passes.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
-// Why the driver does nothing, or nothing where it does something: it has a value somewhere on the branch, of something
-// that has a size. What a Motion holds at 0 is held; a tyre whose road is held at 0 stands on it.
+// Reason why the driver has no effect; empty if it has one: a non-zero start or rate of an input
+// that exists. A Motion at 0 still holds its joint; a tyre with its road at 0 still acts.
 std::string idle(const Driver& driver, const Scene& scene) {
     const bool is_never = driver.start == 0 && driver.rate == 0;
     return std::visit(
@@ -87,7 +87,7 @@ void drop_what_is_within_one_body(Scene& scene) {
     for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
         const ElasticKind& kind = scene.elastics[k].kind;
         const auto [i, j] = ends(kind);
-        // Without an energy it may turn the body that it is on, if it is loaded.
+        // An element without energy may exert a net moment on its body if it is loaded.
         const auto* bushing = std::get_if<Bushing>(&kind);
         const bool turns = i != ground && bushing != nullptr && !has_energy(bushing->formulation) &&
                            (driven.elastics[k] || is_loaded_at_design(kind, scene));

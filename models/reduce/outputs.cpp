@@ -1,4 +1,4 @@
-// What no output sees, and what follows freely.
+// Removes bodies that no output depends on, and bodies that follow another freely.
 #include <numeric>
 #include <optional>
 #include <set>
@@ -9,11 +9,11 @@
 namespace elastocheck::reduce {
 namespace {
 
-// Which bodies hang together, by joints and elements.
+// Graph of bodies connected by joints and elements.
 struct Graph {
     struct Edge {
         BodyId other;
-        bool loaded;  // holds a force at the design pose
+        bool loaded;  // has a force at the design pose
     };
     std::vector<std::vector<Edge>> edges;  // of each body
     std::set<BodyId> outputs, loaded;
@@ -46,7 +46,7 @@ Graph graph_of(const Scene& scene) {
     return graph;
 }
 
-// Bodies that some chain of joints and elements, not through ground, connects to an output.
+// Bodies connected to an output by joints and elements, not through ground.
 std::vector<bool> connected_to_output(const Graph& graph) {
     std::vector<bool> reached(graph.edges.size(), false);
     std::vector<BodyId> to_visit(graph.outputs.begin(), graph.outputs.end());
@@ -60,8 +60,8 @@ std::vector<bool> connected_to_output(const Graph& graph) {
     return reached;
 }
 
-// Whether the body has nothing of its own to say and hangs on at most one of those that are kept. It then
-// moves with that one as if welded to it: no joint is strained and no energy stored.
+// Whether the body has no output and no load and is connected to at most one of the kept bodies. It
+// then moves with that body as if welded to it: no joint is strained and no energy stored.
 bool is_free_follower(const Graph& graph, const std::vector<bool>& kept, BodyId body) {
     if (graph.outputs.contains(body) || graph.loaded.contains(body)) return false;
     std::optional<BodyId> neighbour;
@@ -84,7 +84,7 @@ void drop_what_no_output_sees(Scene& scene) {
     keep_only(scene, kept);
 }
 
-// One after the other, from the loose ends inwards.
+// Removes them one by one, from the ends of chains inwards.
 void drop_free_followers(Scene& scene) {
     const Graph graph = graph_of(scene);
     Kept kept(scene);

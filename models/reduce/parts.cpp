@@ -27,7 +27,7 @@ bool is_zero(const SpatialLaw& law) {
                       law);
 }
 
-// Whether the law has no force at x, give or take what a position is rounded by [m] or [rad].
+// Whether the law has zero force at x within the rounding of a position [m] or [rad].
 bool is_free(const ScalarLaw& law, double x, double rounding) {
     const double below = force(law, x - rounding), above = force(law, x + rounding);
     return std::min(below, above) <= 0 && 0 <= std::max(below, above);
@@ -44,7 +44,7 @@ bool is_free(const SpatialLaw& law, const Vector6& e, double rounding) {
                       law);
 }
 
-// The positions of the parts that stay, -1 for the others.
+// New positions of the kept parts, -1 for the others.
 std::vector<int> renumbered(const std::vector<bool>& kept) {
     std::vector<int> ids(kept.size(), -1);
     int next = 0;
@@ -189,7 +189,8 @@ void keep_only(Scene& scene, Kept kept) {
     const auto renumber = [&](BodyId& b) {
         if (b != ground) b = body[static_cast<std::size_t>(b)];
     };
-    const auto renumber_load = [&](Load& load, const std::string& where) {  // whether it stays
+    // returns whether it stays
+    const auto renumber_load = [&](Load& load, const std::string& where) {
         if (!stays(body_of(load.kind))) {
             leave_out(scene, named("load", load.name), "its body is left out" + where);
             return false;

@@ -1,5 +1,4 @@
-// The parts of a scene, for the passes that make it smaller: what they refer to, what they are at the design
-// position, and how some are taken out.
+// Helpers of the reduction passes: traverse, inspect and remove the parts of a scene.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 
 namespace elastocheck::reduce {
 
-// ---- Every point, direction and marker of a part, each given to f(Point&), f(Direction&), f(Marker&). i comes first,
-// then j.
+// ---- Calls f(Point&), f(Direction&) or f(Marker&) for every point, direction and marker of a
+// part, i first, then j.
 
 template <class F>
 void each_place(JointKind& joint, F f) {
@@ -34,7 +33,8 @@ void each_place(ElasticKind& elastic, F f) {
     std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic);
 }
 
-// Every body that an output reads, ground among them, given to f(BodyId&), of a const Scene f(const BodyId&).
+// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground
+// included.
 template <class S, class F>
 void each_output_body(S& scene, F f) {
     for (auto& wheel : scene.wheels) {
@@ -52,7 +52,7 @@ Ends ends(const JointKind& joint);
 Ends ends(const ElasticKind& elastic);
 BodyId body_of(const LoadKind& load);
 
-// What some branch drives or holds, or the trim adjusts.
+// Calls f for every input that a branch drives or the trim adjusts.
 template <class F>
 void each_driven(const Scene& scene, F f) {
     for (const Branch& branch : scene.branches)
@@ -67,26 +67,28 @@ DrivenParts driven_parts(const Scene& scene);
 
 // ---- At the design position.
 
-inline constexpr double as_drawn = 1e-12;  // [m], or of a unit vector: round-off of what is drawn equal
+// [m], or of a unit vector: tolerance for equality as drawn
+inline constexpr double as_drawn = 1e-12;
 
 Pose design(const Scene& scene, BodyId body);
 Eigen::Vector3d position(const Scene& scene, const Point& p);
 Eigen::Vector3d direction(const Scene& scene, const Direction& u);
 
-// Whether a length, offset or angle of the joint is other than drawn, so that something moves before any load does.
+// Whether a length, offset or angle of the joint differs from the drawing, so that it moves without
+// load.
 bool is_strained_at_design(const JointKind& joint, const Scene& scene);
-// Whether the element has a force. One whose markers are apart, or turned, is taken to have one.
+// Whether the element has a force; assumed if its markers are apart or rotated.
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene);
 
 bool is_zero(const LoadKind& load);
 bool is_zero(const ElasticKind& elastic);  // no law and no preload
 
-// ---- Taking out.
+// ---- Removal.
 
 std::string named(const char* kind, const std::string& name);  // "body 'arm'"
 void leave_out(Scene& scene, const std::string& what, const std::string& why);
 
-// What stays; all of it to begin with.
+// Flags of the parts that stay; initially all.
 struct Kept {
     explicit Kept(const Scene& scene)
         : bodies(scene.bodies.size(), true),
@@ -95,9 +97,9 @@ struct Kept {
     std::vector<bool> bodies, joints, elastics;
 };
 
-// Takes out the rest, which the caller has named in left_out, and what is attached to a body that goes: joints,
-// elements and loads, each named here. Drivers of what goes, go with it; all else keeps to what it spoke of.
-// Pre: no output reads a body that goes.
+// Removes all other parts, which the caller has listed in left_out, and the joints, elements and
+// loads attached to a removed body, which are listed here. Drivers of removed parts are removed;
+// other references are renumbered. Pre: no output reads a removed body.
 void keep_only(Scene& scene, Kept kept);
 
 }  // namespace elastocheck::reduce

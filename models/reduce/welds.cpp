@@ -1,10 +1,11 @@
-// Bodies held together by Fixed joints become one.
+// Merges bodies held together by Fixed joints.
 //
-// Body b is fixed to body c as drawn, and stays where it is in the axes of c: with r, A the design positions,
+// Body b is fixed to body c as drawn and keeps its pose in the axes of c: with r, A the design
+// positions,
 //
 //   s_c = A_cᵀ (r_b + A_b s_b - r_c)      u_c = A_cᵀ A_b u_b      A_local,c = A_cᵀ A_b A_local,b
 //
-// say the same points, directions and markers of it as of c.
+// give the same points, directions and markers as fixed in c.
 #include <numeric>
 
 #include "models/reduce/parts.hpp"
@@ -22,8 +23,9 @@ bool is_as_drawn(const Fixed& s, const Scene& scene) {
            same(direction(scene, s.y_i), direction(scene, s.y_j));
 }
 
-// Sets of bodies that are one, each known by its first; ground, which comes before all, is number 0, body b is b + 1.
-// An output that needs a body keeps it from becoming ground; an end of a damper or of an axis may well be there.
+// Disjoint sets of merged bodies, represented by their first; ground is number 0, body b is b + 1.
+// A body with a wheel or a probe is not merged into ground; an end of a damper or of an axis may
+// be.
 class Sets {
   public:
     explicit Sets(const Scene& scene)
@@ -52,7 +54,7 @@ class Sets {
     std::vector<bool> has_output_;
 };
 
-struct Told {  // of the body c
+struct Told {  // transforms to the representative body c
     const Scene& scene;
     Sets& sets;
 
@@ -74,7 +76,7 @@ struct Told {  // of the body c
         m = {c, at.s_local,
              (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
     }
-    // The components of something that is no unit vector.
+    // Transforms the components of a vector that is not a unit vector.
     Vector3d turned(BodyId body, const Vector3d& v_local) const {
         Direction u{body, v_local};
         (*this)(u);
@@ -104,7 +106,7 @@ struct Told {  // of the body c
     }
 };
 
-// A load on what is ground now. Nothing moves there.
+// Removes a load on a body merged into ground, where nothing moves.
 bool falls_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
     const BodyId body = body_of(load.kind);
     if (body == ground || sets.first(body) != ground) return false;

@@ -7,7 +7,7 @@
 namespace elastocheck::recursive::series {
 namespace {
 
-// ---- Room.
+// ---- Memory.
 
 void reserve_arm(Room& room, Arm& arm, BodyId body) {
     arm.body = body;
@@ -20,7 +20,7 @@ void reserve(Room& room, TurnSeries& t, bool constant = false) {
 void reserve(Room& room, CubicSeries& t) {
     for (auto* all : {&t.xi, &t.inner, &t.slope}) reserve(room, *all);
 }
-// A term between two bodies with the series it needs beside its arms.
+// A term between two bodies: memory for its two arms and for the listed series.
 template <class Term, class Kind, class... Members>
 Term between(Room& room, const Kind& kind, Members... members) {
     Term t;
@@ -137,7 +137,7 @@ LoadSeries load(Room& room, const Load& load, const Driven<double>& factor) {
     return all;
 }
 
-// ---- What a driver moves. What has no offset is driven by none (models/lowering.hpp).
+// ---- Driven inputs. Constraints without an offset cannot be driven (models/lowering.hpp).
 
 template <class T>
 void add(Driven<T>& driven, Drive drive, const Driver& driver, const T& what) {
@@ -172,7 +172,7 @@ void drive(Equations& e, const Model&, const Driver& driver, const Preload& what
     t.rotational = t.rotational || !what.direction.tail<3>().isZero(0);
 }
 
-// What does not move has coefficient 0 alone.
+// A series that does not change has only coefficient 0.
 void settle_on_constants(CoincidentSeries&) {}
 void settle_on_constants(PerpendicularSeries&) {}
 void settle_on_constants(PlaneSeries&) {}
@@ -191,7 +191,7 @@ bool curved(const BushingSeries& t) {
            });
 }
 
-// ---- Where things are at τ = 0.
+// ---- Values at τ = 0.
 
 void place(Arm& arm, const State<double>& q, const Eigen::Vector3d& local) {
     arm.fixed = q[arm.body].lever(local);
@@ -217,7 +217,7 @@ void place(BushingSeries& t, const State<double>& q) {
     const Eigen::Quaterniond p_i = q[e.i.body].p * e.i.A_local, p_j = q[e.j.body].p * e.j.A_local;
     t.E_i = p_i.toRotationMatrix();
     t.to_relative = sandwich(p_i.conjugate(), p_j);
-    if (t.to_relative(0, 0) < 0) t.to_relative = -t.to_relative;  // the shorter way round
+    if (t.to_relative(0, 0) < 0) t.to_relative = -t.to_relative;  // rotation angle below π
 }
 void place(CoincidentSeries& t, const State<double>& q) {
     place(t.i, q, t.kind.i.s_local);
@@ -266,7 +266,7 @@ void turn(Order o, const Equations& e, Arm& arm) {
     linear(o, arm.s, [&](auto of) -> V3 { return of(e[arm.body].C) * arm.fixed; });
 }
 
-// A force with its moment from the lever `at` enters coefficient k of G, times sign.
+// Adds a force with its moment from the lever to coefficient k of G, times sign.
 void push(Equations& e, int k, BodyId b, double sign, const Vector3Series& lever, const Vector3Series& F) {
     if (b == ground) return;
     e.G.segment<3>(6 * b) += sign * at(F, k);
@@ -293,7 +293,7 @@ T coefficient(const Equations& e, const Driven<T>& driven, int k) {
     return k == 0 ? T(moved + driven.start) : moved;
 }
 
-// ---- One function a law: ∂u/∂x of the deformation x, ∂u/∂e of the deformations e.
+// ---- Laws: ∂u/∂x of a deformation x, ∂u/∂e of the deformations e.
 
 void law_gradient(Order o, const LinearRate& law, CubicSeries&, const Scalar& x, Scalar& f) {
     linear(o, f, [&](auto of) { return law.k * of(x); });
@@ -332,7 +332,7 @@ void law_gradient(Order o, const PerAxis& law, BushingSeries& t) {
     });
 }
 
-// ---- One function a geometry.
+// ---- Elements, by geometry.
 
 // F = u'(ℓ - ℓ₀) D / ℓ
 void evaluate(Equations& e, SpringSeries& t, Order o) {
@@ -367,7 +367,7 @@ void evaluate_relative(Equations& e, BushingSeries& t, Order o) {
     linear(o, t.V, [&](auto of) -> V3 { return of(t.relative).template tail<3>(); });
 }
 
-// ---- One function a measure of rotation: θ, then M = Hᵀ M' where δθ = H ω, both in axes of i.
+// ---- Measures of rotation: θ, then M = Hᵀ M' where δθ = H ω, both in axes of i.
 
 // u = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u
 void rotation_vector(BushingSeries& t, Order o) {
@@ -433,8 +433,9 @@ void cardan(BushingSeries& t, Order o) {
     linear(o, z.along, [&](auto of) -> V3 { return {0, -of(x.unit).y(), of(x.unit).x()}; });
     product(o, z.factor, z.along, z.row, scale);
 }
-// H = (1, s_x B_02/r_x, -c_x B_02/r_x;  -s_y B_12/r_y, 1, -c_y B_12/r_y;  -c_z B_20/r_z, -s_z B_20/r_z, 1)
-// from δB = ω̃ B, r the length of the two entries that the angle is made of.
+// H = (1, s_x B_02/r_x, -c_x B_02/r_x;  -s_y B_12/r_y, 1, -c_y B_12/r_y;
+//      -c_z B_20/r_z, -s_z B_20/r_z, 1)
+// from δB = ω̃ B, r the length of the two entries that define the angle.
 void projected(BushingSeries& t, Order o) {
     auto& [x, y, z] = t.angles->axis;
     const Matrix3Series& B = t.angles->B;
@@ -501,9 +502,9 @@ void middle_deformation(BushingSeries& t, Order o) {
         return deformation;
     });
 }
-// B^½ turns by ω_½ = (I + B^½)⁻¹ ω = ½ (I - g̃) ω while B turns by ω, so that with F_i = B^½ F'
+// B^½ rotates by ω_½ = (I + B^½)⁻¹ ω = ½ (I - g̃) ω while B rotates by ω, so that with F_i = B^½ F'
 //   F'·δd = F_i·(δd_i + d_i × ω_½) = F_i·δd_i + ½ (m + g × m)·ω,   m = F_i × d_i
-// which is j's share of the moment of the offset: left out with the whole.
+// which is the part of the offset's moment that acts on j; left out where the moment is left out.
 void middle_force(BushingSeries& t, Order o) {
     MiddleSeries& s = *t.middle;
     linear(o, s.F_local, [&](auto of) -> V3 { return of(t.stress).template head<3>(); });
@@ -513,7 +514,7 @@ void middle_force(BushingSeries& t, Order o) {
     linear(o, t.force_i, [&](auto of) -> V3 { return t.E_i * of(s.F_i); });
 }
 
-// M on j, its opposite on i: what does work on θ, and on d where the frame turns with j.
+// M on j, its opposite on i: conjugate to θ, and to d where the frame rotates with j.
 void evaluate_moment(Equations& e, BushingSeries& t, Order o) {
     linear(o, t.moment_local, [&](auto of) -> V3 { return of(t.stress).template tail<3>(); });
     if (!t.rotational || !t.kind.formulation.conjugate)
@@ -553,7 +554,7 @@ void evaluate(Equations& e, BushingSeries& t, Order o) {
     twist(e, o.k, t.i.body, -1, t.M);
 }
 
-// ---- One function a constraint: Φ_qᵀ λ into G, and Φ.
+// ---- Constraints: adds Φ_qᵀ λ to G, and sets Φ.
 
 void evaluate(Equations& e, CoincidentSeries& t, const Scalar* lambda, double* Phi, Order o) {
     turn(o, e, t.i);

@@ -1,22 +1,25 @@
-// The full equations, order by order:
+// Power series of the full nonlinear equations in the path parameter, computed order by order:
 //
-//   G(q, λ, a) = f_elast(q, a) + Φ_q(q, a)ᵀ λ - f_ext(q, a) = 0,   Φ(q, a) = 0,   q, λ, a power series in τ.
+//   G(q, λ, a) = f_elast(q, a) + Φ_q(q, a)ᵀ λ - f_ext(q, a) = 0,   Φ(q, a) = 0,
 //
-// A body turns from where it is at τ = 0 by the Gibbs vector g = tan(θ/2) n, in which rotation is rational:
+// with power series q, λ, a in τ.
+//
+// A body rotates from its orientation at τ = 0 by the Gibbs vector g = tan(θ/2) n; its rotation is
+// rational:
 //
 //   C(g) = (1 - h·g) I + h̃ + h gᵀ,   h = 2 g / (1 + g·g)
 //
-// once a body: what is fixed in it turns by a linear map of these coefficients. 2 g is Δπ to first order, so
-// that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent of tangent.hpp. derivation.md has it
-// all.
+// C is computed once per body; every vector fixed in the body is a linear map of its coefficients.
+// 2 g is Δπ to first order, so that ∂(G, Φ)/∂x at τ = 0, x = (r, 2 g, λ), is the consistent tangent
+// of tangent.hpp. The derivation is in derivation.md.
 //
-// A curve is a polynomial on each of its pieces: the equations know one of them at a time, as if it went on for
-// ever (pieces.hpp says which, and for how long).
+// A curve is a polynomial on each of its pieces. The equations use one piece at a time, continued
+// beyond its ends (pieces.hpp selects the piece and its range of validity).
 //
-// What a branch drives (loads, offsets, free lengths, preloads) is linear in the parameter: coefficient k of
-// it is a rate times a_k. While what is held settles, the parameter is t, and the starts of the drivers take
-// the place of their rates (inputs.hpp). A term keeps the kind that it is the series of, so that one visit of
-// the terms is all there is.
+// The inputs that a branch drives (loads, offsets, free lengths, preloads) are linear in the
+// parameter: coefficient k is a rate times a_k. While the start settles, the parameter is t, and
+// the starts of the drivers replace their rates (inputs.hpp). A term holds a copy of its element or
+// constraint, so that the model is not needed in the evaluation.
 #pragma once
 
 #include <array>
@@ -49,7 +52,7 @@ struct BodySeries : TurnSeries {
 // A vector fixed in a body.
 struct Arm {
     BodyId body = ground;
-    V3 fixed = V3::Zero();  // as it is at τ = 0
+    V3 fixed = V3::Zero();  // at τ = 0
     Vector3Series s;        // C fixed
 };
 
@@ -66,25 +69,26 @@ struct SpringSeries {
     Arm i, j;
     Vector3Series D, F;
     Scalar length_squared, length, inverse, stretch, force, tension;  // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
-    CubicSeries cubic;                                                // where the law is a curve
+    CubicSeries cubic;                                                // if the law is a curve
 };
 
-// One deformation of a bushing whose law goes by axes.
+// One deformation of a bushing with a law per axis.
 struct AxisSeries {
     Scalar x, force;    // a component of e - e₀, u'(x)
-    CubicSeries cubic;  // where the law is a curve
+    CubicSeries cubic;  // if the law is a curve
 };
 
-// d measured half way from the axes of i to those of j (Formulation::Frame::middle): B^½ has the Gibbs vector
-// tan(|θ|/4) θ/|θ| = V / (|p| + W), p = (W, V) the relative quaternion.
+// d in axes half way between those of i and j (Formulation::Frame::middle): B^½ has the Gibbs
+// vector tan(|θ|/4) θ/|θ| = V / (|p| + W), p = (W, V) the relative quaternion.
 struct MiddleSeries {
     Scalar squared, size, sum, inverse;          // p·p, |p|, |p| + W, 1 / (|p| + W)
     TurnSeries half;                             // B^½
     Vector3Series d_i, d, F_local, F_i, m, g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
 };
 
-// One of the three angles of B that are no rotation vector: that of a vector in a plane, with its row of H,
-// δθ = H ω, ω the rotation of j relative to i in axes of i:  row = fixed + z/r · along.
+// One of the three Cardan or projected angles of B: the polar angle of a vector in a plane, with
+// its row of H, δθ = H ω, ω the rotation of j relative to i in axes of i:
+// row = fixed + z/r · along.
 struct PlaneAngleSeries {
     Vector2Series xy, unit;  // r (cos, sin), (cos, sin)
     Scalar squared, r, inverse, angle, z, factor, moment;
@@ -98,7 +102,7 @@ struct AnglesSeries {
 struct BushingSeries {
     Bushing kind;
     Driven<Vector6<double>> preload;
-    bool rotational = true;  // whether any moment M' = ∂U/∂θ is there; else θ is not followed
+    bool rotational = true;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
     Arm i, j;
     Matrix3<double> E_i;  // axes of marker i at τ = 0
     Eigen::Matrix4d
@@ -109,12 +113,12 @@ struct BushingSeries {
     Vector6Series e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
     Scalar dot_g, W, inverse, s;
     Composition phi, psi;
-    // Only where the law and the formulation ask for them.
+    // Allocated only if the law or the formulation needs them.
     AxisSeries* axis = nullptr;  // [6]
     MiddleSeries* middle = nullptr;
     AnglesSeries* angles = nullptr;
 
-    bool twists() const { return rotational || middle != nullptr; }  // whether M is there
+    bool twists() const { return rotational || middle != nullptr; }  // whether M is computed
 };
 
 struct CoincidentSeries {
@@ -163,7 +167,7 @@ struct MomentSeries {
     DeadMoment kind;
     Driven<double> factor;
 };
-// A follower turns with its body, and so does its moment about the origin, s × f or m.
+// A follower rotates with its body, and so does its moment about the origin, s × f or m.
 struct FollowerSeries {
     V3 f_local, m_local;
     Driven<double> factor;
@@ -176,18 +180,18 @@ using ConstraintSeries =
     std::variant<CoincidentSeries, PlaneSeries, PerpendicularSeries, DistanceSeries, AngleSeries>;
 using LoadSeries = std::variant<ForceSeries, MomentSeries, FollowerSeries>;
 
-// Everything that has coefficients, allocated once for a model on a branch.
+// All series of a model on a branch; allocated once.
 struct Equations {
     Room room;
-    Drive drive = Drive::rate;      // whether the parameter is a, or t
-    std::vector<BodySeries> slots;  // ground, at rest, in slot 0
+    Drive drive = Drive::rate;      // rate: the parameter is a; start: t
+    std::vector<BodySeries> slots;  // ground, fixed, in slot 0
     std::vector<Scalar> lambda;     // one per row of Φ
     Scalar a;                       // the parameter
     std::vector<ElasticSeries> elastics;
     std::vector<ConstraintSeries> constraints;
     std::vector<LoadSeries> loads;  // static, then driven
     Vector<double> G, Phi;          // coefficient k after pass `known` [6nb], [m]
-    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d take the place of G and Φ; d: as drawn.
+    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: as drawn.
     Vector<double> G_d, Phi_d;  // [6nb], [m]
     bool curved = false;        // whether any law is a curve
 
@@ -198,18 +202,18 @@ struct Equations {
 
 Equations equations(const Model& model, const Branch& branch, int order, Drive drive = Drive::rate);
 
-// Where the deformation x_axis of an element is a curve's (a spring has axis 0 alone): the cubic it is on, and
-// the coefficients of the deformation.
+// The cubic of a deformation x_axis with a curve (a spring has axis 0 only), and coefficient k of
+// that deformation.
 CubicSeries& cubic_of(Equations& e, std::size_t elastic, int axis);
 double deformation(const Equations& e, std::size_t elastic, int axis, int k);
 
-// Puts τ = 0 at (q, λ, a): coefficients 0 of the unknowns, and what is fixed in the bodies.
+// Sets τ = 0 at (q, λ, a): coefficients 0 of the unknowns, and the vectors fixed in the bodies.
 void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, double a);
 
-// Coefficient k of everything; in pass `known` also of G and Φ.
+// Computes coefficient k of all series; in pass `known` also of G and Φ.
 void evaluate(Equations& e, Order o);
 
-// x_k = (r_k, 2 g_k; λ_k) and a_k take their place in the unknowns.
+// Sets coefficient k of the unknowns to x_k = (r_k, 2 g_k; λ_k) and a_k.
 void assign(Equations& e, int k, const Vector<double>& x, double a);
 
 }  // namespace elastocheck::recursive::series

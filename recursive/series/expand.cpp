@@ -5,8 +5,9 @@
 
 namespace elastocheck::recursive::series {
 
-// Of the first coefficient: what its correction may be, and no digits are lost that matter. Along hundreds of stiff links
-// the matrix, whose entries are rounded, answers to 1e-12 only, which no expansion, however short, brings back.
+// Limit on the relative correction of the first coefficient. Above it coefficients are refined:
+// along hundreds of stiff links the rounded matrix solves to 1e-12 only, and shorter expansions do
+// not help.
 constexpr double loses_digits = 1e-13;
 
 Coefficients reserve_coefficients(const March<double>& s, int order) {
@@ -29,7 +30,7 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     const double here = parameter(s, e.drive);
     begin(e, s.q, s.lambda, here);
     evaluate(e, {0, Pass::known});
-    drive_at(s, e.drive, 1.0, s.q);
+    drive_at(s, e.drive, 1.0, s.q, s.lambda);
     back_substitute(s);
     c.unit = s.x;
     c.x.setZero();
@@ -46,7 +47,8 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     c.x.col(1) = c.load[1] * c.unit;
     s.x = c.x.col(1);
 
-    // What coefficient k of (G, Φ), taken element by element with x_k in it, still asks of x_k: the rounding of the matrix.
+    // Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k,
+    // and solved with the same factors. It removes the rounding of the assembled matrix.
     const auto correct = [&](int k) {
         assign(e, k, s.x, c.load[k]);
         evaluate(e, {k, Pass::known});
@@ -81,7 +83,8 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
                 evaluate(e, {k, Pass::known});
             }
         }
-        if (k == e.order() && !e.curved) break;  // whose deformations are looked at for knots
+        // a curved law needs its last deformation coefficient for knots
+        if (k == e.order() && !e.curved) break;
         assign(e, k, s.x, c.load[k]);
         evaluate(e, {k, Pass::change});
     }
@@ -90,8 +93,8 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
 double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load,
              double radius) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
-    // Where constraints alone say how everything moves, λ has a series of its own: a force counts as what it
-    // moves of the stiffest there is.
+    // Where constraints alone determine the motion, λ has a longer series than the motion. A force
+    // counts as the displacement that it causes at the largest stiffness.
     const double most = stiffest(s.system.M), per_force = most > 0 ? 1 / most : 0;
     const auto size = [&](int k) {
         return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
@@ -121,7 +124,8 @@ Singularity nearest_singularity(const March<double>& s, const Coefficients& c) {
     };
     const double last = weighted(p).norm(), before = weighted(p - 1).norm();
     if (p < 5 || !(last > 0 || before > 0)) return none;
-    // Lengths of τ in which the last coefficients are near one, so that all count alike.
+    // Scale τ so that the last coefficients are near one and all orders have the same weight in the
+    // fit.
     const double unit =
         std::min(last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
                  before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());

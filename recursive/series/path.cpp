@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "recursive/finite.hpp"
 #include "recursive/recording.hpp"
 #include "recursive/series/expand.hpp"
@@ -23,7 +25,8 @@ double slope(const Eigen::VectorXd& c, double tau) {
     return value;
 }
 
-// τ in [from, to] where f changes sign, to the last bit; f(from) and f(to) have different signs.
+// Bisection: τ in [from, to] where f changes sign, to the last bit. Pre: f(from) and f(to) differ
+// in sign.
 template <class Function>
 double bisect(Function f, double from, double to) {
     const bool below = f(from) < 0;
@@ -35,7 +38,7 @@ double bisect(Function f, double from, double to) {
     return to;
 }
 
-// First τ in (0, reach] where f has changed its sign, looking at `pieces` pieces.
+// First τ in (0, reach] at which f changes its sign, sampled at `pieces` intervals.
 template <class Function>
 std::optional<double> first_zero(Function f, double reach) {
     constexpr int pieces = 64;
@@ -50,7 +53,7 @@ std::optional<double> first_zero(Function f, double reach) {
     return std::nullopt;
 }
 
-// One way along the parameter: t from 0 to 1 while what is held settles, then a from 0 to the branch's end.
+// One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
 struct Walk {
     March<double>& s;
     const Options& options;
@@ -58,15 +61,21 @@ struct Walk {
     Coefficients c;
     std::vector<Followed>& curves;
     Near near;
-    double to;             // of the parameter
-    double first;          // a_1 of the next expansion; by arc length its sign, where `ahead` is zero
-    double per_unit;       // metres that an error of one unit of the parameter counts as
-    Vector<double> ahead;  // x'(τ) of the motion before: which way is on
-    double heading = 0;    // a'(τ) at the end of the last piece: whether the parameter rises or falls
-    int side = 0;  // sign of the determinant where the way began, by arc length of that bordered by x'
+    double to;  // of the parameter
+    // a_1 of the next expansion; by arc length its sign, where `ahead` is zero
+    double first;
+    double per_unit;       // metres equivalent to an error of one unit of the parameter
+    Vector<double> ahead;  // x'(τ) at the end of the last expansion: the forward direction
+    // a'(τ) at the end of the last expansion: positive where the parameter increases
+    double heading = 0;
+    // sign of the determinant at the start; by arc length of the matrix bordered by x'
+    int side = 0;
     Softest<double> softest = {};
-    bool stable = false;  // where the way began, which then is to stay so
-    Vector<double> x;     // where on the polynomial
+    bool stable = false;   // whether the start is stable; then every later point must be
+    double log_begin = 0;  // log₂ |determinant| at the start of the expansion
+    // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
+    double in_middle = 1;
+    Vector<double> x;  // value of the polynomial
     Path path;
 
     Walk(March<double>& s_, std::vector<Followed>& curves_, const Options& options_, Drive drive)
@@ -100,14 +109,14 @@ struct Walk {
 double largest_force(const March<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
 double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff(); }
 
-// Joints that say a thing twice may be driven to say two.
+// Whether redundant joints have become inconsistent by their drivers.
 bool contradicts(March<double>& s) {
     if (!says_twice(s)) return false;
     residual_at(s, s.q, s.lambda);
     return contradict(s, s.q);
 }
 
-// Whether what acts at the present place pushes what is held.
+// Whether the forces at the present configuration load an idle mode.
 Outcome judge_push_here(Walk& w, double missed) {
     if (w.s.system.held.idle == 0) return Outcome::converged;
     external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
@@ -115,8 +124,9 @@ Outcome judge_push_here(Walk& w, double missed) {
     return judge_push(w.s, w.s.q, missed);
 }
 
-// Newton at the present place, with factors that serve the next expansion. The first correction is the error
-// of what led here. With arc length the parameter gives way, so that nothing moves along the path.
+// Newton corrections at the present point; the last factors serve the next expansion. The first
+// correction is the error of the expansion. With arc length the parameter is corrected too, so that
+// nothing moves along the path.
 Outcome arrive(Walk& w, Certificate* judged, double& error) {
     March<double>& s = w.s;
     const int n = s.n();
@@ -129,7 +139,7 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         double slid = 0;
         const bool slide = w.by_arc() && !w.ahead.isZero(0);
         if (slide) {
-            drive_at(s, w.e.drive, 1.0, s.q);
+            drive_at(s, w.e.drive, 1.0, s.q, s.lambda);
             back_substitute(s);
             w.c.unit = s.x;
         }
@@ -151,12 +161,12 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         if (const Outcome outcome = judge_push_here(w, std::max(size, slid)); outcome != Outcome::converged)
             return outcome;
         if (k == 0) error = std::max(size, slid);
-        if (!(size < before)) break;  // as near as rounding lets it
+        if (!(size < before)) break;  // at rounding level
         before = size;
         s.dq = s.x.head(n);
         advance(s.q, s.dq);
         s.lambda += s.x.tail(s.m());
-        // The factors are those of the place before this correction: good while it was small.
+        // The factors belong to the point before this correction: accurate enough if it was small.
         if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
     }
     return contradicts(s) ? Outcome::inconsistent_constraints : Outcome::converged;
@@ -169,22 +179,23 @@ std::vector<Pose> poses_of(const State<double>& q) {
     return poses;
 }
 
-// A knot that a curve goes over, by its number among the curves.
+// A crossing of a knot, by the number of the curve.
 struct Crossing {
     std::size_t curve = 0;
     int direction = 0;
 };
 
-// Up to which τ the present expansion is to be used, whether the branch ends there, and what is gone over there.
+// Range of τ in which the present expansion is used, whether the branch ends there, and knots
+// crossed there.
 struct End {
     double tau = 0;
     bool last = false;
     std::vector<Crossing> over;
     std::vector<Crossing>
-        at_once;  // by what leaves its piece where it begins: the expansion is not valid at all
+        at_once;  // deformations outside their piece from the start: the expansion is invalid
 };
 
-// Draws the end nearer to where the first deformation leaves its piece.
+// Shortens the range to where the first deformation leaves its piece.
 void stop_at_knots(const Walk& w, End& end) {
     const double reach = end.tau;
     std::vector<std::pair<Crossing, Leaving>> met;
@@ -194,19 +205,33 @@ void stop_at_knots(const Walk& w, End& end) {
             if (there->at_once) end.at_once.push_back(met.back().first);
             if (there->tau < end.tau) end = {there->tau, false, {}, std::move(end.at_once)};
         }
-    // Two may meet their knots at once.
+    // Several deformations may reach their knots at the same τ.
     for (const auto& [crossing, there] : met)
         if (there.tau <= end.tau || meets(w.e, w.curves[crossing.curve], crossing.direction, end.tau, w.near))
             end.over.push_back(crossing);
 }
 
-// How far the expansion at the parameter a_0 carries; an outcome where there is no way on.
+// Whether a curve leaves its piece before a limit point at τ_s straight ahead. Such a limit point
+// belongs to polynomials that are not valid that far. Near it x_s - x ~ (1 - τ/τ_s)^½, so that a
+// deformation still moves by 2 τ_s times its present rate; the test allows twice that, for the
+// terms that the square root omits.
+bool meets_knot_before(const Walk& w, double tau_s) {
+    return std::ranges::any_of(w.curves, [&](const Followed& f) {
+        const double rate = deformation(w.e, f.elastic, f.axis, 1);
+        const auto to = to_knot(w.e, f, rate < 0 ? -1 : +1);
+        return to && *to <= 4 * tau_s * std::abs(rate);
+    });
+}
+
+// Range of validity of the expansion at the parameter a_0; an outcome other than `converged` if the
+// branch does not continue.
 Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
     end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false, {}, {}};
     if (std::isnan(end.tau)) return Outcome::not_finite;
     const double reached = end.tau;
     if (w.by_arc()) {
-        end.tau = std::min(end.tau, 1.0);  // [m]; a branch without curvature would reach beyond all bounds
+        // [m]; a branch without curvature would have an infinite range
+        end.tau = std::min(end.tau, 1.0);
         if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
             end = {*met, true, {}, {}};
         stop_at_knots(w, end);
@@ -216,13 +241,16 @@ Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end
     if (end.tau >= rest) end = {rest, true, {}, {}};
     stop_at_knots(w, end);
     if (end.last || !end.over.empty() || !end.at_once.empty()) return Outcome::converged;
-    if (singularity.radius < 1e-4 && singularity.angle < 1e-3 && singularity.misfit < 1e-2) {
-        // A branch point straight ahead that comes nearer however far one has come is a limit point.
+    constexpr double near = 1e-4, at_it = 1e-8;  // of the branch
+    const bool straight_ahead = singularity.angle < 1e-3 && singularity.misfit < 1e-2;
+    if (singularity.radius < near && straight_ahead &&
+        (singularity.radius < at_it || !meets_knot_before(w, singularity.radius))) {
+        // A branch point straight ahead that comes nearer with each expansion is a limit point.
         w.path.limits.push_back(a_0 + singularity.radius * w.to);
         return Outcome::limit_point;
     }
     if (reached < 1e-9 && singularity.radius < 1e-6)
-        return Outcome::branch_lost;  // but not for an order that is too low for its tolerance
+        return Outcome::branch_lost;  // or the order is too low for the tolerance
     return Outcome::converged;
 }
 
@@ -233,7 +261,7 @@ Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
     return d;
 }
 
-// The polynomial about `from` at τ becomes the present state.
+// Sets the state to the polynomial about `from` at τ.
 void move_to(Walk& w, const State<double>& from, double tau) {
     horner(w.c.x, tau, w.x);
     displace(from, w.x, w.s.q);
@@ -241,14 +269,47 @@ void move_to(Walk& w, const State<double>& from, double tau) {
     w.go_to(polynomial(w.c.load, tau));
 }
 
-// Goes from `from` to the end and corrects it there, judging the expansion on the way; an end that is found
-// wanting is drawn nearer.
+// Sign of the determinant at the present point. With arc length it is multiplied by the sign of
+// `rises`, the rate of the parameter along the path: at limit points both signs change.
+int side(const Walk& w, double rises) {
+    return w.by_arc() && rises < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
+}
+// Sign of the parameter's rate at the end of the last expansion, from the factors there. The sign
+// of the polynomial's a' is not used: near a limit point it changes slightly before or after that
+// of the determinant, by rounding or by the tolerance.
+double rises_ahead(const Walk& w) {
+    const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
+    return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
+}
+
+// Whether the equilibrium whose factors are in s.system is past a singular point of the path: the
+// determinant has changed its sign, or the least stiffness is negative (two modes that become
+// unstable at once leave the determinant's sign unchanged).
+bool is_past(Walk& w, double rises) {
+    if (side(w, rises) != w.side) return true;
+    if (!w.stable) return false;
+    const LeastStiffness least = least_stiffness(w.s, w.softest);
+    return (least.of_energy && least.value < 0) || pushed_over(w.s, w.s.q, w.s.lambda) < 0;
+}
+
+// |determinant| at the present point over that at the start of the expansion; negative if its sign
+// differs from that at the start of the path.
+double determinant(const Walk& w) {
+    const double size = std::exp2(log_determinant(w.s.system.lu) - w.log_begin);
+    return side(w, w.to) == w.side ? size : -size;
+}
+
+// Evaluates the expansion about `from` at its midpoint and end, corrects the end by Newton's method
+// and fills the certificate `judged`. If the error at the end is too large, the range is shortened
+// and the evaluation repeated.
 Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged) {
     for (int shorter = 0; shorter <= 20; ++shorter) {
         move_to(w, from, end.tau / 2);
         residual_at(w.s, w.s.q, w.s.lambda);
         judged.force_middle = largest_force(w.s);
         judged.constraint_middle = largest_violation(w.s);
+        if (w.stable)
+            w.in_middle = factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
 
         move_to(w, from, end.tau);
         if (end.last && !w.by_arc()) w.go_to(w.to);
@@ -269,9 +330,9 @@ Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged)
     return Outcome::branch_lost;
 }
 
-// Where a(τ) turns back on the stretch just travelled. A turn at the seam of two expansions may show at the
-// end of the one and again at the start of the next, or in neither: what counts is whether the load then goes
-// the other way than before.
+// Finds limit points of a(τ) in the last range. A limit point at the seam of two expansions may
+// appear at the end of one and the start of the next, or in neither. The test is therefore whether
+// the sign of a' differs from before.
 void look_for_turns(Walk& w, double reach) {
     constexpr int pieces = 64;
     const auto rises = [&](double t) { return slope(w.c.load, t); };
@@ -285,10 +346,10 @@ void look_for_turns(Walk& w, double reach) {
     }
 }
 
-// Begins at the design position, where the analysis has the factors.
+// Starts at the design position with the factors of the analysis.
 Outcome begin_at_design(Walk& w, const Analysis& analysis) {
     w.go_to(0);
-    // Each curve on one of its pieces: at a knot the analysis may have taken the other.
+    // Select the piece of each curve: at a knot the analysis may have used the other piece.
     if (!w.curves.empty()) {
         begin(w.e, w.s.q, w.s.lambda, w.at());
         evaluate(w.e, {0, Pass::known});
@@ -297,7 +358,7 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
         find_piece(w.e, curve);
         w.follow(curve);
     }
-    w.go_to(w.to);  // all that acts at the end of the way
+    w.go_to(w.to);  // with all forces at the end of the branch
     if (w.e.drive == Drive::start ? pushes_idle_mode(w.s) : judge_push_here(w, 0) != Outcome::converged)
         return Outcome::loaded_idle_mode;
     w.go_to(0);
@@ -305,20 +366,9 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
     return factorise_at(w.s, w.s.q, w.s.lambda);
 }
 
-// The sign of the determinant here; `rises` tells which way the parameter goes. By arc length the two are
-// multiplied: at limit points both turn over.
-int side(const Walk& w, double rises) {
-    return w.by_arc() && rises < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
-}
-// Which way the parameter goes at the end that the last piece came to, by the factors made there: at a limit
-// point the polynomial's own a' changes its sign a rounding, or a tolerance, earlier or later than they do.
-double rises_ahead(const Walk& w) {
-    const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
-    return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
-}
-
-// Every curve goes over to the neighbouring piece. The factors are renewed where a slope jumps: there the motion
-// breaks, too. By arc length it goes on to the side on which the determinant's product with a' stays what it is.
+// Changes every curve in `over` to its neighbouring piece. The matrix is factorised again if a
+// slope jumps; the direction of the motion jumps there too. With arc length the path continues on
+// the side on which the product of the determinant's sign and a' is unchanged.
 Outcome go_over(Walk& w, const std::vector<Crossing>& over) {
     bool jumps = false;
     for (const auto& [k, direction] : over) {
@@ -334,10 +384,11 @@ Outcome go_over(Walk& w, const std::vector<Crossing>& over) {
     return outcome;
 }
 
-// Expands where the march is, on the pieces that the motion goes into: a deformation that begins at a knot and
-// leaves its piece at once belongs to the other. Each answer may change the motion, and with it the next one;
-// what has been tried goes over one by one (as pivots do in a linear complementarity problem, which this is).
-// Where no choice agrees with its own motion, the path turns back at the knot.
+// Expands at the present point on the pieces that the motion enters. A deformation that starts at a
+// knot and leaves its piece at once belongs to the neighbouring piece. Each change of piece changes
+// the motion: a linear complementarity problem. All such curves change piece together, or one at a
+// time where the set of pieces would repeat. Where no set agrees with its motion, the path turns
+// back at the knot.
 Outcome set_out(Walk& w, Singularity& singularity, End& end) {
     const auto pieces = [&] {
         std::vector<Piece> all;
@@ -365,17 +416,9 @@ Outcome set_out(Walk& w, Singularity& singularity, End& end) {
     }
 }
 
-// Whether the equilibrium whose factors are in s.system is past a singular point of the way: the determinant has another
-// sign, or the least stiffness where two modes at once have left it as it was.
-bool is_past(Walk& w, double rises) {
-    if (side(w, rises) != w.side) return true;
-    if (!w.stable) return false;
-    const LeastStiffness least = least_stiffness(w.s, w.softest);
-    return (least.of_energy && least.value < 0) || pushed_over(w.s, w.s.q, w.s.lambda) < 0;
-}
-
-// The polynomial goes straight on where the path divides. The march goes to the point, by halves; returns how far the
-// polynomial is the path's.
+// Locates a bifurcation point in 0 ≤ τ ≤ reach by bisection and moves the state to it. The
+// polynomial continues smoothly past such a point. Returns the τ up to which it represents the
+// stable path; with arc length 0, since there is no bisection.
 double divide(Walk& w, const State<double>& from, double reach) {
     constexpr int halvings = 40;
     double before = 0, past = reach;
@@ -389,16 +432,81 @@ double divide(Walk& w, const State<double>& from, double reach) {
     return before;
 }
 
+// A τ inside the expansion at which the path is unstable, although the end is stable; none if no
+// such τ is found. The determinant has a minimum there. The parabola through three values of it
+// predicts the minimum, and the value there replaces one of the three, until the value is negative,
+// or is positive and agrees with the prediction. If none is found, the state is left at the end.
+std::optional<double> lost_inside(Walk& w, const State<double>& from, double reach) {
+    // A predicted minimum below this fraction of the smaller end value is evaluated.
+    constexpr double dips = 0.5;
+    constexpr double foretold = 0.2;  // error of a prediction that counts as agreement, relative
+    // Smallest distance of a new point from the middle one, as a fraction of the interval.
+    constexpr double apart = 0.05;
+    constexpr int looks = 20;
+    if (!w.stable) return std::nullopt;
+    if (w.in_middle < 0) return reach / 2;
+    std::array<double, 3> tau{0, reach / 2, reach}, at{1, w.in_middle, determinant(w)};
+    const double deep = dips * std::min(at[0], at[2]);
+    const double a = w.at();
+    State<double> end;
+    Vector<double> lambda_end;
+    for (int look = 0; look < looks; ++look) {
+        const double before = (at[1] - at[0]) / (tau[1] - tau[0]),
+                     behind = (at[2] - at[1]) / (tau[2] - tau[1]);
+        const double bend = (behind - before) / (tau[2] - tau[0]);
+        const auto parabola = [&](double x) { return at[0] + (x - tau[0]) * (before + bend * (x - tau[1])); };
+        double there = (tau[0] + tau[1]) / 2 - before / (2 * bend);
+        const double least = parabola(there);
+        if (!(bend > 0) || !(there > tau[0] && there < tau[2]) || !(least < deep)) break;
+        const double nearest = apart * (tau[2] - tau[0]);
+        if (!(std::abs(there - tau[1]) > nearest))
+            there = tau[1] + (tau[2] - tau[1] > tau[1] - tau[0] ? nearest : -nearest);
+        if (look == 0) {
+            end = w.s.q;
+            lambda_end = w.s.lambda;
+        }
+        move_to(w, from, there);
+        if (factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to)) return there;
+        const double here = determinant(w);
+        if (std::abs(here - parabola(there)) <= foretold * least) break;
+        const bool left = there < tau[1];
+        if (here < at[1]) {
+            (left ? tau[2] : tau[0]) = tau[1];
+            (left ? at[2] : at[0]) = at[1];
+            tau[1] = there, at[1] = here;
+        } else {
+            (left ? tau[0] : tau[2]) = there;
+            (left ? at[0] : at[2]) = here;
+        }
+    }
+    if (lambda_end.size() > 0) {
+        w.go_to(a);
+        w.s.q = end;
+        w.s.lambda = lambda_end;
+        (void)factorise_at(w.s, w.s.q, w.s.lambda);
+    }
+    return std::nullopt;
+}
+
+// Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
+// crossings count up to the number of knots.
+std::size_t most_expansions(const Walk& w, std::size_t gone_over) {
+    std::size_t knots = 0;
+    for (const auto& curve : w.curves) knots += curve.curve->knots.size();
+    return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
+}
+
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
     March<double>& s = w.s;
-    while (static_cast<int>(w.path.expansions.size()) < w.options.expansions) {
+    std::size_t gone_over = 0;
+    while (w.path.expansions.size() < most_expansions(w, gone_over)) {
         const State<double> from = s.q;
         Singularity singularity;
         End end;
         Certificate judged;
         if (const Outcome o = set_out(w, singularity, end); o != Outcome::converged) return o;
-        // Going over a knot must not have turned the determinant over, either.
+        // Crossing a knot must not have changed the sign of the determinant.
         if (const int here = side(w, w.to); w.path.expansions.empty()) {
             w.side = here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
@@ -408,13 +516,18 @@ Outcome walk(Walk& w) {
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
+        w.log_begin = log_determinant(s.system.lu);
         if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
-        // A polynomial goes straight on where the path divides, and a branch goes on unstable.
-        const bool past = is_past(w, rises_ahead(w));
+        // The polynomial continues past a bifurcation point, and the branch past a loss of
+        // stability.
+        bool past = is_past(w, rises_ahead(w));
+        if (!past)
+            if (const auto lost = lost_inside(w, from, end.tau)) past = true, end.tau = *lost;
         if (past) end.tau = divide(w, from, end.tau);
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
                                      static_cast<int>(end.over.size()), singularity, judged});
+        gone_over += end.over.size();
         if (past) return Outcome::dividing_point;
         if (end.last) return Outcome::converged;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
@@ -439,7 +552,7 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
                                  "{}: limit point near {:.9g}, past it no equilibrium continues the branch",
                                  branch, w.path.limits.back());
         case Outcome::iteration_limit:
-            return at + fmt::format(": {} expansions were not enough", w.options.expansions);
+            return at + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:
             return at +
                    ": the matrix is singular here or was on the way: the branch divides, or loses its "
@@ -457,7 +570,6 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
     }
 }
 
-// Whether the branch holds anything that the drawing does not.
 }  // namespace
 
 Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {
@@ -469,7 +581,7 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
     }
     March<double> s(model, branch, analysis);
     s.consistent = true;
-    s.system.lu.largest_multiplier = 1e4;  // Newton's corrections at every end make up for the digits
+    s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
     std::vector<Followed> curves = curves_of(model);
     const auto finish = [&](Walk& w, Outcome outcome) {
         w.path.outcome = outcome;
@@ -479,10 +591,11 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
         if (w.e.drive == Drive::start) w.path.expansions.clear();
         return std::move(w.path);
     };
-    // The factors of the analysis are those of the design position as drawn. Where that is no equilibrium,
-    // the way to one begins there; where it is, the branch does.
+    // The factors of the analysis belong to the design position. If that is no equilibrium,
+    // settling starts there; if it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
-        s.Phi_d = analysis.Phi_d;  // to the last digit: the series is exact, from an equilibrium that is
+        // without the closing tolerance: the series needs an exact equilibrium
+        s.Phi_d = analysis.Phi_d;
         Walk settling(s, curves, options, Drive::start);
         if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
@@ -504,8 +617,8 @@ Path follow(const Model& model, const Branch& branch, const Options& options) {
 
 namespace {
 
-// What τ of a load is worth where the load is the parameter: rounding of the reach, and of the load itself, which is more
-// where expansions are short.
+// Tolerance on τ at a load where the load is the parameter: rounding of the reach and of the load
+// itself, which is larger in τ for short expansions.
 double slack(const Expansion& x, double load) {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     return 1e-12 * x.reach + 4 * eps * (std::abs(load) + std::abs(x.load[0])) / std::abs(x.load[1]);
@@ -518,7 +631,7 @@ std::optional<Place> find(const Path& path, double load) {
         const Expansion& x = path.expansions[k];
         const double from = x.load[0], to = polynomial(x.load, x.reach);
         const bool linear = x.load.size() < 3 || x.load.tail(x.load.size() - 2).isZero(0);
-        // An end is reached to rounding only.
+        // The end is reached within rounding only.
         const double rounding = 1e-12 * std::abs(to - from);
         if (linear) {
             const double tau = (load - from) / x.load[1];
@@ -550,14 +663,14 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
 
 EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
                        const Visit& visit) {
-    constexpr std::size_t at_once = 64;  // points, so that the room for them does not grow with their number
+    constexpr std::size_t at_once = 64;  // points, so that memory does not grow with their number
     EquilibriumPath result;
     result.outcome = path.outcome;
     result.detail = path.detail;
     result.counts = path.counts;
     if (path.expansions.empty()) return result;
     Recording recording(model, points + 1, result, visit);
-    double whole = 0, before = 0;  // of τ, over all expansions
+    double whole = 0, before = 0;  // τ summed over expansions
     for (const auto& expansion : path.expansions) whole += expansion.reach;
     std::vector<double> loads, taus;
     Matrix<double> powers, x;
@@ -565,7 +678,7 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
     const Inputs<double> drawn = inputs_as_drawn<double>(model);
     Inputs<double> inputs;
     set_inputs<double>(model, branch, drawn, 1, 0, inputs);
-    // Of what a branch moves, wrenches know the offsets of joints alone.
+    // Of the driven inputs, wrenches depend on joint offsets only.
     const bool moves = std::ranges::any_of(
         branch.drivers, [](const Driver& driver) { return std::holds_alternative<Motion>(driver.what); });
     for (std::size_t k = 0; k < path.expansions.size();) {
@@ -574,7 +687,8 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
         taus.clear();
         loads.clear();
         for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once; ++next) {
-            // As others write it, to the last bit: curves are compared at equal loads only.
+            // Same expression as in the other methods, to the last bit: curves are compared at
+            // equal loads only.
             const double load = branch.to * static_cast<double>(next) / points;
             double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
                                          : (load - expansion.load[0]) / expansion.load[1];
@@ -585,7 +699,7 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
             taus.push_back(tau);
             loads.push_back(path.arc_length ? polynomial(expansion.load, tau) : load);
         }
-        // Many points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
+        // Evaluates many points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
         powers.resize(expansion.x.cols(), static_cast<Eigen::Index>(taus.size()));
         for (Eigen::Index c = 0; c < powers.cols(); ++c) {
             double power = 1;
@@ -602,7 +716,7 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
             if (moves) set_inputs<double>(model, branch, drawn, 1, load, inputs);
             recording.keep(model, inputs, q, q, lambda, load);
         }
-        if (taus.size() == at_once) continue;  // there may be more on it
+        if (taus.size() == at_once) continue;  // the expansion may hold more points
         before += expansion.reach;
         ++k;
     }

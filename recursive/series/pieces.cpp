@@ -14,8 +14,8 @@ double value(const Polynomial& c, double tau) {
     return sum;
 }
 
-// The coefficients of the same polynomial over the Bernstein basis of [0, h]: it lies between the least and the
-// largest of them.
+// Coefficients of the polynomial in the Bernstein basis of [0, h]; its values lie between the
+// smallest and the largest of them.
 Polynomial bernstein(const Polynomial& c, double h) {
     const Eigen::Index p = c.size() - 1;
     Polynomial b = Polynomial::Zero(p + 1);
@@ -29,8 +29,8 @@ Polynomial bernstein(const Polynomial& c, double h) {
     return b;
 }
 
-// The first τ in [from, to] at which the polynomial is below `level`, to round-off of `to`: halves, the first
-// first, leaving out those that are above it throughout.
+// First τ in [from, to] at which the polynomial is below `level`, to round-off of `to`: bisection,
+// left half first, skipping halves that are above `level` throughout.
 std::optional<double> first_below(Polynomial b, double level, double from, double to, int halvings) {
     if (!(b.minCoeff() < level)) return std::nullopt;
     if (b[0] < level || halvings == 0) return b[0] < level ? from : to;
@@ -40,7 +40,7 @@ std::optional<double> first_below(Polynomial b, double level, double from, doubl
         left[k] = b[0];
         for (Eigen::Index i = 0; i + k < p; ++i) b[i] = (b[i] + b[i + 1]) / 2;
     }
-    // What is left in b is the right half.
+    // b now holds the right half.
     const double middle = (from + to) / 2;
     if (const auto first = first_below(left, level, from, middle, halvings - 1)) return first;
     return first_below(b, level, middle, to, halvings - 1);
@@ -52,7 +52,7 @@ bool has_knot(const Followed& f, int direction) {
 double knot(const Followed& f, int direction) {
     return f.curve->knots[static_cast<std::size_t>(direction > 0 ? f.piece : f.piece - 1)];
 }
-// How far the deformation is inside, as seen from that knot.
+// Distance of the deformation from that knot, positive inside the piece.
 Polynomial inside(const Equations& e, const Followed& f, int direction) {
     Polynomial c(e.order() + 1);
     for (int k = 0; k <= e.order(); ++k) c[k] = -direction * deformation(e, f.elastic, f.axis, k);
@@ -63,13 +63,13 @@ Polynomial inside(const Equations& e, const Followed& f, int direction) {
 std::optional<Leaving> leaving(const Polynomial& f, int direction, double reach, double touch,
                                double arrived) {
     if (f[0] < -arrived) return Leaving{0, direction, true};
-    // What begins behind the knot by as much as its place is known, leaves where it goes farther.
+    // A start slightly beyond the knot, within its tolerance, counts as on the knot.
     Polynomial g = f;
     g[0] = std::max(g[0], 0.0);
     constexpr int halvings = 50;
     const auto out = first_below(bernstein(g, reach), -touch, 0, reach, halvings);
     if (!out) return std::nullopt;
-    // The zero before it: far enough back for g to be positive, then halved.
+    // The zero before `out`: step back until g is positive, then bisect.
     double from = *out, to = *out;
     for (double back = std::ldexp(reach, -halvings); from > 0 && !(value(g, from) > 0); back *= 2)
         from = std::max(0.0, *out - back);
@@ -117,6 +117,11 @@ void follow_on(const Followed& f, Equations& e) {
 }
 void follow_on(const Followed& f, Inputs<double>& inputs) {
     inputs.rest[f.elastic].piece[static_cast<std::size_t>(f.axis)] = f.piece;
+}
+
+std::optional<double> to_knot(const Equations& e, const Followed& f, int direction) {
+    if (!has_knot(f, direction)) return std::nullopt;
+    return direction * (knot(f, direction) - deformation(e, f.elastic, f.axis, 0));
 }
 
 bool step_over(Followed& f, int direction) {

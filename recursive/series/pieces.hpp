@@ -1,8 +1,8 @@
-// The pieces of the curves: which polynomial each curve is followed on, and where its deformation leaves it.
+// Pieces of the force curves in the series method, and where a deformation leaves its piece.
 //
-// An expansion goes along one polynomial of every curve, as if that went on for ever; it is valid until the first
-// deformation meets a knot of its piece and goes on behind it. There the next expansion begins, on the
-// neighbouring piece. derivation.md has the rest.
+// An expansion uses one polynomial of every curve, continued beyond its ends. It is valid until the
+// first deformation passes a knot of its piece. The next expansion begins there, on the
+// neighbouring piece. The derivation is in derivation.md.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace elastocheck::recursive::series {
 
-// A curve of the model, and the piece that it is followed on.
+// A curve of the model, and the piece in use.
 struct Followed {
     std::size_t elastic = 0;
     int axis = 0;  // of a bushing's e; 0 for a spring
@@ -23,35 +23,41 @@ struct Followed {
     bool turns() const { return axis >= 3; }  // whether its deformation is an angle
 };
 
-// The curves of the model, on the pieces where the deformations of e are at τ = 0 (a knot belongs to the piece
-// behind it).
+// The curves of the model; find_piece() selects the piece of the deformation in e at τ = 0 (a knot
+// belongs to the piece behind it).
 std::vector<Followed> curves_of(const Model& model);
 void find_piece(const Equations& e, Followed& curve);
 
-// Has the equations, or all else, follow the curve on its piece.
+// Sets the piece of the curve in the equations, or in the inputs.
 void follow_on(const Followed& curve, Equations& e);
 void follow_on(const Followed& curve, Inputs<double>& inputs);
 
-// Steps to the piece behind the next knot (+1) or before the last (-1). True where the slope jumps at the knot
-// between.
+// Distance of the deformation at τ = 0 from the knot behind the piece (+1), or before it (-1), in
+// units of the deformation; none if the piece has no knot on that side.
+std::optional<double> to_knot(const Equations& e, const Followed& curve, int direction);
+
+// Changes to the piece behind the next knot (+1) or before the last one (-1). Returns whether the
+// slope jumps at that knot.
 bool step_over(Followed& curve, int direction);
 
-// How near to a knot is on it, as a length [m] (an angle counts times L).
+// Distances within which a deformation counts as on a knot, as lengths [m] (an angle is multiplied
+// by L).
 struct Near {
-    double length = 0;   // L [m]
-    double touch = 0;    // a deformation that goes no farther behind a knot stays on its piece
-    double arrived = 0;  // what began at a knot may have come to lie so far behind it, corrected
+    double length = 0;  // L [m]
+    // tolerance of the expansion: up to this far beyond a knot a deformation stays
+    double touch = 0;
+    double arrived = 0;  // tolerance of a start on a knot, after its correction
 };
 
-// Where in 0 ≤ τ ≤ reach the deformation first leaves the piece.
+// First point in 0 ≤ τ ≤ reach at which the deformation leaves the piece.
 struct Leaving {
-    double tau = 0;        // where it meets the knot, to round-off
+    double tau = 0;        // position of the knot, to round-off
     int direction = 0;     // the knot behind the piece (+1), or the one before it (-1)
-    bool at_once = false;  // it begins at that knot, and goes the other way: this is not its piece
+    bool at_once = false;  // it starts at that knot and moves out of the piece: wrong piece
 };
 std::optional<Leaving> leaving(const Equations& e, const Followed& curve, double reach, const Near& near);
 
-// Whether at τ the deformation is at the knot in that direction.
+// Whether the deformation at τ is at the knot in that direction.
 bool meets(const Equations& e, const Followed& curve, int direction, double tau, const Near& near);
 
 }  // namespace elastocheck::recursive::series

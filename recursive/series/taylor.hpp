@@ -1,12 +1,12 @@
-// Power series in τ whose coefficients are found one order at a time.
+// Truncated power series arithmetic (Taylor recursion), one order at a time.
 //
-// At order k every coefficient below k is known, of the unknowns x and of all that is computed from them. The
+// At order k all coefficients below k are known, of the unknowns x and of all intermediates. The
 // same straight-line program then runs twice:
 //
-//   known    with x_k = 0: what the lower orders alone make of every coefficient k, Σ_{0≤i≤k} a_i b_{k-i}
-//   change   with x_k found: what x_k adds to them is linear in it, with coefficients 0 as factors
+//   known    with x_k = 0: the contribution of lower orders to coefficient k, Σ_{0≤i≤k} a_i b_{k-i}
+//   change   after the solve: the contribution of x_k, linear in it, with coefficients 0 as factors
 //
-// so an operation costs O(k) once and O(1) once, and nothing is evaluated again.
+// so an operation costs O(k) and then O(1), and no lower coefficient is evaluated again.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Order {
     Pass pass = Pass::known;
 };
 
-// Memory of all coefficients of one set of equations: taken once, given back as a whole.
+// Memory of all series of one set of equations, freed as a whole.
 struct Room {
     int order = 0;  // p
     std::unique_ptr<std::pmr::monotonic_buffer_resource> memory;
@@ -45,9 +45,9 @@ struct Room {
 
 template <class T>
 struct Series {
-    T* c = nullptr;  // c[0 ... p], in the room of its equations
-    T change;        // what x_k added to c[k]
-    int last = 0;    // beyond it all coefficients are zero: 0 for a constant
+    T* c = nullptr;  // c[0 ... p], in the memory of its equations
+    T change;        // contribution of x_k to c[k]
+    int last = 0;    // coefficients beyond it are zero: 0 for a constant
 
     Series() : change(zero()) {}
     static T zero() {
@@ -112,7 +112,7 @@ inline constexpr auto apply = [](const Matrix3<double>& A, const Vector3<double>
 inline constexpr auto apply_transposed =
     [](const Matrix3<double>& A, const Vector3<double>& b) -> Vector3<double> { return A.transpose() * b; };
 
-// Coefficient k of any linear map of series: map(get) is given a way to read coefficient k of each.
+// Coefficient k of a linear map of series: map(get), where get(s) reads coefficient k of s.
 template <class C, class Map>
 void linear(Order o, Series<C>& c, Map map) {
     if (o.pass == Pass::known) {
@@ -123,7 +123,7 @@ void linear(Order o, Series<C>& c, Map map) {
     }
 }
 
-// Adds one to what c is already.
+// Adds a linear map to c.
 template <class C, class Map>
 void add_linear(Order o, Series<C>& c, Map map) {
     if (o.pass == Pass::known) {
@@ -205,12 +205,13 @@ inline void arc(Order o, const Vector2Series& u, Scalar& alpha) {
 //
 //   F_m(s) = Σ (-1)ⁿ sⁿ / (2n + m),   m F_m + 2 s F_m' = 1 / (1 + s)
 //
-// F_1(t²) = atan(t) / t and F_3(t²) = (1 - F_1) / t². Their Taylor coefficients about s_0 ≥ 0, b_n = c_n / (1
-// + s_0)ⁿ, follow from the differential equation,
+// F_1(t²) = atan(t) / t and F_3(t²) = (1 - F_1) / t². Their Taylor coefficients about s_0 ≥ 0,
+// b_n = c_n / (1 + s_0)ⁿ, follow from the differential equation,
 //
 //   (2n + m) c_n + 2 (n + 1) s_0 / (1 + s_0) c_{n+1} = (-1)ⁿ / (1 + s_0) ,
 //
-// taken backwards, where an error shrinks by s_0 / (1 + s_0) each time: begun far enough out, it is gone.
+// in descending order, in which an error shrinks by s_0 / (1 + s_0) per step. The start far beyond
+// p makes the initial error negligible.
 inline void taylor_of_F(int m, double s_0, std::span<double> b) {
     const double inverse = 1 / (1 + s_0), shrinks = s_0 * inverse;
     const int p = static_cast<int>(b.size()) - 1;

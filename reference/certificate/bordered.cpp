@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace elastocheck::reference::certificate {
 namespace {
@@ -13,13 +15,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A reciprocal condition number this much above what is nothing needs no search.
+// A reciprocal condition number above the threshold by this factor needs no null space.
 constexpr double surely_regular = 1e3;
 constexpr int equilibration_sweeps = 8;
-// Of a null vector's largest entry: what is below is rounding.
+// Relative to the largest entry of a null vector: smaller entries are rounding.
 constexpr double no_part = 1e-12;
 
-// D_r A D_c with rows and columns of size one (Ruiz).
+// D_r A D_c with rows and columns of size one (Ruiz 2001).
 struct Equilibrated {
     MatrixXd A;
     VectorXd D_r, D_c;
@@ -37,26 +39,22 @@ Equilibrated equilibrated(const MatrixXd& A) {
     return of;
 }
 
-// x with A x = 0, and y with yᵀ A = 0, by columns.
-struct NullSpaces {
-    MatrixXd right, left;
-};
-NullSpaces null_spaces(const MatrixXd& A, double nothing) {
-    const auto [E, D_r, D_c] = equilibrated(A);
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(E);
-    qr.setThreshold(nothing);
-    const Index rank = qr.rank(), free = E.cols() - rank;
-    MatrixXd x = MatrixXd::Zero(E.cols(), free);
-    x.bottomRows(free).setIdentity();
-    x.topRows(rank) = -qr.matrixQR()
-                           .topLeftCorner(rank, rank)
-                           .template triangularView<Eigen::Upper>()
-                           .solve(qr.matrixQR().topRightCorner(rank, free).eval());
-    const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(E.rows(), E.rows());
-    return {D_c.asDiagonal() * (qr.colsPermutation() * x), D_r.asDiagonal() * Q.rightCols(E.rows() - rank)};
+// Null space of A: orthonormal columns x with A x = 0, up to `nothing`.
+MatrixXd null_space(const MatrixXd& A, double nothing) {
+    const Index n = A.cols();
+    if (A.size() == 0) return MatrixXd::Identity(n, n);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+    qr.setThreshold(nothing / std::max(nothing, A.rowwise().norm().maxCoeff()));
+    return MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
+}
+// Scales the rows to size one and returns the factors.
+VectorXd normalise(MatrixXd& A) {
+    const VectorXd by = A.rowwise().norm().unaryExpr([](double size) { return size > 0 ? 1 / size : 1; });
+    A = by.asDiagonal() * A;
+    return by;
 }
 
-// Columns of size one, without what is rounding.
+// Removes rounding from the columns and scales them to size one.
 void clean(MatrixXd& columns) {
     for (Index k = 0; k < columns.cols(); ++k) {
         columns.col(k) /= columns.col(k).norm();
@@ -65,18 +63,60 @@ void clean(MatrixXd& columns) {
     }
 }
 
-// δz of δr, δπ and δR: a quaternion turns by ½ (0, δπ) p.
+// δz of (δr, δπ), r over L: δp = ½ (0, δπ) p.
 MatrixXd tangent(const System& system, const VectorXd& z) {
-    const int others = system.rows + system.corners();
-    MatrixXd T = MatrixXd::Zero(system.n(), 6 * system.bodies + others);
+    MatrixXd T = MatrixXd::Zero(7 * system.bodies, 6 * system.bodies);
     for (int b = 0; b < system.bodies; ++b) {
         const int row = system.pose(b), col = 6 * b;
-        T.block<3, 3>(row, col).setIdentity();
+        T.block<3, 3>(row, col) = system.length * Eigen::Matrix3d::Identity();
         const double w = z[row + 3] / 2, x = z[row + 4] / 2, y = z[row + 5] / 2, u = z[row + 6] / 2;
         T.block<4, 3>(row + 3, col + 3) << -x, -y, -u, w, u, -y, -u, w, x, y, -x, w;
     }
-    T.bottomRightCorner(others, others).setIdentity();
     return T;
+}
+
+// Combinations of (d / L, θ) that have stiffness in the law, one per row.
+MatrixXd resisted(const ElasticKind& kind, double length) {
+    MatrixXd rows = MatrixXd::Identity(6, 6);
+    const auto keep = [&](const std::array<bool, 6>& resists) {
+        Index count = 0;
+        for (Index k = 0; k < 6; ++k)
+            if (resists[static_cast<std::size_t>(k)]) rows.row(count++) = rows.row(k).eval();
+        rows.conservativeResize(count, 6);
+    };
+    std::visit(overloaded{[&](const AxialSpring& spring) { keep({!is_zero(spring.law)}); },
+                          [&](const Bushing& bushing) {
+                              if (const auto* law = std::get_if<PerAxis>(&bushing.law)) {
+                                  std::array<bool, 6> resists{};
+                                  for (std::size_t k = 0; k < 6; ++k) resists[k] = !is_zero(law->axis[k]);
+                                  return keep(resists);
+                              }
+                              // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of
+                              // stiff to soft axes.
+                              const Matrix6& K = std::get<LinearStiffness>(bushing.law).K;
+                              const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
+                                            by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
+                              const Eigen::SelfAdjointEigenSolver<Matrix6> modes(by.asDiagonal() * K *
+                                                                                 by.asDiagonal());
+                              std::array<bool, 6> resists{};
+                              for (Index k = 0; k < 6; ++k)
+                                  resists[static_cast<std::size_t>(k)] = modes.eigenvalues()[k] > no_part;
+                              rows = modes.eigenvectors().transpose() * D.asDiagonal();
+                              keep(resists);
+                          }},
+               kind);
+    for (Index k = 0; k < 3; ++k) rows.col(k) *= length;
+    return rows;
+}
+
+// Reference size of each row of Φ [m rows]: L for a length, 1 for a direction.
+VectorXd constraint_sizes(const System& system) {
+    VectorXd size(system.rows);
+    for (std::size_t c = 0; c < system.values.size(); ++c) {
+        const ConstraintKind& kind = system.model->constraints[c].kind;
+        size.segment(system.first_row[c], rows(kind)).setConstant(is_direction(kind) ? 1 : system.length);
+    }
+    return size;
 }
 
 }  // namespace
@@ -98,40 +138,86 @@ std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
     return y;
 }
 
+double rounding_is_nothing(const System& system) {
+    constexpr double unit = std::numeric_limits<double>::epsilon(), operations = 1024;
+    return operations * unit * system.farthest / system.length;
+}
+
+VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a) {
+    VectorXd size = VectorXd::Zero(system.n());
+    const Geometry fixed = geometry(system, doubles(z), a);
+    for (int b = 0; b < system.bodies; ++b) {
+        const double acts = fixed.acts[static_cast<std::size_t>(b)];
+        size.segment<3>(system.balance(b)).setConstant(acts);
+        size.segment<3>(system.balance(b) + 3).setConstant(acts * system.length);
+    }
+    size.segment(6 * system.bodies, system.rows) = constraint_sizes(system);
+    return rounding_is_nothing(system) * size;
+}
+
 Border border_at(const System& system, const VectorXd& z, double a, double nothing) {
-    const Index nb = 6 * system.bodies, m = system.rows, all = nb + m + system.corners(), n = system.n();
+    const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
-    const MatrixXd T = tangent(system, z);
-    const MatrixXd J = square(evaluate(system, doubles(z), a, Slopes::yes).J, n).topRows(all) * T;
-    if (!J.allFinite() || J.size() == 0) return border;
-    // Of a matrix with a pivot that is nothing the estimate of its condition is nothing, too.
+    const auto at = evaluate(system, doubles(z), a, Slopes::yes);
+    const MatrixXd J = square(at.J, n);
+    if (!J.allFinite() || nb == 0) return border;
+    // The condition estimate is meaningless for a matrix with a pivot that is rounding.
     const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
     if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing && lu.rcond() > surely_regular * nothing)
         return border;
 
-    // yᵀ Φ = 0: the rows y say the same, and reactions y are in balance.
-    MatrixXd y = m > 0 && nb > 0 ? null_spaces(J.block(nb, 0, m, nb), nothing).left : MatrixXd(m, 0);
+    // Redundant rows, yᵀ Φ_q = 0: the reactions y are self-equilibrated.
+    const MatrixXd T = tangent(system, z);
+    MatrixXd G = J.block(nb, 0, m, poses) * T;
+    const VectorXd scale = normalise(G);
+    MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), nothing);
     clean(y);
-    const Index k = y.cols();
-    MatrixXd bordered = MatrixXd::Zero(all + k, all + k);
-    bordered.topLeftCorner(all, all) = J;
-    bordered.block(nb, all, m, k) = y;
-    bordered.block(all, nb, k, m) = y.transpose();
 
-    // Motions that meet no stiffness, and what must not push them. Only their own part: how the poses go, what acts on bodies.
-    NullSpaces idle = null_spaces(bordered, nothing);
-    const Index i = std::min(idle.right.cols(), idle.left.cols());
-    MatrixXd v = T.topLeftCorner(7 * system.bodies, nb) * idle.right.topLeftCorner(nb, i),
-             u = idle.left.topLeftCorner(nb, i);
-    clean(v);
-    clean(u);
+    // Z: motions without deformation. v = Z N: those of them that keep all forces in balance.
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        MatrixXd rows = resisted(system.model->elastics[e].kind, 1 / system.length) *
+                        deformation_slopes(system, e, doubles(z), a) * T;
+        if (!rows.allFinite()) return border;
+        normalise(rows);
+        G.conservativeResize(G.rows() + rows.rows(), nb);
+        G.bottomRows(rows.rows()) = rows;
+    }
+    const MatrixXd Z = null_space(G, nothing);
+    const Geometry fixed = geometry(system, doubles(z), a);
+    const double most = *std::ranges::max_element(fixed.acts);
+    VectorXd acts(nb), in_forces(nb);  // moments over L
+    for (Index k = 0; k < nb; ++k) {
+        const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
+        acts[k] = on_body > 0 ? on_body : most > 0 ? most : 1;
+        in_forces[k] = k % 6 < 3 ? 1 : 1 / system.length;
+    }
+    const VectorXd weight = in_forces.cwiseQuotient(acts);
+    MatrixXd turned = weight.asDiagonal() * square(fixed.J, n).topLeftCorner(nb, poses) * T * Z;
+    MatrixXd C = (weight.asDiagonal() * J.block(0, poses, nb, m)).transpose();
+    normalise(C);
+    turned = null_space(C, nothing).transpose() * turned;  // part outside the range of reactions
+    const MatrixXd v = Z * null_space(turned, nothing);
+
+    const Index k = y.cols(), i = v.cols();
     border.redundant = static_cast<int>(k);
-    border.U = MatrixXd::Zero(n, k + i);
-    border.g = MatrixXd::Zero(n, k + i);
+    border.U = border.g = MatrixXd::Zero(n, k + i);
     border.U.block(nb, 0, m, k) = y;
-    border.g.block(7 * system.bodies, 0, m, k) = y;
-    border.U.topRightCorner(nb, i) = u;
-    border.g.topRightCorner(7 * system.bodies, i) = v;
+    border.g.block(poses, 0, m, k) = y;
+    MatrixXd U = v, g = T * v;  // U: wrenches conjugate to v, moments about each body's origin
+    for (Index row = 0; row < nb; ++row)
+        if (row % 6 < 3) U.row(row) *= system.length;
+    clean(U);
+    clean(g);
+    border.U.topRightCorner(nb, i) = U;
+    border.g.topRightCorner(poses, i) = g;
+
+    const Eigen::Map<const VectorXd> E(at.E.data(), n);
+    const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(nb)),
+                   of = v.cwiseAbs().transpose() * acts;
+    border.pushed = (work.array().abs() > nothing * of.array()).any();
+    const VectorXd gap = y.transpose() * E.segment(nb, m);
+    const VectorXd size = constraint_sizes(system);
+    border.open = (gap.array().abs() > nothing * (y.cwiseAbs().transpose() * size).array()).any();
     return border;
 }
 
@@ -183,7 +269,7 @@ std::vector<S> poses_and_reactions(const Problem& problem, const std::vector<S>&
     return {y.begin(), y.begin() + problem.n()};
 }
 
-// U μ and the gauges.
+// Adds U μ and the gauges.
 template <class S>
 void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>& E) {
     using B = Base<S>;
@@ -248,11 +334,12 @@ MatrixXd inverse(const MatrixXd& J) {
     return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
 }
 
-// Newton's method until its steps are rounding. The last two steps share an inverse, unless they come out as large as the one
-// before: then a knot may lie between, and the inverse be of its other side. Near a limit point that is rounding.
+// Newton's method until its steps are rounding. The last two steps share an inverse, unless they do
+// not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
+// point this is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int most = 12, last = 2, most_anew = 3;
-    constexpr double close = 1e-7;  // of the model's size
+    constexpr double close = 1e-7;  // relative to the model's size
     const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
@@ -281,6 +368,36 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         before = size;
     }
     return at;
+}
+
+Worth worth(const Problem& problem, const VectorXd& y, double a) {
+    const System& system = problem.system;
+    const Border there = border_at(system, y.head(system.n()), a, rounding_is_nothing(system));
+    const bool alike = there.redundant == problem.border.redundant && there.count() == problem.border.count();
+    return {alike && !there.pushed && !there.open, alike && there.pushed, alike && there.open};
+}
+
+Approach approach(const System& system, const VectorXd& z, double a) {
+    const auto from = [&](const VectorXd& start, double nothing) {
+        Problem problem{system, border_at(system, start, a, nothing), z, false, {}, {}};
+        VectorXd y = VectorXd::Zero(problem.size());
+        y.head(system.n()) = start;
+        Approximate found = newton(problem, y, a);
+        Worth there;
+        if (found.settled && found.y.allFinite()) there = worth(problem, found.y, a);
+        return Approach{std::move(problem), std::move(found), there};
+    };
+    // Whether the border at the end is that of the start.
+    const auto arrives = [](const Worth& there) { return there.sound || there.pushed || there.open; };
+    const double rounding = rounding_is_nothing(system);
+    Approach first = from(z, rounding);
+    if (arrives(first.there)) return first;
+    // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
+    // along it. So these motions are held first, by the looser threshold.
+    Approach held = from(z, little_is_nothing);
+    if (!held.found.settled) return first;
+    Approach again = from(held.found.y.head(system.n()), rounding);
+    return arrives(again.there) ? again : held;
 }
 
 }  // namespace elastocheck::reference::certificate

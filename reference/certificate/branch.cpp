@@ -1,27 +1,33 @@
-// A branch: pieces of polynomials through equilibria of its own, each with a tube in which, at every a, there is one and only
-// one equilibrium. With s ∈ [-1, 1] along a piece from a₀ to a₁,
+// Verified continuation of a branch: polynomial pieces through its equilibria, each with a tube
+// that contains exactly one equilibrium at every a. With s ∈ [-1, 1] along a piece from a₀ to a₁,
 //
-//   a(s) = ½(1-s) a₀ + ½(1+s) a₁        ȳ(s) = ½(1-s) y₀ + ½(1+s) y₁ + (1-s²)(q₀ + q₁ s + q₂ s² + q₃ s³)
+//   a(s) = ½(1-s) a₀ + ½(1+s) a₁
+//   ȳ(s) = ½(1-s) y₀ + ½(1+s) y₁ + (1-s²)(q₀ + q₁ s + q₂ s² + q₃ s³)
 //
-// which is exactly y₀ and y₁ at its ends, whatever the q. For every s (Krawczyk, with Y(s) = Y₀ + Y₁ s),
+// which is exactly y₀ and y₁ at its ends for any q. For every s (Krawczyk 1969, with
+// Y(s) = Y₀ + Y₁ s),
 //
 //   |Y(s) F(ȳ(s); a(s))| + |I - Y(s) F'(ȳ(s) + [-r, r]; a(s))| r < r
 //
-// gives one zero y*(s) within r of ȳ(s), which is continuous in s: a curve. F and F' are taken along the piece by their Taylor
-// coefficients about s = 0, the last one over all of [-1, 1]; Y₁ = -Y₀ J₁ Y₀ follows F' to first order.
+// gives one zero y*(s) within r of ȳ(s), which is continuous in s: a curve. F and F' are
+// represented along the piece by their Taylor coefficients about s = 0, the last one over all of
+// [-1, 1]; Y₁ = -Y₀ J₁ Y₀ follows F' to first order.
 //
-// Gluing: a₀, a₁ are doubles and y₁ is the y₀ of the next piece, the border is one for the whole branch, and the gauge holds
-// idle motions at gᵀ(z - z̄(s)) = 0, which is the same at the joint of two pieces. There a box of its own, far smaller than the
-// tubes and within both, holds one zero: it is that of both.
+// Gluing: a₀, a₁ are doubles and y₁ is the y₀ of the next piece, the border is one for the whole
+// branch, and the gauge holds idle motions at gᵀ(z - z̄(s)) = 0, which is the same at the common
+// end of two pieces. There a separate box, far smaller than the tubes and within both, contains one
+// zero, which is that of both.
 //
-// Over a knot of a curve F has no second derivative. Pieces close in on it, until one that is short enough takes its slopes
-// from both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one interval matrix M ± R. At a corner, where the slope itself
-// jumps, R is one entry, ½ Δk, as the law is set apart (system.hpp). With c ≥ 0 the compliance that the law meets there, so that
-// x answers a force by -c without the law, and Y the inverse of M, half way between both slopes,
+// Across a knot of a curve F has no second derivative. Pieces shrink towards the knot until one is
+// short enough to use the slopes of both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one
+// interval matrix M ± R. At a corner, where the slope itself jumps, R has one nonzero entry, ½ Δk,
+// because the law is separated (system.hpp). With c ≥ 0 the compliance at the law, so that without
+// the law x changes by -c per unit force, and Y the inverse of M, at the mean slope,
 //
 //   ρ(|Y| R) = ½ Δk c / (1 + k c + ½ Δk c) < 1
 //
-// however stiff the stop is: the piece contracts. r is then (I - |Y| R)⁻¹ of what is to be covered.
+// for any stiffness of the stop: the piece contracts. r is then (I - |Y| R)⁻¹ times the part to be
+// covered.
 #include <fmt/format.h>
 
 #include "reference/certificate/certificate.hpp"
@@ -35,9 +41,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// ---- Between the states: where Newton's method starts, and where idle motions stand
+// ---- Interpolation of the states: start of Newton's method, and position of idle motions
 
-// Cubics through the states, with slopes from their neighbours.
+// Cubic Hermite interpolation of the states, with slopes from their neighbours.
 struct Interpolant {
     std::vector<double> a;
     std::vector<VectorXd> z, slope;
@@ -46,7 +52,7 @@ Interpolant interpolant(const std::vector<StateAt>& states) {
     Interpolant of;
     for (const StateAt& at : states) {
         VectorXd z = at.z;
-        // Of the two quaternions of an orientation the one that continues.
+        // The sign of the quaternion that continues the previous one.
         for (int b = 0; b < at.system.bodies && !of.z.empty(); ++b) {
             auto p = z.segment<4>(at.system.pose(b) + 3);
             if (p.dot(of.z.back().segment<4>(at.system.pose(b) + 3)) < 0) p = -p.eval();
@@ -63,7 +69,7 @@ Interpolant interpolant(const std::vector<StateAt>& states) {
             of.slope.push_back(between(0));
             continue;
         }
-        // Of the parabola through three.
+        // Slope of the parabola through three points.
         const std::size_t m = std::clamp<std::size_t>(k, 1, last - 1);
         const VectorXd left = between(m - 1), right = between(m);
         const VectorXd bend = (right - left) / (of.a[m + 1] - of.a[m - 1]);
@@ -88,13 +94,13 @@ Predicted at(const Interpolant& of, double a) {
                 of.slope[k + 1] * (t * (3 * t - 2))};
 }
 
-// An equilibrium of our own at a, its inverse and its tangent dy/da.
+// An equilibrium at a, found by Newton's method, with its inverse and its tangent dy/da.
 struct Node {
     double a = 0;
     VectorXd y, rate;
     MatrixXd Y;
     bool found = false;
-    VectorXd box;  // radii of one that holds the equilibrium, where it was asked for
+    VectorXd box;  // radii of a box that contains the equilibrium, if computed
 };
 
 struct Walk {
@@ -102,7 +108,7 @@ struct Walk {
     const Interpolant& states;
     Border border;
 
-    // Between states; corners as the poses there make them.
+    // Interpolated between the states; corners from the poses.
     Predicted guess(double a) const {
         Predicted of = at(states, a);
         set_corners(system, of.z, a);
@@ -128,9 +134,12 @@ struct Walk {
         node.found = node.y.allFinite() && node.rate.allFinite();
         return node;
     }
+    bool is_sound(const Node& node) const {
+        return worth(problem(node.y.head(system.n())), node.y, node.a).sound;
+    }
 };
 
-// ---- A piece
+// ---- One piece
 
 struct Piece {
     double a0 = 0, a1 = 0;
@@ -161,13 +170,13 @@ std::array<Interval, 6> powers(const Piece& piece, Index i) {
     return {(y0 + y1) * half + q(0), (y1 - y0) * half + q(1), q(2) - q(0), q(3) - q(1), -q(2), -q(3)};
 }
 
-// Taylor coefficients about each s in S at once.
+// Taylor coefficients about all s in S at once.
 template <int n>
 Jet<n> expanded(std::array<Interval, 6> p, const Interval& S) {
     Jet<n> jet;
     for (std::size_t k = 0; k < jet.c.size(); ++k) {
         if (k >= p.size()) break;
-        // Horner's scheme leaves p(S), and divides by s - S.
+        // Horner's scheme: leaves p(S), and divides by s - S.
         for (std::size_t j = p.size() - 1; j-- > k;) p[j] = p[j] + p[j + 1] * S;
         jet.c[k] = p[k];
     }
@@ -188,7 +197,7 @@ Jet<n> parameter(const Piece& piece, const Interval& S) {
     return expanded<n>({(a0 + a1) * half, (a1 - a0) * half, 0., 0., 0., 0.}, S);
 }
 
-// The coefficients of what `evaluate` makes of jets about s = 0, the last one over all s.
+// Taylor coefficients of `evaluate` about s = 0, the last one over all s.
 template <int n, class Evaluate>
 std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
     const std::vector<Jet<n>> about = evaluate(Interval(0)), over = evaluate(Interval(-1, 1));
@@ -200,7 +209,7 @@ std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
     return c;
 }
 
-// |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by what it is.
+// Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by definition.
 VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F, int gauge_from) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
     for (auto& part : F) {
@@ -210,7 +219,7 @@ VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>>
     return sum * (1 + 1e-14);
 }
 
-// |I - Y(s) F'| r with the coefficients of both.
+// I - Y(s) F'| r from the coefficients of both.
 struct RestAlong {
     std::vector<MatrixXd> rest;
     MatrixXd Y;  // Σ |Y_k|
@@ -250,7 +259,7 @@ RestAlong rest_along(const std::vector<MatrixXd>& Y, const std::vector<std::vect
     return of;
 }
 
-// Half of the tolerance is the tube's: the rest is left to the states themselves.
+// The tube may use half of the tolerance; the rest is for the states themselves.
 bool within(const System& system, const VectorXd& r, const Tolerance& tolerance) {
     for (int b = 0; b < system.bodies; ++b)
         if (!(r.segment<3>(system.pose(b)).norm() < 0.5 * tolerance.length &&
@@ -259,7 +268,7 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
-// r with |Y F| + rest(r) < r, from the fixed point of that; empty where there is none.
+// r with |Y F| + rest(r) < r, by fixed-point iteration; empty if none is found.
 template <class Rest>
 VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
     constexpr double least = 1e-20;
@@ -274,7 +283,7 @@ VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
     return {};
 }
 
-// The box at a joint; the gauge there is the joint's own place.
+// Computes the box at a joint of two pieces; the gauge there is the joint's own position.
 void enclose(const Walk& walk, Node& node) {
     if (node.box.size() > 0) return;
     const Problem problem = walk.problem(node.y.head(walk.system.n()));
@@ -288,7 +297,8 @@ void enclose(const Walk& walk, Node& node) {
         if (!rest.finite) return;
         VectorXd r = passing(step(Y, E), rest);
         if (r.size() == 0)
-            Y = inverse(middle(J, Y.rows()));  // on a corner, where that at ỹ is of one side
+            // at a corner, where the inverse at ỹ belongs to one side
+            Y = inverse(middle(J, Y.rows()));
         else if ((r.array() <= room.array()).all())
             node.box = std::move(r);
         else
@@ -309,7 +319,7 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
     });
     VectorXd first = step({Y0}, F, n);
     if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
-    // Room for the tube: it is what F' is taken over.
+    // Range of the tube over which F' is evaluated.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto J = coefficients<J_order>([&](const Interval& S) {
         return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S), Slopes::yes)
@@ -325,7 +335,7 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
     return piece.r.size() > 0 && within(walk.system, piece.r, tolerance);
 }
 
-// Whether its path leads over a corner.
+// Whether the piece crosses a corner.
 bool over_a_corner(const System& system, const Piece& piece) {
     for (std::size_t k = 0; k < system.apart.size(); ++k)
         if (over_a_knot(std::get<Curve>(law_of(system, system.apart[k])),
@@ -334,7 +344,7 @@ bool over_a_corner(const System& system, const Piece& piece) {
     return false;
 }
 
-// The same over a knot.
+// The same for a piece across a knot.
 bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, const Tolerance& tolerance) {
     const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
     const auto F = coefficients<1>([&](const Interval& S) {
@@ -365,7 +375,7 @@ bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, cons
     return false;
 }
 
-// ---- What is said of it
+// ---- Statements about the curve
 
 void raise(Extent& to, const Extent& by) {
     to.length = std::max(to.length, by.length);
@@ -374,7 +384,7 @@ void raise(Extent& to, const Extent& by) {
     to.moment = std::max(to.moment, by.moment);
 }
 
-// How far the tube is from the state, at its a.
+// Distance of the tube from the state at its a.
 Extent distance(const Piece& piece, const StateAt& at) {
     const Interval a0 = piece.a0, a1 = piece.a1,
                    s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
@@ -384,7 +394,8 @@ Extent distance(const Piece& piece, const StateAt& at) {
     return distance(at, z);
 }
 
-// What holds idle motions over the tube, what redundant rows stay open by.
+// Upper bounds over the tube of the wrench that holds idle motions, and of the gap of redundant
+// rows.
 struct Held {
     double held = 0, gap = 0;
 };
@@ -413,6 +424,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     if (!arithmetic_is_as_proved())
         return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
     const System system = make_system(model, branch, Corners::apart);
+    if (const auto why = too_large(system); !why.empty()) return open(why);
     std::vector<StateAt> at;
     for (const auto& state : states) at.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;
@@ -424,22 +436,23 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     }
     const StateAt& middle = at[at.size() / 2];
     const Interpolant interpolant_of = interpolant(at);
-    const Walk walk{system, interpolant_of, border_at(system, middle.z, middle.state.load)};
+    const Walk walk{system, interpolant_of, approach(system, middle.z, middle.state.load).problem.border};
 
-    // As long as it goes; half of it where it does not, three fifths more where it did.
+    // Step-size control: halved after a failure, enlarged by three fifths after a success.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    constexpr int most_bridges = 40;  // in a row
+    constexpr int most_bridges = 40;  // consecutive
     double h = first_share * way;
     Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;
     if (!from.found)
         return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
     enclose(walk, from);
-    if (from.box.size() == 0) return open(fmt::format("nothing is proved at {:.9g}", tube.from));
+    if (from.box.size() == 0 || !walk.is_sound(from))
+        return open(fmt::format("nothing is proved at {:.9g}", tube.from));
     const VectorXd none = VectorXd::Zero(from.y.size());
     std::size_t next_state = 0;
     bool halved = false;
-    int bridges = 0;  // one after the other, to here
+    int bridges = 0;  // consecutive pieces across knots up to here
     while (tube.to != end) {
         if (bridges == most_bridges)
             return open(fmt::format("past {:.12g} the way stays on a knot, or close to one", tube.to));
@@ -461,7 +474,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         Piece piece;
         bool proved = false, over_knot = false;
         Held of_piece;
-        // The boxes at both ends, within the tube.
+        // Whether the boxes at both ends lie within the tube.
         const auto joined = [&] { return all_less(from.box, piece.r) && all_less(to.box, piece.r); };
         const auto attempt = [&](const VectorXd& joint) {
             if (to.found && middle_node.found) {
@@ -477,6 +490,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         attempt(none);
         if (proved) enclose(walk, to);
         if (proved && to.box.size() > 0 && !joined()) attempt(1.1 * from.box.cwiseMax(to.box));
+        proved = proved && walk.is_sound(to);
         if (proved) {
             of_piece = held_over(walk, piece);
             if (of_piece.held > tolerance.held || of_piece.gap > tolerance.gap) {
@@ -508,7 +522,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         tube.to = a1;
         from = to;
         h *= 1.6;
-        if (over_knot && std::abs(h) < std::abs(first_share * way)) h = first_share * way;  // it is behind
+        // the knot is passed
+        if (over_knot && std::abs(h) < std::abs(first_share * way)) h = first_share * way;
         bridges = over_knot ? bridges + 1 : 0;
         if (std::abs(h) > std::abs(way)) h = way;
     }

@@ -1,10 +1,12 @@
-// A point. What is claimed is fixed by the tolerance before anything is computed; then
+// Certifies a point. The tolerance fixes the claim before anything is computed; then
 //
-//   Newton's method in doubles      from the state to ỹ, and Y ≈ F'(ỹ)⁻¹
-//   the smallest box that passes    [y] = ỹ ± r:  there is one in it, and its distance from the state is bounded
-//   a large box that passes         there is no other in that one
-//   all that is within tolerance    where the first fails: y·F over that box, for each row y of Y; if one of these cannot be
-//                                   zero there is none
+//   Newton's method in doubles    from the state to ỹ, and Y ≈ F'(ỹ)⁻¹
+//   smallest box that passes      [y] = ỹ ± r: contains one zero, at a bounded distance from the
+//                                 state
+//   large box that passes         contains no other zero
+//   box of the tolerance          if the first box fails: y·F over all that is within the
+//                                 tolerance, for each row y of Y; if one of these cannot be zero,
+//                                 there is no zero
 #include <fmt/format.h>
 
 #include "reference/certificate/certificate.hpp"
@@ -28,9 +30,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Dense from here on: above this a point costs minutes.
-constexpr int most_unknowns = 2500;
-
 Near near_of(const Tolerance& tolerance) {
     return {tolerance.length, tolerance.angle, tolerance.force, tolerance.moment};
 }
@@ -39,56 +38,15 @@ bool within(const Extent& far, const Tolerance& tolerance) {
            far.moment <= tolerance.moment;
 }
 
-// ---- To an equilibrium near the state, in floating point
-
-// How far Newton's method may go, over the model's size, and the state's own border still be good.
-constexpr double near_enough = 1e-11, near_enough_to_ask = 1e-9;
-
-struct Approach {
-    Problem problem;
-    Approximate found;
-};
-Approach approach(const StateAt& at) {
-    const System& system = at.system;
-    const auto from = [&](const VectorXd& z, double nothing) {
-        Problem problem{system, border_at(system, z, at.state.load, nothing), at.z, false, {}, {}};
-        VectorXd y = VectorXd::Zero(problem.size());
-        y.head(system.n()) = z;
-        Approximate found = newton(problem, y, at.state.load);
-        return Approach{std::move(problem), std::move(found)};
-    };
-    Approach first = from(at.z, rounding_is_nothing);
-    const auto moved = [&](const Approach& to) {
-        double size = 0;
-        for (int b = 0; b < system.bodies; ++b) {
-            const auto d = (to.found.y.head(system.n()) - at.z).segment<7>(system.pose(b));
-            size = std::max({size, d.head<3>().norm() / system.length, d.tail<4>().norm()});
-        }
-        return size;
-    };
-    const auto count_there = [&] {
-        return border_at(system, first.found.y.head(system.n()), at.state.load).count();
-    };
-    if (first.found.settled &&
-        (moved(first) < near_enough ||
-         (moved(first) < near_enough_to_ask && count_there() == first.problem.border.count())))
-        return first;
-    // Far away what is idle is not quite, and Newton's method runs off along it: held there first.
-    Approach held = from(at.z, little_is_nothing);
-    if (!held.found.settled) return first;
-    Approach again = from(held.found.y.head(system.n()), rounding_is_nothing);
-    return again.found.settled && moved(again) <= 10 * moved(held) ? again : held;
-}
-
 // ---- The smallest box
 
 struct Box {
     bool proved = false;
     VectorXd r;
-    std::vector<Interval> J;  // slopes over it
+    std::vector<Interval> J;  // Jacobian over the box
 };
-// Where a box does not pass, the next one is larger, and its inverse that of the slopes' middle: over the knot of a stop
-// that is not the one at ỹ.
+// If a box does not pass, the next one is larger, with the inverse at the middle of the Jacobian:
+// across the knot of a stop it differs from the inverse at ỹ.
 Box smallest(const Problem& problem, Approximate& at, double a) {
     constexpr int trials = 8;
     constexpr double least = 1e-20;
@@ -106,7 +64,8 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
         }
         const Contraction rest = contraction(at.Y, found.J);
         if (!rest.finite) return found;
-        // By iteration, which is enough where F' hardly changes; else by solving.
+        // First by fixed-point iteration, which suffices where F' hardly changes; then by a linear
+        // solve.
         VectorXd r;
         if (trial == 0) {
             r = (first * 1.01).cwiseMax(least);
@@ -126,16 +85,17 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
     return found;
 }
 
-// ---- A large box without another
+// ---- Large box for uniqueness
 
-// Let y* be the zero in the small box [y*], and y another whose poses p are in [p] ∋ p*, with whatever reactions. Reactions and
-// μ enter straight, so
+// Let y* be the zero in the small box [y*], and y another one whose poses p are in [p] ∋ p*, with
+// any reactions. F is affine in the reactions and μ, so
 //
-//   0 = F(y) - F(y*) = S (y - y*),    S ∈ F'([p], R*):  in the columns of poses with the reactions of [y*] alone
+//   0 = F(y) - F(y*) = S (y - y*),    S ∈ F'([p], R*)
 //
-// and y is y* where I - Y S shrinks something: |I - Y S| v < v for some v > 0.
+// with the reactions of [y*] in the columns of the poses, and y = y* where I - Y S is a
+// contraction: |I - Y S| v < v for some v > 0.
 //
-// The least of max (|I - Y S| v / v) that power iterations find.
+// Smallest max (|I - Y S| v / v) found by power iteration.
 double shrinks(const Contraction& rest, VectorXd v) {
     constexpr int iterations = 12;
     double least = std::numeric_limits<double>::infinity();
@@ -149,7 +109,7 @@ double shrinks(const Contraction& rest, VectorXd v) {
     return least;
 }
 
-// Origins within t L and quaternions within t of ỹ: the largest t found.
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes.
 double alone(const Problem& problem, const VectorXd& found, double a, const VectorXd& small) {
     const System& system = problem.system;
     constexpr int trials = 8;
@@ -176,7 +136,8 @@ double alone(const Problem& problem, const VectorXd& found, double a, const Vect
             t = std::min({largest, t * aim / std::max(by, 1e-3), 0.7 * failed});
             if (by > enough || t < 1.3 * best) break;
         } else {
-            // In proportion to t; not where a corner lies in the box, which it has to become clear of.
+            // The new t is in proportion; not with a corner in the box, which must shrink until it
+            // excludes the corner.
             const double longest = std::isfinite(failed) ? corner : aim,
                          shorter = std::isfinite(by) ? std::clamp(aim / by, 0.01, longest) : 0.05;
             failed = std::min(failed, t);
@@ -187,7 +148,7 @@ double alone(const Problem& problem, const VectorXd& found, double a, const Vect
     return best;
 }
 
-// What of that is around the state.
+// The part of that box around the state.
 Extent unique_around(const StateAt& at, const Approximate& found, double t) {
     const System& system = at.system;
     Extent unique;
@@ -202,15 +163,20 @@ Extent unique_around(const StateAt& at, const Approximate& found, double t) {
     return unique;
 }
 
-// ---- None within tolerance
+// ---- Exclusion: no equilibrium within the tolerance
 
-// Every equilibrium within tolerance has its z in z_s ± δ, and there  0 = E(z_s) + E'([z]) (z - z_s) + U μ. So for any y
+// Every equilibrium within the tolerance has its z in z_s ± δ, with 0 = E(z_s) + E'([z]) (z - z_s)
+// + ε. ε bounds the effect of the rounding of stored numbers: it moves the points of a strut off
+// its axis, for example, and must not exclude an equilibrium. So for any y
 //
-//   |y E(z_s)| ≤ |y E'| δ + |y U| |μ|
+//   |y E(z_s)| ≤ |y E'| δ + |y| |ε|
 //
-// and a y that this does not hold for proves that there is none. Rows of Y are good ones: each asks for one unknown.
-bool none_within(const Problem& problem, const StateAt& at, const Tolerance& tolerance) {
-    const System& system = problem.system;
+// and a y that violates this proves that there is none. The rows of Y are used for y: each isolates
+// one unknown, the last ones the load on an idle motion or the gap of redundant rows.
+bool none_within(const StateAt& at, const Tolerance& tolerance) {
+    const System& system = at.system;
+    const double load = at.state.load;
+    const Problem problem{system, border_at(system, at.z, load, little_is_nothing), at.z, false, {}, {}};
     const Index n = system.n(), k = problem.border.count();
     const Near near = near_of(tolerance);
     const VectorXd delta = radii(at, near);
@@ -220,27 +186,20 @@ bool none_within(const Problem& problem, const StateAt& at, const Tolerance& tol
 
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = at.z;
-    const Interval a = at.state.load;
-    const Eigen::MatrixXd Y =
-        inverse(square(evaluate(problem, doubles(y), at.state.load, Slopes::yes).J, n + k));
+    const Interval a = load;
+    const Eigen::MatrixXd Y = inverse(square(evaluate(problem, doubles(y), load, Slopes::yes).J, n + k));
     if (!Y.allFinite()) return false;
     const auto E = evaluate(system, thin(at.z), a, Slopes::no).E;
     const auto J = evaluate(system, around_state, a, Slopes::yes).J;
-    // What an equilibrium may be held by and still be called one.
-    std::vector<Interval> mu(static_cast<std::size_t>(n));
-    for (Index i = 0; i < n && k > 0; ++i)
-        if (problem.border.U.row(i).cwiseAbs().maxCoeff() > 0) {
-            const double most = i < 6 * system.bodies ? tolerance.held : tolerance.gap;
-            mu[static_cast<std::size_t>(i)] = Interval(-most, most);
-        }
-    for (Index row = 0; row < n; ++row) {
+    const VectorXd epsilon = rounding_of_equations(system, at.z, load);
+    for (Index row = 0; row < n + k; ++row) {
         Interval left, right;
         std::vector<Interval> slopes(static_cast<std::size_t>(n));
         for (Index i = 0; i < n; ++i) {
             const Interval weight = Y(row, i);
             if (is_zero(weight)) continue;
             const auto at_i = static_cast<std::size_t>(i);
-            left += weight * (E[at_i] + mu[at_i]);
+            left += weight * (E[at_i] + Interval(-epsilon[i], epsilon[i]));
             for (Index j = 0; j < n; ++j)
                 slopes[static_cast<std::size_t>(j)] +=
                     weight * J[at_i * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)];
@@ -252,7 +211,7 @@ bool none_within(const Problem& problem, const StateAt& at, const Tolerance& tol
     return false;
 }
 
-// The middle of the box as a state.
+// Middle of the box as a state.
 Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
     const System& system = at.system;
     Equilibrium centre;
@@ -268,7 +227,7 @@ Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
     return centre;
 }
 
-// ---- Words
+// ---- Messages
 
 std::string on_knots(const System& system, const std::vector<Interval>& z, const Interval& a) {
     std::string names;
@@ -298,7 +257,7 @@ void say(std::string& detail, const std::string& more) {
     detail += more;
 }
 
-// What μ is, at most: in the balances what holds idle motions, in the rows Φ what stays open.
+// Upper bounds of μ: in the balances the wrench that holds idle motions, in the rows Φ the gap.
 void set_held(Certificate& certificate, const Problem& problem, const VectorXd& mu) {
     const Index balances = 6 * problem.system.bodies;
     const VectorXd all = problem.border.U.cwiseAbs() * mu * (1 + 1e-12);
@@ -332,11 +291,9 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     if (!arithmetic_is_as_proved())
         return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
-    if (system.n() > most_unknowns)
-        return open(fmt::format("{} unknowns are more than the {} for which a dense proof is worth its time",
-                                system.n(), most_unknowns));
+    if (const auto why = too_large(system); !why.empty()) return open(why);
 
-    auto [problem, found] = approach(at);
+    auto [problem, found, there] = approach(system, at.z, state.load);
     const Interval a = state.load;
 
     if (found.settled && found.y.allFinite()) {
@@ -350,7 +307,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             const VectorXd mu =
                 (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
             set_held(certificate, problem, mu);
-            const bool balanced = certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
+            const bool balanced =
+                there.sound && certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
                 certificate.unique = unique_around(at, found, alone(problem, found.y, state.load, r));
@@ -364,7 +322,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             }
         }
     }
-    if (none_within(problem, at, tolerance)) {
+    if (none_within(at, tolerance)) {
         certificate.answer = Answer::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail =
@@ -377,10 +335,10 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                             certificate.error.force, certificate.error.moment);
         else
             certificate.detail = "none is found near the state either";
-        if (certificate.held > tolerance.held)
+        if (there.pushed)
             say(certificate.detail, fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
                                                 idle_bodies(system, problem.border), certificate.held));
-        if (certificate.gap > tolerance.gap)
+        if (there.open)
             say(certificate.detail, fmt::format("joints {} stay open by {:.2g} m or rad",
                                                 redundant_joints(system, problem.border), certificate.gap));
         return certificate;
@@ -404,7 +362,7 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
     Certificate certificate = certify(make_system(model, branch), state, tolerance);
     const bool shown = certificate.answer == Answer::excluded || certificate.stable;
     if (shown || !has_corners(model)) return certificate;
-    // On the corner of a stiff stop slopes range too freely where they stand.
+    // At the corner of a stiff stop the slopes inside the element vary too independently.
     Certificate apart = certify(make_system(model, branch, Corners::apart), state, tolerance);
     return apart.answer == Answer::open ? certificate : apart;
 }

@@ -1,10 +1,12 @@
-// The physics of this leg: what elements, joints and loads do to each of their bodies, with any of the numbers.
+// Equilibrium equations of elements, joints and loads on each body, for all number types of
+// numbers.hpp.
 //
-// From the energies of mechanism.hpp by virtual work: whatever connects two bodies does the work
+// Derived from the energies of mechanism.hpp by virtual work: a connection of two bodies does the
+// work
 //
 //   δW = F_i · δr_i + M_i · δπ_i + F_j · δr_j + M_j · δπ_j
 //
-// when they move by δr and turn by δπ (ground axes), M about each body's own origin.
+// when the bodies move by δr and rotate by δπ (ground axes); M is about each body's own origin.
 #pragma once
 
 #include "models/model.hpp"
@@ -20,7 +22,7 @@ struct Frame {
     Quat<T> p;
 };
 
-// On one body: a force, and a moment about its origin.
+// Action on one body: a force, and a moment about its origin.
 template <class T>
 struct Acting {
     Vec<T> force, moment;
@@ -39,7 +41,7 @@ Vec<T> position(const Frame<T>& body, const Eigen::Vector3d& s_local) {
     return body.r + lever(body, s_local);
 }
 
-// F at x on i, M beside it, and the opposite of both on j.
+// Force F at x and moment M on i, and the opposite of both on j.
 template <class T>
 OnBoth<T> opposed(const Vec<T>& F, const Vec<T>& M, const Vec<T>& x, const Frame<T>& i, const Frame<T>& j) {
     return {{F, cross(x - i.r, F) + M}, {-F, -(cross(x - j.r, F) + M)}};
@@ -47,14 +49,14 @@ OnBoth<T> opposed(const Vec<T>& F, const Vec<T>& M, const Vec<T>& x, const Frame
 
 // ---- Elastic elements
 
-// What the law sees: ℓ - ℓ₀.
+// Deformation that enters the law: ℓ - ℓ₀.
 template <class T>
 T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j) {
     using std::sqrt;
     return sqrt(squared(position(j, spring.j.s_local) - position(i, spring.i.s_local))) - free_length;
 }
 
-// δℓ = n · (δp_j - δp_i), n from i to j: the ends are pulled together with f, of ℓ - ℓ₀.
+// δℓ = n · (δp_j - δp_i), n from i to j: tensile force f(ℓ - ℓ₀) on the ends.
 template <class T, class ForceOf>
 OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T>& i, const Frame<T>& j,
                   const ForceOf& f) {
@@ -70,8 +72,8 @@ OnBoth<T> acting(const AxialSpring& spring, const T& free_length, const Frame<T>
     return pulling(spring, free_length, i, j, [&](const T& x) { return force(spring.law, x); });
 }
 
-// Of a bushing. Where it does not care how its markers are turned against each other (`rotational` is false) their
-// angles are not asked for: they may be anything.
+// Deformation of a bushing. Where it does not depend on the relative rotation of its markers
+// (`rotational` is false) the angles are not computed, and may be arbitrary.
 template <class T>
 struct Measured {
     Vec<T> p_j, D;     // marker j, and from marker i to it
@@ -109,19 +111,20 @@ std::array<T, 6> deformation(const Bushing& bushing, const Measured<T>& m) {
     return e;
 }
 
-// (f, g) = ∂u/∂e + preload. With F = A_f f and the frame turning by δπ_f,
+// (f, g) = ∂u/∂e + preload. With F = A_f f and the frame rotating by δπ_f,
 //
 //   f · δd = F · (δp_j - δp_i) - (D × F) · δπ_f        g · δθ = (A_i G g) · (δπ_j - δπ_i)
 //
-// The bodies feel what is against both. Frame on i, δπ_f = δπ_i: -F at p_j on j; on i, F at p_i and D × F, which is F at
-// p_j; A_i G g on i and against it on j.
+// The forces on the bodies are the opposite. Frame on i, δπ_f = δπ_i: on j, -F at p_j and -A_i G g;
+// on i, F at p_i with D × F, which equals F at p_j, and A_i G g.
 //
-// Frame in the middle: with C² = B and δB = w̃ B, w = A_iᵀ (δπ_j - δπ_i), C turns by c where c + C c = w, and
-// (I + C)⁻¹ = ½ (I - t̃), t = tan(|θ|/4) θ/|θ| = v_C / w_C. So δπ_f = δπ_i + ½ A_i (I - t̃) w: of the moment D × F that the
-// frame's turn meets, j has ½ (D × F + t × (D × F)), t in ground axes, and i the rest.
+// Frame in the middle: with C² = B and δB = w̃ B, w = A_iᵀ (δπ_j - δπ_i), C rotates by c where
+// c + C c = w, and (I + C)⁻¹ = ½ (I - t̃), t = tan(|θ|/4) θ/|θ| = v_C / w_C. So δπ_f = δπ_i + ½ A_i
+// (I - t̃) w. Of the moment D × F that is conjugate to the rotation of the frame, j has ½
+// (D × F + t × (D × F)), t in ground axes, and i the rest.
 //
-// Not conjugate: A_i g, or A_f g, which are one where the frame is on i. Without the moment of the offset, F acts on i at
-// p_i and nobody has D × F.
+// Not conjugate: A_i g, or A_f g, which are equal for a frame on i. Without the offset moment, F
+// acts on i at p_i, and D × F on neither body.
 template <class T>
 OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& u, const Measured<T>& m, bool rotational,
                  const Frame<T>& i, const Frame<T>& j) {
@@ -149,7 +152,8 @@ OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& u, const Measur
 
 // ---- Constraints
 
-// One row: what it says, and what a reaction of one newton, or newton metre, does: the rates of Φ by virtual work.
+// One constraint row: its value, and the action of a unit reaction [N or N·m], from the rates of Φ
+// by virtual work.
 template <class T>
 struct Row {
     T Phi;
@@ -158,7 +162,7 @@ struct Row {
 template <class T>
 using Rows = std::array<Row<T>, 3>;
 
-// δΦ = n · (δp_i - δp_j), p the same place on both: n at p on i, against it on j.
+// δΦ = n · (δp_i - δp_j), p a common place of both: n at p on i, -n on j.
 template <class T>
 Row<T> of_points(const T& Phi, const Vec<T>& n, const Vec<T>& p, const Frame<T>& i, const Frame<T>& j) {
     return {Phi, opposed(n, constant<T>(Eigen::Vector3d::Zero()), p, i, j)};
@@ -178,7 +182,8 @@ Rows<T> rows_of(const CoincidentPoints& c, const T&, const Frame<T>& i, const Fr
         rows[k] = of_points(gap[k], constant<T>(Eigen::Vector3d::Unit(static_cast<int>(k))), p, i, j);
     return rows;
 }
-// The normal turns with j: δ(n · (p_i - p_j)) = n · (δp_i - δp_j*), p_j* the place on j where p_i is.
+// The normal rotates with j: δ(n · (p_i - p_j)) = n · (δp_i - δp_j*), p_j* the point of j at the
+// place of p_i.
 template <class T>
 Rows<T> rows_of(const PointInPlane& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
     const Vec<T> p = position(i, c.i.s_local), n = lever(j, c.normal_j.u_local);
@@ -214,7 +219,7 @@ inline bool is_direction(const ConstraintKind& kind) {
         kind);
 }
 
-// ---- Loads of factor one
+// ---- Loads of unit factor
 
 template <class T>
 Acting<T> acting(const DeadForce& load, const Frame<T>& body) {

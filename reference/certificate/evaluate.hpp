@@ -1,12 +1,13 @@
-// The system assembled, part by part: a part is an element, a constraint or a load, and sees two bodies at most. Its
-// slopes are taken with respect to those (and a), 7 or 14 of them and one.
+// Assembly of the system and its Jacobian by forward automatic differentiation, part by part. A
+// part is an element, a constraint or a load with at most two bodies; its derivatives are taken
+// with respect to their 7 or 14 coordinates and a.
 #pragma once
 
 #include "reference/certificate/system.hpp"
 
 namespace elastocheck::reference::certificate {
 
-// Where the slopes of a part go: the poses of its bodies, from places of its own, and a as the last.
+// Derivative slots of a part: the poses of its bodies, and a as the last.
 struct Slots {
     BodyId i = ground, j = ground;
     int at_i() const { return 0; }
@@ -20,6 +21,9 @@ struct Assembly {
     const std::vector<S>& z;
     const S& a;
     Values<S> out;
+    bool fixed_forces = false;  // elastic forces are constant: slopes of the geometry alone
+    // Σ |force| + |moment| / L of the parts on each body; not computed if empty
+    std::vector<double> acts = {};
 
     // ---- Bodies, with or without slopes
 
@@ -88,18 +92,30 @@ struct Assembly {
     }
 
     template <class T>
+    void count(BodyId body, const Acting<T>& on, double times = 1) {
+        if (acts.empty()) return;
+        double force = 0, moment = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            force = std::max(force, mag(range(on.force[k])));
+            moment = std::max(moment, mag(range(on.moment[k])));
+        }
+        acts[static_cast<std::size_t>(body)] += std::abs(times) * (force + moment / system.length);
+    }
+    template <class T>
     void add(const Slots& slots, BodyId body, const Acting<T>& on) {
         if (body == ground) return;
+        count(body, on);
         const int row = system.balance(body);
         for (int k = 0; k < 3; ++k) {
             add(slots, row + k, on.force[static_cast<std::size_t>(k)]);
             add(slots, row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
         }
     }
-    // The same times R, the unknown in column `of`.
+    // Adds the action times R, the unknown in column `of`.
     template <class T>
     void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int of) {
         if (body == ground) return;
+        count(body, on, mag(range(R)));
         const int row = system.balance(body);
         const auto one = [&](int to, const T& x) {
             add(slots, to, T(x * R));
@@ -130,7 +146,10 @@ struct Assembly {
     template <class T>
     OnBoth<T> acting_at(const AxialSpring& spring, const ElementPath& path, const Frame<T>& i,
                         const Frame<T>& j) {
-        return acting(spring, path.free_length.at(parameter<T>()), i, j);
+        return pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+            const T f = force(spring.law, x);
+            return fixed_forces ? constant_of(f) : f;
+        });
     }
     template <class T>
     OnBoth<T> acting_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
@@ -138,10 +157,45 @@ struct Assembly {
         const Measured<T> m = measured(bushing, path.rotational, i, j);
         std::array<T, 6> u = force(bushing.law, deformation(bushing, m), path.apart);
         for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
+        if (fixed_forces) {
+            for (T& x : u) x = constant_of(x);
+            u = turned_back(u, path, m.A_f, -1);
+        }
         return acting(bushing, u, m, path.rotational, i, j);
     }
 
-    // What a law set apart sees, and what a force of one does there.
+    static S constant_of(const S& x) { return x; }
+    template <int N>
+    static Dual<S, N> constant_of(const Dual<S, N>& x) {
+        Dual<S, N> of;
+        of.v = x.v;
+        return of;
+    }
+
+    static Quat<S> constant_of(const Quat<S>& q) { return q; }
+    template <int N>
+    static Quat<Dual<S, N>> constant_of(const Quat<Dual<S, N>>& q) {
+        return {constant_of(q.w), {{constant_of(q.v[0]), constant_of(q.v[1]), constant_of(q.v[2])}}};
+    }
+    // Slopes of components in the frame's axes as if the frame did not rotate about the axes of
+    // `turns_freely` (`by` = +1), or rotated about these alone (-1): x' ± ω × x.
+    template <class T>
+    static std::array<T, 6> turned_back(std::array<T, 6> x, const ElementPath& path, const Quat<T>& A_f,
+                                        double by) {
+        // zero, with the slopes of half the rotation
+        const Vec<T> half_turn = product(conjugate(constant_of(A_f)), A_f).v;
+        const std::array<T, 6> from = x;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!path.turns_freely[k]) continue;
+            const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+            const T turn = half_turn[k] * Base<T>(2 * by);
+            x[i] = x[i] - turn * constant_of(from[j]);
+            x[j] = x[j] + turn * constant_of(from[i]);
+        }
+        return x;
+    }
+
+    // Deformation of a separated law, and the actions of its unit force.
     template <class T>
     struct OfOne {
         T x;
@@ -237,12 +291,12 @@ struct Assembly {
     }
 };
 
-// All parts; `One` and `Two` are the numbers for parts with one body and with two.
+// Assembles all parts; `One` and `Two` are the number types for parts with one and with two bodies.
 template <class S, class One, class Two>
-Values<S> assembled(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
+void assemble(Assembly<S>& sum, Slopes slopes) {
+    const System& system = sum.system;
     const Model& model = *system.model;
     const auto n = static_cast<std::size_t>(system.n());
-    Assembly<S> sum{system, z, a, {}};
     sum.out.E.assign(n, constant<S>(0.));
     if (slopes == Slopes::yes) {
         sum.out.J.assign(n * n, constant<S>(0.));
@@ -261,22 +315,25 @@ Values<S> assembled(const System& system, const std::vector<S>& z, const S& a, S
     for (const LoadPath& load : system.loads)
         if (body_of(load.kind) != ground) sum.template load<One>(load);
     for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
-    return std::move(sum.out);
 }
 
 template <class S>
 Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a) {
-    return assembled<S, S, S>(system, z, a, Slopes::no);
+    Assembly<S> sum{system, z, a, {}};
+    assemble<S, S, S>(sum, Slopes::no);
+    return std::move(sum.out);
 }
 template <class S>
 Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
     if (slopes == Slopes::no) return evaluate_without_slopes(system, z, a);
-    return assembled<S, Dual<S, 8>, Dual<S, 15>>(system, z, a, slopes);
+    Assembly<S> sum{system, z, a, {}};
+    assemble<S, Dual<S, 8>, Dual<S, 15>>(sum, slopes);
+    return std::move(sum.out);
 }
 
 // ---- Wrenches of joints
 
-// What acts on the joint's body i, moved from that body's origin to the joint's point.
+// Action on the joint's body i, moved from the body's origin to the joint's point.
 template <class S>
 JointWrench<S> about_joint(const Assembly<S>& at, const ModelJoint& joint, const Acting<S>& on) {
     const Vec<S> arm = position(at.template frame<S>(joint.at.body, 0), joint.at.s_local) -

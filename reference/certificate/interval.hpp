@@ -1,12 +1,14 @@
-// Intervals of doubles that contain what they stand for.
+// Interval arithmetic in doubles with guaranteed enclosure.
 //
-// A bound is computed in the ordinary way, rounded to nearest, and then moved outwards by one unit in the last place:
-// what was rounded lies within half a unit, so the bound is beyond the exact value. The neighbour of a double is the
-// next integer in its bits. No rounding mode is asked for, so nothing depends on how a compiler moves code about, and
-// threads do not meet; `arithmetic_is_as_proved()` asks for the two things the argument needs.
+// A bound is computed with rounding to nearest and then moved outwards by one unit in the last
+// place: the rounding error is at most half a unit, so the bound lies beyond the exact value. The
+// neighbour of a double is the next integer in its bits. No rounding mode is set, so the result
+// does not depend on the compiler's code motion, and threads do not interfere.
+// `arithmetic_is_as_proved()` checks the two assumptions of this argument.
 //
-// An interval that is not bounded says nothing, and whatever is made of it says nothing: it stands for "not defined
-// here" (a quotient by zero, a root below zero) as well as for "too large". NaN counts as unbounded.
+// An unbounded interval carries no information, and neither does any result of it. It stands for
+// "not defined here" (a quotient by zero, a root of a negative number) and for "too large". NaN
+// counts as unbounded.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +19,7 @@
 
 namespace elastocheck::reference::certificate {
 
-// The least double above x; ∞ and NaN are as they are.
+// The least double above x; ∞ and NaN are returned unchanged.
 inline double next_up(double x) {
     if (!(x < std::numeric_limits<double>::infinity())) return x;
     const auto bits = std::bit_cast<std::int64_t>(x + 0.0);  // -0 is +0
@@ -44,7 +46,7 @@ inline bool contains(const Interval& a, double x) { return a.lo <= x && x <= a.h
 inline bool inside(const Interval& a, const Interval& b) { return b.lo <= a.lo && a.hi <= b.hi; }
 inline bool apart(const Interval& a, const Interval& b) { return a.hi < b.lo || b.hi < a.lo; }
 
-// The largest and the least absolute value; infinite and 0 where nothing is known.
+// Largest and least absolute value; infinite and 0 for an unbounded interval.
 inline double mag(const Interval& a) {
     return bounded(a) ? std::max(std::abs(a.lo), std::abs(a.hi)) : std::numeric_limits<double>::infinity();
 }
@@ -52,7 +54,7 @@ inline double mig(const Interval& a) {
     if (!bounded(a) || contains(a, 0)) return 0;
     return std::min(std::abs(a.lo), std::abs(a.hi));
 }
-// A double in it, and how far its ends are from that one.
+// A double inside the interval, and the largest distance of its ends from it.
 inline double mid(const Interval& a) { return a.lo == a.hi ? a.lo : a.lo / 2 + a.hi / 2; }
 inline double rad(const Interval& a) {
     if (a.lo == a.hi) return 0;
@@ -64,7 +66,7 @@ inline Interval hull(const Interval& a, const Interval& b) {
     if (!bounded(a) || !bounded(b)) return everything;
     return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
-// Of two that contain the same; everything where they cannot.
+// Intersection of two enclosures of the same number; unbounded if they are disjoint.
 inline Interval intersection(const Interval& a, const Interval& b) {
     if (!bounded(a)) return b;
     if (!bounded(b)) return a;
@@ -75,7 +77,7 @@ inline Interval around(double middle, double radius) {
     return {next_down(middle - radius), next_up(middle + radius)};
 }
 
-// What is left of two bounds: NaN, from ∞ - ∞ or 0 · ∞, is no bound.
+// Interval of two rounded bounds; NaN, from ∞ - ∞ or 0 · ∞, makes it unbounded.
 inline Interval outward(double lo, double hi) {
     const Interval a{next_down(lo), next_up(hi)};
     return a.lo <= a.hi ? a : everything;
@@ -83,7 +85,7 @@ inline Interval outward(double lo, double hi) {
 
 inline Interval operator-(const Interval& a) { return {-a.hi, -a.lo}; }
 
-// A sum of doubles that comes out as zero is zero.
+// A sum of doubles that is computed as zero is exactly zero.
 inline Interval operator+(const Interval& a, const Interval& b) {
     if (is_zero(a)) return b;
     if (is_zero(b)) return a;
@@ -97,7 +99,7 @@ inline Interval operator*(const Interval& a, const Interval& b) {
     if (is_zero(a)) return bounded(b) ? Interval{} : everything;
     if (is_zero(b)) return bounded(a) ? Interval{} : everything;
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
-    const double sum = (p + q) + (r + s);  // 0 · ∞, which a minimum would pass over
+    const double sum = (p + q) + (r + s);  // detects 0 · ∞, which a minimum would skip
     if (!(sum - sum == 0)) return everything;
     return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
@@ -113,7 +115,7 @@ inline Interval& operator+=(Interval& a, const Interval& b) { return a = a + b; 
 inline Interval& operator-=(Interval& a, const Interval& b) { return a = a - b; }
 inline Interval& operator*=(Interval& a, const Interval& b) { return a = a * b; }
 
-// A square is not negative, whatever way it is rounded.
+// A square is not negative, for any rounding.
 inline Interval sqr(const Interval& a) {
     if (!bounded(a)) return everything;
     const double least = mig(a), most = mag(a);
@@ -125,8 +127,8 @@ inline Interval sqrt(const Interval& a) {
     return {std::max(0.0, next_down(std::sqrt(a.lo))), a.hi == 0 ? 0 : next_up(std::sqrt(a.hi))};
 }
 
-// Whether doubles are rounded to nearest, and small ones kept: what the argument above rests on. Not a matter of this
-// program, but of what it is linked with or called from.
+// Whether doubles are rounded to nearest and denormals kept, as the argument above assumes. Linked
+// libraries or the calling program may have changed either.
 inline bool arithmetic_is_as_proved() {
     const volatile double one = 1, half_unit = std::numeric_limits<double>::epsilon() / 2,
                           least = std::numeric_limits<double>::denorm_min(),

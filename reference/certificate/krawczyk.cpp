@@ -11,8 +11,8 @@ using Eigen::VectorXd;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
-// A sum of n numbers that are not negative, as computed, is at most this factor below the exact one, with room for the few
-// operations around it; what underflows is less than the least normal number.
+// Upper bound of an exact sum of n nonnegative numbers from the computed one, including the few
+// operations around it; underflow loses less than the least normal number per term.
 VectorXd raised(const VectorXd& sum, Index n) {
     const double by = 1 + 4 * static_cast<double>(n + 8) * unit;
     return (sum * by).array() + static_cast<double>(n + 1) * std::numeric_limits<double>::min();

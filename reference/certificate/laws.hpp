@@ -1,4 +1,4 @@
-// The laws of mechanism.hpp as forces, f = ∂u/∂x.
+// Forces f = ∂u/∂x of the elastic laws of mechanism.hpp.
 #pragma once
 
 #include "models/mechanism.hpp"
@@ -6,16 +6,16 @@
 
 namespace elastocheck::reference::certificate {
 
-// f⁽ʲ⁾(x)/j! of a curve. Where x reaches over a knot: the hull of the pieces' values and of their slopes, which makes a
-// slope between any two points of x; there is no second derivative. Where nothing is known outside the table, x there
-// is nothing.
+// Taylor coefficients f⁽ʲ⁾(x)/j! of a curve. Where x contains a knot: the hull of the pieces'
+// values and of their slopes, which contains every difference quotient of two points of x; second
+// derivatives do not exist. Unbounded where x is outside a table without extrapolation.
 void expand(const Curve& curve, const Interval& x, int count, Interval* f);
 void expand(const Curve& curve, double x, int count, double* f);
 
-// Whether x reaches over a knot.
+// Whether x contains a knot.
 bool over_a_knot(const Curve& curve, const Interval& x);
 
-// Whether slopes jump at a knot, by more than rounding: a stop that closes.
+// Whether the slope jumps at a knot by more than rounding, as in a stop that closes.
 bool has_corner(const ScalarLaw& law);
 
 template <class T>
@@ -30,13 +30,13 @@ T force(const ScalarLaw& law, const T& x) {
     return composed(f, x);
 }
 
-// A law that is zero says nothing of its deformation, which need not even be defined.
+// A zero law does not use its deformation, which may be undefined.
 inline bool is_zero(const ScalarLaw& law) {
     const auto* rate = std::get_if<LinearRate>(&law);
     return rate != nullptr && rate->k == 0;
 }
 
-// ∂u/∂e of e = (d, θ), without the axes that are set apart
+// ∂u/∂e of e = (d, θ), without the separated axes
 template <class T>
 std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e, const std::array<bool, 6>& apart) {
     std::array<T, 6> f;

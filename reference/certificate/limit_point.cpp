@@ -1,14 +1,15 @@
-// A limit point: a is an unknown, and the curve of equilibria goes on by the coordinate σ along its tangent t,
+// Certifies a limit point: a is an unknown, and the curve of equilibria is parametrised by σ along
+// its tangent t,
 //
 //   E(z; a) + U μ = 0,   gᵀ (z - z_g) = 0,   tᵀ (y - ỹ) = σ,     y = (z, μ, a)
 //
-// One box that contracts for every σ in [-δ, δ] holds one equilibrium y(σ) at each: a curve. Its slope dy/dσ solves
-// F' dy/dσ = e, e the unit vector of the last row, so
+// One box that contracts for every σ in [-δ, δ] contains one equilibrium y(σ) at each: a curve. Its
+// derivative dy/dσ solves F' dy/dσ = e, e the unit vector of the last row, so
 //
-//   |dy/dσ - Y e| ≤ |I - Y F'| |Y e| + |I - Y F'| |dy/dσ - Y e|      (and the last is its own bound)
+// |dy/dσ - Y e| ≤ |I - Y F'| |Y e| + |I - Y F'| |dy/dσ - Y e|      (the last term bounds itself)
 //
-// Where da/dσ has one sign at -δ and the other at δ, a has its extreme between: the limit, which is no less than a(±δ) (where
-// it is a maximum) and no more than a on the whole box.
+// Where da/dσ has opposite signs at -δ and δ, a has its extremum between: the limit, which for a
+// maximum is at least a(±δ) and at most the largest a of the box.
 #include <fmt/format.h>
 
 #include "reference/certificate/certificate.hpp"
@@ -22,7 +23,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// σ counts origins over the model's size and quaternions: of y along v, tᵀ v = 1 with t = W v.
+// σ measures origins over the model's size, and quaternions: the part of y along v, tᵀ v = 1 with
+// t = W v.
 struct Tangent {
     VectorXd v, t;
 };
@@ -37,7 +39,7 @@ Tangent normalised(const System& system, const VectorXd& along) {
     return {along / size, weighted / size};
 }
 
-// A point of the curve, with the inverse there; a tangent that its last column is.
+// A point of the curve with its inverse, whose last column is a tangent.
 struct OnCurve {
     VectorXd y;
     MatrixXd Y;
@@ -50,7 +52,7 @@ OnCurve on_curve(const Problem& problem) {
     return {std::move(found.y), std::move(found.Y), found.settled};
 }
 
-// Newton's method for da/dσ = 0, by secants. The problem's own point and tangent follow.
+// Secant method for da/dσ = 0. The point and tangent of the problem are updated.
 constexpr double first_step = 1e-4, small_step = 1e-10, longest_step = 0.2;
 OnCurve turning_point(Problem& problem) {
     double slope = 0, step = 0;
@@ -72,7 +74,7 @@ OnCurve turning_point(Problem& problem) {
     return here;
 }
 
-// |x| over the box, for dy/dσ = Y e and what it may be off by.
+// Bounds of dy/dσ = Y e ± error over the box.
 struct SlopeOf {
     double middle = 0, radius = std::numeric_limits<double>::infinity();  // of da/dσ
 };
@@ -90,7 +92,7 @@ SlopeOf slope_of_a(const MatrixXd& Y, const Contraction& rest) {
     return {};
 }
 
-// The box about ỹ that holds y(σ) for every σ of |σ| ≤ δ about `at`.
+// Box about ỹ that contains y(σ) for every |σ| ≤ δ about `at`.
 struct Segment {
     bool proved = false;
     VectorXd r;
@@ -102,7 +104,7 @@ Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, do
     const VectorXd first = step(Y, F);
     Segment of;
     if (!first.allFinite()) return of;
-    // A point's box is to fit into a segment's, even where both are only rounding.
+    // The box of a point must fit into that of a segment, even where both are only rounding.
     const double least = delta > 0 ? 1e-22 : 1e-25, wider = delta > 0 ? 1.3 : 1.01;
     VectorXd r = (first * 1.5).cwiseMax(least);
     for (int trial = 0; trial < 8; ++trial) {
@@ -133,10 +135,11 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     if (!arithmetic_is_as_proved())
         return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
     const System system = make_system(model, branch);
+    if (const auto why = too_large(system); !why.empty()) return open(why);
     const StateAt at = state_at(system, state);
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
-    Problem known{system, border_at(system, at.z, state.load), at.z, false, {}, {}};
+    Problem known{system, border_at(system, at.z, state.load, little_is_nothing), at.z, false, {}, {}};
     const Index n = known.size() + 1;
     VectorXd y = VectorXd::Zero(n);
     y.head(system.n()) = at.z;
@@ -150,6 +153,9 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     Problem problem{system, known.border, known.z_g, true, normalised(system, along).t, y};
     const OnCurve top = turning_point(problem);
     if (!top.found) return open("no limit point is found near the state");
+    if (!worth(problem, top.y, top.y[n - 1]).sound)
+        return open(
+            "what is held as idle or redundant at the limit point is not, or is pushed or open there");
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {

@@ -1,10 +1,10 @@
-// What the equations are evaluated with: doubles and intervals, and of either
+// Number types of the equations: doubles and intervals, and of either
 //
-//   Dual<S, N>   v + Σ d_k ε_k: a value with its N slopes
-//   Jet<n>       Σ c_k sᵏ, k = 0 ... n, of intervals: a value along a curve, as its Taylor coefficients in s
+//   Dual<S, N>   v + Σ d_k ε_k: a value with its N derivatives
+//   Jet<n>       Σ c_k sᵏ, k = 0 ... n, of intervals: Taylor coefficients in s along a curve
 //
-// and jets with slopes, Dual<Jet<n>, N>. A function of one variable is known by its Taylor coefficients over an
-// interval, f⁽ʲ⁾(X)/j!, and `composed` puts any of these numbers into it.
+// and jets with derivatives, Dual<Jet<n>, N>. `composed` applies a function of one variable to any
+// of them from its Taylor coefficients over an interval, f⁽ʲ⁾(X)/j!.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct Jet {
     std::array<Interval, static_cast<std::size_t>(n) + 1> c{};
 };
 
-// What constants are given as, and how many derivatives of a function are asked for.
+// Type of constants, and number of derivatives of a function that are needed.
 template <class T>
 struct Kind {
     using Base = T;  // double, Interval
@@ -49,7 +49,7 @@ inline constexpr int order = Kind<T>::order;
 template <class T>
 using Expansion = std::array<Base<T>, static_cast<std::size_t>(order<T>) + 1>;
 
-// ---- The same for all: what holds the value, a constant, a square, a root
+// ---- Common functions: value, constant, square, root
 
 inline Interval range(double x) { return x; }
 inline const Interval& range(const Interval& x) { return x; }
@@ -163,7 +163,7 @@ Jet<n> operator*(Jet<n> a, const Interval& b) {
     return a;
 }
 
-// ---- Duals. A slope that is zero costs nothing: most are, as an element has two bodies and a point one.
+// ---- Duals. Zero derivatives are skipped: an element has two bodies and a point one.
 
 template <class S, int N>
 Dual<S, N> operator-(Dual<S, N> a) {
@@ -237,7 +237,7 @@ Dual<S, N> operator*(Dual<S, N> a, const std::type_identity_t<S>& b) {
         if (!is_zero(d)) d = d * b;
     return a;
 }
-// With a constant, where that is of another type than the value.
+// With a constant of another type than the value.
 template <class S, int N>
 requires(!std::is_same_v<S, Base<S>>) Dual<S, N>
 operator+(Dual<S, N> a, const Base<S>& b) {
@@ -264,7 +264,7 @@ T& operator+=(T& a, const T& b) requires(!std::is_same_v<T, Base<T>>) {
     return a = a + b;
 }
 
-// ---- f(x) of f⁽ʲ⁾(X)/j!, j = 0 ... order<T>, X ∋ the values of x
+// ---- f(x) from f⁽ʲ⁾(X)/j!, j = 0 ... order<T>, where X contains the values of x
 
 inline double composed(const double* f, const double&) { return f[0]; }
 inline Interval composed(const Interval* f, const Interval&) { return f[0]; }

@@ -1,4 +1,4 @@
-// Vectors, unit quaternions and the angles of a rotation, with any of the numbers.
+// Vectors, unit quaternions and angles of a rotation, for all number types.
 #pragma once
 
 #include "models/mechanism.hpp"
@@ -65,7 +65,7 @@ Vec<T> turned(const Quat<T>& p, const Vec<T>& s) {
     const Vec<T> half = cross(p.v, s), u = half + half;
     return s + u * p.w + cross(p.v, u);
 }
-// The rotation that a stored quaternion stands for: its direction, as its length is one only to rounding.
+// Rotation of a stored quaternion: its direction, since its length is one only to rounding.
 template <class T>
 Quat<T> direction_of(const Eigen::Quaterniond& p) {
     const Interval size =
@@ -79,7 +79,7 @@ Base<T> whole(double x) {
     return Base<T>(x);
 }
 
-// (cos φ/2, sin φ/2 n) of half the turn: ((1 + w), v) / √(2 + 2w).
+// Quaternion (cos φ/2, sin φ/2 n) of half the rotation: ((1 + w), v) / √(2 + 2w).
 template <class T>
 Quat<T> half_of(const Quat<T>& q) {
     using std::sqrt;
@@ -87,8 +87,8 @@ Quat<T> half_of(const Quat<T>& q) {
     const T by = w + w;
     return {w, {{q.v[0] / by, q.v[1] / by, q.v[2] / by}}};
 }
-// Of the two quaternions of a rotation, the one with w > 0; nothing within the numbers' width of half a turn, where
-// neither is.
+// Of the two quaternions of a rotation, the one with w > 0; undefined where the sign of w is not
+// certain, near half a turn.
 template <class T>
 Quat<T> short_way(const Quat<T>& q) {
     Quat<T> way = mid(range(q.w)) < 0 ? Quat<T>{-q.w, -q.v} : q;
@@ -98,9 +98,8 @@ Quat<T> short_way(const Quat<T>& q) {
 
 // θ = log B, and c in J⁻¹(θ) = I - ½ θ̃ + c θ̃², c = (1 - (|θ|/2) cot(|θ|/2)) / |θ|².
 //
-// B is turned half way (half_of) until sin²(|θ|/2) = |v|² is small; there θ = s v with s = 2 w turn(|v|²) and
-// c = bend(|v|²) / s². On the way back, with s, w, c of the half turn,
-//
+// The rotation B is halved (half_of) until sin²(|θ|/2) = |v|² is small; there θ = s v with s = 2 w
+// turn(|v|²) and c = bend(|v|²) / s². Doubling back, with s, w, c of the half rotation,
 //   s of the whole = s / w        c of the whole = c/4 + 1 / (8 s w)
 //
 // by v_whole = 2 w v and φ cot φ = (φ/2) cot(φ/2) - (φ/2) tan(φ/2).
@@ -130,7 +129,8 @@ Logarithm<T> logarithm(const Quat<T>& B) {
     return {q[0].v * s, c};
 }
 
-// The angle of (x, y) in its plane, short of half a turn: of the rotation about an axis, half way.
+// Angle of (x, y) in its plane, less than half a turn: the logarithm of the halved rotation about
+// one axis.
 template <class T>
 T plane_angle(const T& y, const T& x) {
     using std::sqrt;
@@ -139,16 +139,16 @@ T plane_angle(const T& y, const T& x) {
     return logarithm(half).theta[0];
 }
 
-// Three angles of B = A_iᵀ A_j, and what moments they make: δθ = Gᵀ w where B becomes exp(w̃) B, so m = G g is the moment in
-// axes of i that does the work of g on θ.
+// Three angles of B = A_iᵀ A_j, and their conjugate moments: δθ = Gᵀ w for a variation exp(w̃) B of
+// B, so m = G g is the moment in axes of i that is conjugate to g on θ.
 template <class T>
 struct Angles {
     Vec<T> theta;
     std::array<Vec<T>, 3> G;  // columns
 };
 
-// As it looks along axis n, a direction u that turns with w has the angle of its projection, whose rate is
-// w · (e_n - (u_n / |v|²) v), v = u - u_n e_n.
+// Axis of a projected angle: a direction u that rotates with w has in the projection along axis n
+// an angle with the rate w · (e_n - (u_n / |v|²) v), v = u - u_n e_n.
 template <class T>
 Vec<T> axis_of_projection(const Vec<T>& u, std::size_t n) {
     Vec<T> v = u;
@@ -159,9 +159,10 @@ Vec<T> axis_of_projection(const Vec<T>& u, std::size_t n) {
 }
 
 //   rotation_vector  w = J θ', so G = J⁻ᵀ: column k is e_k + ½ θ × e_k + c θ × (θ × e_k)
-//   projected        z of j as it looks along x and y of i, x of j as it looks along z of i
-//   cardan           w = x_i θ_x' + y' θ_y' + z_j θ_z', y' = x_i turned with θ_x, y: across x_i and z_j. Dual to these:
-//                    z_j's projection along x_i; y' itself, (0, z_z, -z_y) / h; (0, z_y, z_z) / h², h² = z_y² + z_z²
+//   projected        z of j projected along x and y of i, x of j projected along z of i
+//   cardan           w = x_i θ_x' + y' θ_y' + z_j θ_z', y' normal to x_i and z_j. Dual to these
+//                    axes: the projection of z_j along x_i; y' = (0, z_z, -z_y) / h;
+//                    (0, z_y, z_z) / h², h² = z_y² + z_z²
 template <class T>
 Angles<T> angles_of(Formulation::Angles kind, const Quat<T>& B) {
     using std::sqrt;

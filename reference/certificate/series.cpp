@@ -26,11 +26,12 @@ const Coefficients<B>& coefficients() {
 
 double choose(int n, int j) {
     double c = 1;
-    for (int k = 1; k <= j; ++k) c = c * (n - j + k) / k;  // whole after each division, and far below 2⁵³
+    // an integer after each division, and far below 2⁵³
+    for (int k = 1; k <= j; ++k) c = c * (n - j + k) / k;
     return c;
 }
 
-// Enough that what is left out is below rounding.
+// Number of terms that makes the remainder less than rounding.
 int terms(double x, int count) {
     int n = count + 2;
     for (double power = x * x; power > 1e-19 && n < most_terms; power *= x) ++n;
@@ -75,8 +76,8 @@ void expand(Series series, const Interval& x, int count, Interval* f) {
     }
 }
 
-// x = k π/2 + y, then the series of both about 0: of alternating signs and falling terms, so each is left by less than
-// the first term that is left out.
+// x = k π/2 + y, then the series of both about 0: alternating with decreasing terms, so each
+// remainder is less than the first omitted term.
 CosSin cos_sin(const Interval& x) {
     // π/2 = 1.5707963267948966192313216916...
     const Interval half_pi{1.5707963267948965580, 1.5707963267948967800};
@@ -91,7 +92,8 @@ CosSin cos_sin(const Interval& x) {
         cosine = Interval(1) - y2 * cosine / Interval(n * (n - 1));
         sine = Interval(1) - y2 * sine / Interval(n * (n + 1));
     }
-    const Interval left_out = power(Interval(mag(y)), last) / Interval(3.0e29);  // 28! = 3.0488...e29
+    // 28! = 3.0488...e29
+    const Interval left_out = power(Interval(mag(y)), last) / Interval(3.0e29);
     const Interval error{-left_out.hi, left_out.hi};
     const Interval unit{-1, 1};
     cosine = intersection(cosine + error, unit);

@@ -1,5 +1,5 @@
-// The power series that angles are made of, and sine and cosine of a number, as enclosures: every coefficient is an
-// interval, and what a truncated series leaves out is bounded, of each derivative by itself.
+// Enclosures of the power series of angles, and of sine and cosine: interval coefficients, with a
+// truncation bound for each derivative.
 #pragma once
 
 #include <numbers>
@@ -10,11 +10,12 @@ namespace elastocheck::reference::certificate {
 
 // With x = sin² φ
 //
-//   φ / (sin φ cos φ)       = Σ κ_n xⁿ             κ_0 = 1,  κ_n = κ_n-1 · 2n / (2n + 1)          turn
-//   (1 - φ cot φ) / sin² φ  = Σ κ_n / (2n + 3) xⁿ                                               bend
+//   turn   φ / (sin φ cos φ)       = Σ κ_n xⁿ            κ_0 = 1,  κ_n = κ_n-1 · 2n / (2n + 1)
+//   bend   (1 - φ cot φ) / sin² φ  = Σ κ_n / (2n + 3) xⁿ
 //
-// The first is y = asin √x / √(x (1-x)), which has 2x (1-x) y' + (1 - 2x) y = 1; the second is (1 - (1-x) y) / x, and
-// κ_n - κ_n+1 = κ_n / (2n + 3). All coefficients are positive and fall, so of the j-th derivative over j! the terms from N on are
+// The first is y = asin √x / √(x (1-x)), with 2x (1-x) y' + (1 - 2x) y = 1; the second is
+// (1 - (1-x) y) / x, and κ_n - κ_n+1 = κ_n / (2n + 3). All coefficients are positive and
+// decreasing, so the remainder of the j-th derivative over j!, from the term N on, is
 //
 //   Σ κ_n C(n, j) xⁿ⁻ʲ  ≤  κ_N C(N, j) |x|ᴺ⁻ʲ / (1 - ρ),     ρ = |x| (N+1) / (N+1-j) < 1
 enum class Series { turn, bend };
@@ -43,7 +44,7 @@ template <class T>
 struct Turned {
     T cos, sin;
 };
-// Their derivatives go round: c, -s, -c, s.
+// The derivatives are periodic: c, -s, -c, s.
 template <class T>
 Turned<T> cos_sin_of(const T& x) {
     using B = Base<T>;

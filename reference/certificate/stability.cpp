@@ -1,14 +1,16 @@
-// With T the turn of the unknowns, δz = T (δr, L δπ), and A = T applied to the slopes,
+// Verified positive definiteness of the reduced Hessian. With T the map δz = T (δr, L δπ), and
+// A = T applied to the Jacobian,
 //
 //   H = -½ (A_qq + A_qqᵀ),    H + ρ (Φ_qᵀ Φ_q + g gᵀ) positive definite for some ρ
 //     ⟹  xᵀ H x > 0 where Φ_q x = 0 and g x = 0
 //
-// A law that is set apart has no part in A_qq: its f does the work of k w δx on its deformation's wᵀ δx, so it adds k w wᵀ, which
-// is no less than that of the least slope k ≥ 0 in the box. Only where there is an energy.
+// A separated law is not in A_qq: its force f does the work k w δx on the deformation wᵀ δx, so it
+// adds k w wᵀ, which is at least that of the smallest slope k ≥ 0 in the box. Only for systems with
+// an energy.
 //
-// Positive definite: with G ≈ L⁻¹ of M = L Lᵀ, in doubles, G (M ± R) Gᵀ is close to the identity; where its rows are off by less
-// than one in sum, all its eigenvalues are positive, and so are those of M ± R. Row by row, so that stiff and soft may stand
-// side by side:
+// Test: with G ≈ L⁻¹ of M = L Lᵀ, in doubles, G (M ± R) Gᵀ is close to the identity. If its row
+// sums deviate by less than one, all its eigenvalues are positive, and so are those of M ± R. The
+// test is row by row, which allows stiff and soft directions together:
 //
 //   |I - G (M ± R) Gᵀ| 1 ≤ |I - fl(fl(G M) Gᵀ)| 1 + |G| (R + 2γ |M|) |Gᵀ| 1
 #include "reference/certificate/stability.hpp"
@@ -26,9 +28,9 @@ using Eigen::MatrixXd;
 // Scaling by it is exact.
 double power_of_two(double x) { return std::exp2(std::nearbyint(std::log2(x))); }
 
-using Sparse = std::vector<std::pair<Index, Interval>>;  // a row: its entries
+using Sparse = std::vector<std::pair<Index, Interval>>;  // one row: its nonzero entries
 
-// A row of slopes, with respect to (δr, L δπ) of each body.
+// A row of the Jacobian with respect to (δr, L δπ) of each body.
 Sparse turned_row(const System& system, const std::vector<Interval>& z, const Interval* J, double length) {
     Sparse row;
     for (BodyId body = 0; body < system.bodies; ++body) {
@@ -86,8 +88,9 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const std::v
     }
     for (std::size_t c = 0; c < system.apart.size(); ++c) {
         const auto at = static_cast<std::size_t>(system.corner(c));
-        std::array<Interval, 2>
-            f;  // from the law itself: the least slope of a stop is zero, and rounded outward below it
+        // from the law itself: the smallest slope of a stop is zero, and outward rounding would
+        // make it negative
+        std::array<Interval, 2> f;
         expand(std::get<Curve>(law_of(system, system.apart[c])),
                z[static_cast<std::size_t>(system.deformation(c))], 2, f.data());
         const double k = f[1].lo;
@@ -102,7 +105,7 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const std::v
     for (const Interval& entry : H) most = std::max(most, mag(entry));
     if (!std::isfinite(most) || !(most > 0)) return n == 0;
 
-    // What the joints hold and what is idle, as rows of size one.
+    // Constraint rows and gauges of idle motions, scaled to size one.
     std::vector<Sparse> held;
     const auto hold = [&](Sparse row) {
         double largest = 0;

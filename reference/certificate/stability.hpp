@@ -1,12 +1,13 @@
-// Whether every stiffness over a box is positive, by a Cholesky factorisation that is checked.
+// Proof that every stiffness over a box is positive, by a verified Cholesky factorisation.
 #pragma once
 
 #include "reference/certificate/bordered.hpp"
 
 namespace elastocheck::reference::certificate {
 
-// xᵀ H x > 0 for every motion x that the joints leave free and that is not idle, H = -∂(balances)/∂(δr, δπ) anywhere in the
-// box; J by rows is the slopes of the problem over it. False: not shown.
+// Proves xᵀ H x > 0 for every motion x that the joints allow and that is not idle,
+// H = -∂(balances)/∂(δr, δπ) anywhere in the box; J by rows is the Jacobian of the problem over the
+// box. False: not proved.
 bool stable(const Problem& problem, const std::vector<Interval>& z, const std::vector<Interval>& J);
 
 // Whether every symmetric matrix within M ± R is positive definite.

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// The six numbers of a wrench as forces: moments over the model's length.
+// A wrench as six forces: moments divided by the model's length.
 template <class S>
 std::array<S, 6> stacked(const System& system, const JointWrench<S>& wrench) {
     std::array<S, 6> w;
@@ -27,7 +27,7 @@ JointWrench<Interval> given(const Equilibrium& state, std::size_t joint) {
     return {constant<Interval>(wrench.force), constant<Interval>(wrench.moment)};
 }
 
-// At least √(Σ xₖ²).
+// Upper bound of √(Σ xₖ²).
 template <std::size_t n>
 double size_above(const std::array<Interval, n>& x) {
     Interval sum;
@@ -35,7 +35,8 @@ double size_above(const std::array<Interval, n>& x) {
     return sqrt(sum).hi;
 }
 
-// The angle between two orientations, q = p* p': at most, with s = |q⃗| / |q|, asin s ≤ s (1 + s²) for s ≤ ½.
+// Upper bound of the angle between two orientations, q = p* p': with s = |q⃗| / |q|, asin s ≤ s
+// (1 + s²) for s ≤ ½.
 double angle_above(const Quat<Interval>& p, const Quat<Interval>& other) {
     const Quat<Interval> q = product(conjugate(p), other);
     const Interval sine = sqrt(squared(q.v)) / sqrt(squared(q.v) + sqr(q.w));
@@ -49,7 +50,7 @@ Quat<Interval> quaternion(const System& system, const std::vector<Interval>& z, 
     return {at(0), {{at(1), at(2), at(3)}}};
 }
 
-// r - c as it is stored.
+// Stored r - c as an enclosure.
 Vec<Interval> place(const StateAt& at, BodyId body) {
     Vec<Interval> r;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -101,15 +102,16 @@ StateAt state_at(const System& system, const Equilibrium& state) {
     return at;
 }
 
-// Poses: a unit quaternion turned by φ from another is within 2 sin(φ/4) ≤ φ/2 of it.
+// Poses: a unit quaternion at a rotation φ from another is within 2 sin(φ/4) ≤ φ/2 of it.
 //
 // Reactions: for z in the box of poses the wrench is w = C(z) R. With E = I - P C,
 //
-//   R - R₀ = P w - R₀ + E R     so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
+//   R - R₀ = P w - R₀ + E R   so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
 //
-// and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments count over L, as in w.
+// and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments are
+// divided by L, as in w.
 //
-// Corners set apart: what their deformation is over the box of poses, and the law over that.
+// Separated corners: their deformation over the box of poses, and the law over that interval.
 VectorXd radii(const StateAt& at, const Near& near) {
     const System& system = at.system;
     VectorXd r = VectorXd::Zero(system.n());
@@ -137,7 +139,7 @@ VectorXd radii(const StateAt& at, const Near& near) {
         const std::size_t q = rows.size();
         std::vector<Interval> R0;
         for (const int row : rows) R0.push_back(at.z[7 * system.bodies + row]);
-        // In newtons: a row of direction is counted over L.
+        // In newtons: a reaction moment is divided by L.
         double most = 0, norm = 0;
         std::vector<bool> moment;
         for (const auto& constraint : system.model->constraints)

@@ -1,4 +1,4 @@
-// A state, from any leg, among the unknowns: where it lies, and which box holds all that is as near to it as is said.
+// Maps a state of any leg to the unknowns, and a distance in poses and wrenches to a box.
 #pragma once
 
 #include "reference/certificate/bordered.hpp"
@@ -6,7 +6,7 @@
 
 namespace elastocheck::reference::certificate {
 
-// What is near a state: every origin, orientation and wrench within these.
+// Neighbourhood of a state: bounds for every origin, orientation and wrench.
 struct Near {
     double length = 0, angle = 0, force = 0, moment = 0;
 };
@@ -14,18 +14,20 @@ struct Near {
 struct StateAt {
     const System& system;
     const Equilibrium& state;
-    Eigen::VectorXd z;                         // [n], the nearest doubles; reactions by least squares
-    std::vector<Eigen::MatrixXd> from_wrench;  // per joint, P: reactions of its wrench [rows × 6]
+    Eigen::VectorXd z;  // [n], the nearest doubles; reactions by least squares
+    // per joint, P: from its wrench to its reactions [rows × 6]
+    std::vector<Eigen::MatrixXd> from_wrench;
 };
 
-// Throws std::invalid_argument where the state has not one pose a body and one wrench a joint.
+// Throws std::invalid_argument unless the state has one pose per body and one wrench per joint.
 StateAt state_at(const System& system, const Equilibrium& state);
 
-// Radii about `state.z` of a box that holds every z whose poses and joint wrenches are near the state: infinite for
-// reactions that the wrench of their joint does not determine.
+// Radii about `state.z` of a box that contains every z whose poses and joint wrenches are near the
+// state; infinite for reactions that the wrench of their joint does not determine.
 Eigen::VectorXd radii(const StateAt& at, const Near& near);
 
-// How far the states of a box are from the state, at most; and whether all of them are farther than `near` in a wrench.
+// Upper bound of the distance of a box from the state; and whether its whole box is outside `near`
+// in some wrench.
 Extent distance(const StateAt& at, const std::vector<Interval>& z);
 bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Near& near);
 

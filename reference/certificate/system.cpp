@@ -1,5 +1,7 @@
 #include "reference/certificate/system.hpp"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "models/branch.hpp"
@@ -29,7 +31,7 @@ ElementPath undriven(const ElasticKind& kind) {
     return path;
 }
 
-// start + rate·a of a driver, `times` what it moves.
+// Adds `times` (start + rate·a) of a driver.
 void add(Affine& to, const Driver& driver, double times) {
     to.start += Interval(times) * Interval(driver.start);
     to.rate += Interval(times) * Interval(driver.rate);
@@ -87,6 +89,29 @@ bool resists_rotation(const SpatialLaw& law) {
                       law);
 }
 
+// Whether the law is isotropic in two axes of the frame: k (d_i² + d_j²) / 2.
+bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, std::size_t j) {
+    const auto I = static_cast<Eigen::Index>(i), J = static_cast<Eigen::Index>(j);
+    for (const std::size_t k : {i, j})
+        if (bushing.undeformed[static_cast<Eigen::Index>(k)] != 0 || !is_zero(path.preload[k].start) ||
+            !is_zero(path.preload[k].rate))
+            return false;
+    return std::visit(overloaded{[&](const LinearStiffness& u) {
+                                     Matrix6 coupled = u.K;
+                                     coupled(I, I) = coupled(J, J) = 0;
+                                     return u.K(I, I) == u.K(J, J) && (coupled.row(I).array() == 0).all() &&
+                                            (coupled.row(J).array() == 0).all() &&
+                                            (coupled.col(I).array() == 0).all() &&
+                                            (coupled.col(J).array() == 0).all();
+                                 },
+                                 [&](const PerAxis& u) {
+                                     const auto *of_i = std::get_if<LinearRate>(&u.axis[i]),
+                                                *of_j = std::get_if<LinearRate>(&u.axis[j]);
+                                     return of_i != nullptr && of_j != nullptr && of_i->k == of_j->k;
+                                 }},
+                      bushing.law);
+}
+
 bool has_energy(const LoadKind& load) {
     return std::visit(
         overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
@@ -105,6 +130,8 @@ void set_formulations(System& system) {
         path.rotational = resists_rotation(bushing->law);
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational |= !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate);
+        for (std::size_t k = 0; k < 3; ++k)
+            path.turns_freely[k] = is_round(*bushing, path, (k + 1) % 3, (k + 2) % 3);
         const Formulation& f = bushing->formulation;
         if (f.frame == Formulation::Frame::on_j || (f.frame == Formulation::Frame::middle && !f.conjugate))
             throw std::invalid_argument("bushing '" + elastic.name +
@@ -127,7 +154,7 @@ void for_corners(const Model& model, const Visit& visit) {
                    model.elastics[e].kind);
 }
 
-// Where everything is counted from, and how large the model is. Neither changes what is proved.
+// Origin and size of the model. The proof does not depend on them.
 void set_size(System& system) {
     std::vector<Vector3d> points;
     const auto add = [&](BodyId body, const Vector3d& s_local) {
@@ -143,13 +170,15 @@ void set_size(System& system) {
     for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
     for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
     for (const auto& p : points) system.c += p / static_cast<double>(points.size());
-    constexpr double rounding = 0x1p-42;  // of the coordinates: what points at one place may be apart by
+    // of the coordinates: coincident points may differ by this
+    constexpr double rounding = 0x1p-42;
     double radius = 0, farthest = 0;
     for (const auto& p : points) {
         radius = std::max(radius, (p - system.c).norm());
         farthest = std::max(farthest, p.norm());
     }
     if (std::isfinite(radius) && radius > rounding * farthest) system.length = radius;
+    if (std::isfinite(farthest)) system.farthest = std::max(system.length, farthest);
     if (!system.c.allFinite()) system.c.setZero();
 }
 
@@ -159,6 +188,11 @@ bool has_corners(const Model& model) {
     bool any = false;
     for_corners(model, [&](const Apart&) { any = true; });
     return any;
+}
+
+std::string too_large(const System& system) {
+    if (system.n() <= most_unknowns) return {};
+    return fmt::format("not tried: {} unknowns, proofs are tried up to {}", system.n(), most_unknowns);
 }
 
 const ScalarLaw& law_of(const System& system, const Apart& corner) {

@@ -1,21 +1,26 @@
-// The square system of this leg, as a function of the unknowns z and of the branch's parameter a:
+// Square system of this leg, as a function of the unknowns z and of the branch's parameter a:
 //
-//   z  per body   r - c [m], the quaternion (w, x, y, z) [-]         E  per body  Σ forces [N], Σ moments about its origin [N·m]
-//      per row    its reaction R [N, N·m]                               per row   Φ [m, -]
-//      per corner deformation x, force f                                per corner x(r, p; a) - x, f - ∂u/∂x
-//                                                                       per body  |p|² - 1
+//   unknowns z    per body    r - c [m], the quaternion (w, x, y, z) [-]
+//                 per row     its reaction R [N, N·m]
+//                 per corner  deformation x, force f
+//   equations E   per body    Σ forces [N], Σ moments about its origin [N·m]
+//                 per row     Φ [m, -]
+//                 per corner  x(r, p; a) - x, f - ∂u/∂x
+//                 per body    |p|² - 1
 //
-// A corner is a law whose slope jumps. Set apart, it does what f does, and its slope stands in one place of ∂E/∂z: over the
-// corner that is an interval, and the rest of the matrix is numbers. Within its element an interval would stand in each of the
-// twelve rows and fourteen columns and range in each by itself, which no stop that is much stiffer than what it meets gets
-// through. Nothing else changes: x and f are what (r, p) make them.
+// A corner is a law whose slope jumps. It is separated: its deformation x and force f become
+// unknowns, so that its slope is in one entry of ∂E/∂z. Across the corner that entry is an
+// interval, and the rest of the matrix is numbers. Inside its element the interval would be in each
+// of the twelve rows and fourteen columns and vary in each independently, which fails for any stop
+// much stiffer than its surroundings. The solutions are the same: x and f are functions of (r, p).
 //
-// c is a place near the model, a double, from which everything is counted: where the ground's frame sits does not matter.
-// All that a driver may move stands as start + rate·a in intervals: what is stored enters as it is stored, and no product is
-// rounded before the proof begins.
+// c is a double near the model, the origin of all positions, so that the origin of the ground frame
+// does not matter. Every quantity that a driver may move is start + rate·a in intervals: stored
+// numbers enter exactly, and no product is rounded before the proof begins.
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "models/equilibrium_path.hpp"
@@ -31,14 +36,17 @@ struct Affine {
     }
 };
 
-// What an element is along the branch; an element uses the one that its kind has.
+// Driven quantities of an element along the branch; only the one of its kind is used.
 struct ElementPath {
     Affine free_length;             // of a spring [m]
     std::array<Affine, 6> preload;  // of a bushing [N, N·m]
-    bool rotational = false;        // whether a bushing cares how its markers are turned against each other
-    std::array<bool, 6> apart{};    // laws that are set apart; of a spring the first
+    bool rotational = false;        // bushing forces depend on the markers' relative rotation
+    std::array<bool, 6> apart{};    // separated laws; of a spring the first
+    // Axes of a bushing's frame with equal rates across: rotating the frame about one leaves the
+    // forces unchanged.
+    std::array<bool, 3> turns_freely{};
 };
-// A law with a corner, set apart: its deformation and its force are unknowns of their own.
+// A law with a corner, separated: its deformation and force are unknowns.
 struct Apart {
     std::size_t element = 0, axis = 0;
 };
@@ -54,11 +62,13 @@ struct System {
     std::vector<int> first_row;         // per Model::constraints
     std::vector<ElementPath> elements;  // per Model::elastics
     std::vector<LoadPath> loads;        // static and driven
-    std::vector<Apart> apart;           // corners that are unknowns
+    std::vector<Apart> apart;           // separated corners
     Eigen::Vector3d c = {0, 0, 0};      // [m]
-    double length = 1;                  // size of the model, for what has to be made comparable [m]
-    int bodies = 0, rows = 0;           // nb, m
-    bool conservative = true;           // no follower, no formulation without energy
+    double length = 1;                  // L, size of the model: reference length of scaling [m]
+    // largest distance of a point from the origin of the stored coordinates, at least `length` [m]
+    double farthest = 1;
+    int bodies = 0, rows = 0;  // nb, m
+    bool conservative = true;  // no follower, no formulation without energy
     int corners() const { return 2 * static_cast<int>(apart.size()); }
     int n() const { return 7 * bodies + rows + corners(); }
     int pose(BodyId body) const { return 7 * body; }
@@ -70,15 +80,21 @@ struct System {
     int norm(BodyId body) const { return 6 * bodies + rows + corners() + body; }
 };
 
-// Throws std::invalid_argument where the model does not stand on the branch, or a driver moves what is not there.
+// Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
+// does not exist.
 enum class Corners { in_place, apart };
 System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
 bool has_corners(const Model& model);
+// Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube
+// (0.3 s per point at 500).
+inline constexpr int most_unknowns = 500;
+// Reason why no proof is tried; empty where one is.
+std::string too_large(const System& system);
 const ScalarLaw& law_of(const System& system, const Apart& corner);
-// x and f of corners as the poses of z make them.
+// Sets x and f of the corners from the poses of z.
 void set_corners(const System& system, Eigen::VectorXd& z, double a);
 
-// E, and where asked for ∂E/∂z by rows [n × n] and ∂E/∂a.
+// E, and if requested ∂E/∂z by rows [n × n] and ∂E/∂a.
 template <class S>
 struct Values {
     std::vector<S> E, J, E_a;
@@ -86,11 +102,21 @@ struct Values {
 enum class Slopes { no, yes };
 template <class S>
 Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes);
-// What a branch is followed with: its equations over a piece, and their slopes.
+// Number types along a branch piece: for the equations and for their Jacobian.
 using Along = Jet<6>;
 using SlopesAlong = Jet<2>;
 template <class S>
 Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a);
+
+// ∂E/∂z by rows [n × n] at constant elastic forces, and the size of the acting forces on each body,
+// Σ |force| + |moment| / L over its elements, reactions and loads [N].
+struct Geometry {
+    std::vector<double> J, acts;
+};
+Geometry geometry(const System& system, const std::vector<double>& z, double a);
+// ∂e/∂z of the deformation of an element, springs in the first row only [6 × 7 nb].
+Eigen::MatrixXd deformation_slopes(const System& system, std::size_t element, const std::vector<double>& z,
+                                   double a);
 
 // Wrenches of the joints: on body i, about ModelJoint::at.
 template <class S>
@@ -100,14 +126,14 @@ struct JointWrench {
 template <class S>
 std::vector<JointWrench<S>> wrenches(const System& system, const std::vector<S>& z, const S& a);
 
-// What a reaction of one in each row of the joint makes of its wrench: columns.
+// Wrench of the joint for a unit reaction in each of its rows, as columns.
 template <class S>
 std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const std::vector<S>& z,
                                           const S& a);
-// The rows of a joint, as positions among all rows.
+// Positions of the rows of a joint among all rows.
 std::vector<int> rows_of_joint(const System& system, int joint);
 
-// What the law of each element sees; springs in the first only.
+// Deformation that enters the law of each element; for springs only the first entry.
 std::vector<std::array<Interval, 6>> deformations(const System& system, const std::vector<Interval>& z,
                                                   const Interval& a);
 

@@ -14,7 +14,7 @@ constexpr int corrections = 8;
 constexpr double contraction = 0.25;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-// The largest of any body.
+// Largest over the bodies.
 struct Size {
     double length = 0, angle = 0;  // over L, [rad]
     double largest() const { return std::max(length, angle); }
@@ -28,7 +28,7 @@ Size size_of(const VectorXd& xi) {
     return size;
 }
 
-// The signs of fractions of multiples of the golden ratio, which know nothing of the model.
+// Signs from fractions of multiples of the golden ratio, which are independent of the model.
 VectorXd with_signs(VectorXd e, Index from) {
     for (Index k = 0; k < e.size(); ++k)
         if (std::fmod(0.6180339887498949 * static_cast<double>(from + k + 1), 1.) < 0.5) e[k] = -e[k];

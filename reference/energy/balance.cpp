@@ -17,11 +17,13 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rank_threshold = 1e-9;  // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
+// of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
+constexpr double rank_threshold = 1e-9;
 constexpr double difference = 1e-5;      // of ξ, central
 constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
 
-// The bodies that an element or a constraint of either connects, each with itself; ground is none.
+// Adjacency: bodies that an element or a constraint connects to each body, and the body itself,
+// without ground.
 std::vector<std::vector<BodyId>> neighbours(const Model& model) {
     std::vector<std::vector<BodyId>> of(model.bodies.size());
     for (std::size_t b = 0; b < of.size(); ++b) of[b].push_back(static_cast<BodyId>(b));
@@ -50,11 +52,12 @@ std::vector<std::vector<BodyId>> neighbours(const Model& model) {
     return of;
 }
 
-// Bodies without a common neighbour: moved together, each gradient entry tells of one of them only. A chain of any
-// length takes three groups.
+// Groups of bodies without a common neighbour (graph colouring, Curtis, Powell & Reid 1974): when
+// they move together, each gradient entry depends on only one of them. A chain of any length takes
+// three groups.
 std::vector<std::vector<BodyId>> groups_apart(const std::vector<std::vector<BodyId>>& neighbours_of) {
     std::vector<std::vector<BodyId>> groups;
-    std::vector<std::vector<bool>> touched;  // by each group: its bodies' neighbours
+    std::vector<std::vector<bool>> touched;  // neighbours of the bodies of each group
     for (std::size_t b = 0; b < neighbours_of.size(); ++b) {
         std::size_t g = 0;
         const auto apart = [&](BodyId other) { return !touched[g][static_cast<std::size_t>(other)]; };
@@ -143,9 +146,9 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
 }
 
-// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with J = 1 + ½ φ̃ + ...,
-// whereas the balance is g - m. They differ by (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m where they
-// balance.
+// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with
+// J = 1 + ½ φ̃ + ..., whereas the balance is g - m. They differ by
+// (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m at equilibrium.
 MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n) {
     MatrixXd A = MatrixXd::Zero(n, n);
     for (const auto& moment : prescribed.moments) {

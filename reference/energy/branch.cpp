@@ -1,21 +1,26 @@
-// The branch is one curve of minima. A minimiser left alone would snap through at a limit point and report
-// the far side. So a step counts only if it fits the tangents t = dξ/da at both its ends, which must fit each
-// other (largest entries):
+// Continuation with step acceptance by tangents. A minimiser alone would jump past a limit point
+// and report the far side. So a step is accepted only if it agrees with the tangents t = dξ/da at
+// both its ends, which must agree with each other (largest entries):
 //
-//   |Δξ - t_0 Δa| ≤ ½ |t_0 Δa|,   |t_1 Δa - t_0 Δa| ≤ ½ |t_0 Δa|,   |Δξ - ½ (t_0 + t_1) Δa| ≤ ⅒ |t_0 Δa|
+//   |Δξ - t_0 Δa| ≤ ½ |t_0 Δa|,   |t_1 Δa - t_0 Δa| ≤ ½ |t_0 Δa|,
+//   |Δξ - ½ (t_0 + t_1) Δa| ≤ ⅒ |t_0 Δa|
 //
-// Along a smooth curve these fall with the first, first and second power of Δa, but not from one curve to
-// another. The new pose must be a minimum (no mode of negative stiffness), the stiffnesses must have come as
-// foreseen (stability.hpp) and no bushing may have turned through where its law ends. If any of this fails the
-// step is halved. Where a curve has a kink t jumps: the step over it counts once it is too short to matter.
+// Along a smooth curve these fall with the first, first and second power of Δa; between different
+// curves they do not. The new pose must be a minimum (no mode of negative stiffness), the
+// stiffnesses must agree with their prediction (stability.hpp), and no bushing may have turned
+// through the end of its law. Otherwise the step is halved. At a kink of the curve t jumps: the
+// step over it is accepted once it is negligibly short.
 //
-// The tangent, by differentiating Φ(ξ; a) = 0 and Zᵀ ∂(V + λᵀΦ)/∂ξ = 0 with J = ∂Φ/∂ξ, J Z = 0, W = Zᵀ H Z:
+// Tangent, by differentiating Φ(ξ; a) = 0 and Zᵀ ∂(V + λᵀΦ)/∂ξ = 0 with J = ∂Φ/∂ξ, J Z = 0, W = Zᵀ
+// H Z:
 //
 //   J t = -∂Φ/∂a               t = p + Z y,   p = -J⁺ ∂Φ/∂a
 //   Zᵀ (H t + b) = 0           y = -W⁻¹ Zᵀ (b + H p),   b = ∂²(V + λᵀΦ)/∂ξ∂a
 //
 // where a dead moment adds its unsymmetric part A to H (balance.hpp).
 #include "reference/energy/branch.hpp"
+
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -30,22 +35,30 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of a step, one after the other. Where a stop closes the tangent jumps, and no step over it fits both: it is taken once
-// it is negligible, which from the whole span takes some twenty.
+// Consecutive halvings of a step. Where a stop closes, the tangent jumps, and no step over it
+// agrees with both tangents: it is accepted once it is negligible, after about twenty halvings of
+// the whole span.
 constexpr int halvings = 26;
 constexpr double resolution = 1e-9;  // of the parameter: smallest step
-// Where a law hardly rises its beginning looks as a limit point does, until steps are shorter than what it rises by. Elsewhere
-// they would only make a limit point dearer.
+// Smallest step for laws that are almost flat at their start, which looks like a limit point until
+// steps are shorter than the flat part. For other laws it would only make limit points more
+// expensive.
 constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
-constexpr double look =
-    1e-3;  // of the span: an instability that comes and goes within this is not looked for
-constexpr int internal_points = 2000;    // on the way from one value asked for to the next
+// of the span: instabilities that appear and vanish within this length are not searched for
+constexpr double look = 1e-3;
+constexpr int internal_points = 2000;    // between two requested values
 constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
-constexpr double largest_step = 0.1;     // of L or 1 rad, as the tangent has it
+constexpr double largest_step = 0.1;     // of L or 1 rad, by the tangent
 constexpr double negligible = 1e-6;      // of L or 1 rad
-constexpr double idle_push = 1e-8;       // of F or F·L: what counts as a load on an idle mode
-constexpr double spent = 0.01;           // of its first stiffness: a mode about to become unstable
+constexpr double idle_push = 1e-8;       // of F or F·L: smallest load on an idle mode
+constexpr double spent = 0.01;           // of its first stiffness: the mode will soon be unstable
+
+// A small gradient does not bound the error along a soft mode. Newton corrections are applied until
+// the last one is at most `last_correction`; after `corrections` of them at most `known` is
+// accepted.
+constexpr double last_correction = 1e-10, known = 1e-9;  // of L or 1 rad
+constexpr int corrections = 4;
 
 constexpr const char* not_finite = "a number stopped being finite";
 constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
@@ -61,21 +74,21 @@ VectorXd scaled_increment(const Path& path, const std::vector<Pose>& from, const
     return increment(from, to).cwiseQuotient(coordinate_scales(path));
 }
 
-// The same from state to state, less what idle motions contribute: how far they go does not matter.
+// Increment between two states without the idle motions, whose size is arbitrary.
 VectorXd resisted_increment(const Path& path, const State& from, const State& to) {
     const VectorXd xi = scaled_increment(path, from.poses, to.poses);
     const MatrixXd idle = to.modes.idle_motions();
     return xi - idle * (idle.transpose() * xi);
 }
 
-// A of K = H + A; nothing where no moment acts.
+// A of K = H + A; empty without an acting moment.
 std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
     if (path.course.start.moments.empty() && path.course.rate.moments.empty()) return {};
     return moment_stiffness(at(path.course, state.a), path.scales, static_cast<int>(state.H.rows()));
 }
 
-// -Z (ZᵀKZ)⁻¹ Zᵀ b over the modes that resist: where the balance b goes to zero, to first order. In ξ. The modes are
-// those of H, so without A there is nothing to factorise.
+// Newton increment -Z (ZᵀKZ)⁻¹ Zᵀ b over the resisting modes, in ξ. The modes are those of H, so
+// without A nothing is factorised.
 VectorXd newton_increment(const State& state, const std::optional<MatrixXd>& A, const VectorXd& b) {
     const auto resisting = state.modes.resisting();
     if (resisting.empty()) return VectorXd::Zero(b.size());
@@ -94,15 +107,15 @@ bool is_continuous(const VectorXd& actual, const VectorXd& t_0, const VectorXd& 
            largest(actual - 0.5 * (t_0 + t_1)) <= std::max(0.1 * largest(t_0), negligible);
 }
 
-// On the same sheet of the logarithm and of the angles as before: elsewhere one of them has come or gone by half a turn
-// or more.
+// Whether logarithm and angles of the bushings stay on the same sheet: otherwise one of them jumps
+// by half a turn or more.
 bool bushings_continue(const Path& path, const State& from, const State& to) {
     const Eigen::Matrix3Xd change =
         rotations(path.model, path.turning, to.poses) - rotations(path.model, path.turning, from.poses);
     return change.cols() == 0 || change.colwise().norm().maxCoeff() <= std::numbers::pi / 2;
 }
 
-// A motion that nothing resists, pushed by what is prescribed at a.
+// Whether the prescribed loads at a push an unresisted motion.
 bool idle_mode_loaded(const Path& path, const State& from, double a) {
     const Balance then = balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
     const VectorXd push = from.modes.Z.transpose() * then.left;
@@ -111,16 +124,18 @@ bool idle_mode_loaded(const Path& path, const State& from, double a) {
     return false;
 }
 
-// Whether the softest mode that resisted where the branch starts has hardly any stiffness left.
+// Whether the softest mode that resists at the start of the branch has lost almost all of its
+// stiffness.
 bool is_spent(const Modes& first, const Modes& now) {
     const auto softest = first.idle_motions().cols();
     return softest < first.count() && now.stiffness[softest] <= spent * first.stiffness[softest];
 }
 
-// What the walk has come to, where its softest mode z is spent. There the tangent is t = -z (z · b) / w + ..., b what the
-// parameter asks for: it grows as the stiffness w falls and the branch turns back, unless the mode is not asked, z · b = 0,
-// and another curve of equilibria crosses. So w |t| is what it was, or goes to zero as w does. Under a dead moment w is of
-// the minimum, and tells nothing of the branch.
+// Classifies the singular point at which the softest mode z is spent. The tangent there is t = -z
+// (z · b) / w + ..., b the rate of the balance. It grows as the stiffness w falls, and the branch
+// turns back (limit point), unless z · b = 0 and another curve of equilibria crosses (bifurcation).
+// So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a dead
+// moment w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
     if (unsymmetric_stiffness(path, walk.state)) return Failure{Outcome::branch_lost, unstable};
     constexpr double still_there = 0.02;
@@ -131,7 +146,7 @@ Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
                : Failure{Outcome::dividing_point, divides};
 }
 
-// Whether a law has a slope somewhere that is a thousandth of its steepest, and not none.
+// Whether a law has a nonzero slope below a thousandth of its steepest.
 bool hardly_rises(const Model& model) {
     constexpr double hardly = 1e-3;
     const auto flattens = [](const ScalarLaw& law) {
@@ -154,7 +169,7 @@ Attempt lost(Attempt attempt, const char* why) {
     return attempt;
 }
 
-// From one equilibrium to the next, `expected` by the tangent.
+// One continuation step; `expected` is the predictor along the tangent.
 Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expected) {
     const State& from = walk.state;
     Attempt attempt = minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
@@ -172,7 +187,8 @@ Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expec
     return attempt;
 }
 
-// Towards `to`: no longer than the stride, than the tangent may be trusted, than stability can be foreseen.
+// Next value towards `to`: limited by the stride, by the range of the tangent and by the predicted
+// stability.
 double next_value(const Path& path, const Walk& walk, const VectorXd& t, double to) {
     const double rest = to - walk.state.a;
     double h = std::copysign(std::min(std::abs(rest), walk.stride), rest);
@@ -239,6 +255,28 @@ bool is_stationary(const Path& path, const State& state) {
     return std::isfinite(e) && e <= path.options.tolerance;
 }
 
+namespace {
+
+// Newton corrections of a stationary state along its soft modes.
+Attempt corrected(const Path& path, State state) {
+    for (int k = 0;; ++k) {
+        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
+        const double far = largest(ahead);
+        if (far <= last_correction || (k == corrections && far <= known)) return {std::move(state), {}};
+        if (k == corrections || !(far <= largest_step))
+            return {
+                std::move(state),
+                Failure{Outcome::iteration_limit,
+                        fmt::format(
+                            "what is stiff leaves the minimum along a soft motion unknown to {:.1g} of the "
+                            "model's size",
+                            far)}};
+        state = state_at(path, state.a, moved(path, state.poses, ahead));
+    }
+}
+
+}  // namespace
+
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const MatrixXd& idle) {
     const Options& options = path.options;
     const Prescribed prescribed = at(path.course, a);
@@ -255,10 +293,15 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
         if (!std::isfinite(m.excess)) return {state, Failure{Outcome::not_finite, not_finite}};
         const VectorXd moved_by = scaled_increment(path, state.poses, m.poses);
         state = state_at(path, a, m.poses);
-        if (is_stationary(path, state)) return {state, {}};
-        if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same again
+        if (is_stationary(path, state)) {
+            Attempt attempt = corrected(path, state);
+            if (attempt.failure || is_stationary(path, attempt.state)) return attempt;
+            state = std::move(attempt.state);
+        }
+        if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same
         if (prescribed.moments.empty()) continue;
-        // The new centre turns the moments against the bodies. Without this, charts converge only linearly.
+        // A new centre rotates the moments relative to the bodies. Without this Newton increment
+        // the charts converge only linearly.
         const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
         if (largest(ahead) <= largest_step) state = state_at(path, a, moved(path, state.poses, ahead));
     }
@@ -292,7 +335,7 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
             (walk.stride > smallest ||
              (walk.stride > finest / resolution * smallest && hardly_rises(path.model))))
             continue;
-        // Where a bushing's law ends, that is the reason.
+        // The end of a bushing's law takes precedence as the reason.
         const bool may_be_spent =
             attempt.failure->outcome == Outcome::iteration_limit ||
             (attempt.failure->outcome == Outcome::branch_lost && attempt.failure->what != turned_over);

@@ -1,4 +1,4 @@
-// Following a branch from one accepted minimum to the next.
+// Continuation of a branch of constrained minima.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace elastocheck::reference::energy {
 
-// Why a branch ends, half a sentence.
+// Reasons for the end of a branch, as half a sentence.
 inline constexpr const char* turned_over =
     "a bushing has turned to where its law ends, half a turn or what its angles allow";
 
@@ -20,7 +20,7 @@ struct Failure {
     std::string what;  // half a sentence
 };
 
-// A pose and what is known about it.
+// Poses at a parameter value with balance, Hessian and modes.
 struct State {
     double a = 0;  // parameter of the branch
     std::vector<Pose> poses;
@@ -29,55 +29,56 @@ struct State {
     Modes modes;
 };
 
-// What a branch is made of: everything but the parameter.
+// Constant data of a branch: everything but the parameter.
 struct Path {
     const Model& model;
     const Options& options;
     Scales scales;
     Course course;
-    std::vector<int> turning;  // bushings that resist rotation
-    double span;               // the largest |a| asked for
+    std::vector<int> turning;  // bushings with rotational stiffness
+    double span;               // the largest requested |a|
     Counts& counts;
     Modes first = {};  // modes where the branch starts
 };
 
-// How far a branch has come.
+// State of the continuation.
 struct Walk {
-    State state;               // the last equilibrium
+    State state;               // the last accepted equilibrium
     double stride;             // |step| to try next
-    StiffnessRecord record;    // of the equilibria so far
-    double first_tangent = 0;  // the largest entry where it began
+    StiffnessRecord record;    // stiffnesses of the equilibria so far
+    double first_tangent = 0;  // largest entry of the tangent at the start
 };
 
 Walk walk_from(const Path& path, const State& state);
 
-// Pose, balance, Hessian and modes at parameter a, whether an equilibrium or not.
+// Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
 State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 
-// Whether the state satisfies the constrained minimum's first-order conditions, to options.tolerance.
+// Whether the state satisfies the first-order conditions of the constrained minimum, to
+// options.tolerance.
 bool is_stationary(const Path& path, const State& state);
 
-// Minimises at parameter a from `start`, chart after chart, until stationary. `idle` motions [6nb × their
-// number] are not made use of (minimise.hpp).
+// Minimises at parameter a from `start`, chart after chart, until stationary. `idle` motions
+// [6nb × their number] are held (minimise.hpp).
 struct Attempt {
     State state;
     std::optional<Failure> failure;
 };
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const Eigen::MatrixXd& idle);
 
-// Where bodies that stand at `from` come to by ξ.
+// Poses after the increment ξ from `from`.
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);
 
-// The ξ that answers, to first order, a gradient `left` over and constraints Φ that are not met (Newton's) [6nb]. Nothing
-// of it is idle.
+// Newton correction ξ for a projected gradient `left` and a constraint residual Φ [6nb], without
+// idle motion.
 Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::VectorXd& left,
                            const Eigen::VectorXd& Phi);
 
-// dξ/da along the branch, as the equilibrium `state` and the constraints have it [6nb].
+// Tangent dξ/da of the branch at the equilibrium `state` [6nb].
 Eigen::VectorXd tangent(const Path& path, const State& state);
 
-// Takes the walk to parameter `to`, in steps of its own. On failure it stands at the last equilibrium
-// reached.
+// Continues the walk to parameter `to` with its own step-size control. On failure it stays at the
+// last equilibrium reached.
 std::optional<Failure> advance(const Path& path, Walk& walk, double to);
 
 }  // namespace elastocheck::reference::energy

@@ -19,7 +19,7 @@ Model about(const Model& model, const Vector3d& c) {
         if (at.body == ground) at.s_local -= c;
     };
     const auto move_both = [&](auto& kind) { move(kind.i), move(kind.j); };
-    // Directions are where they are, wherever the origin is.
+    // Directions are independent of the origin.
     for (Constraint& constraint : here.constraints)
         std::visit(overloaded{[&](CoincidentPoints& kind) { move_both(kind); },
                               [&](PointInPlane& kind) { move_both(kind); },

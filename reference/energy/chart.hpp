@@ -1,9 +1,10 @@
-// The coordinates: per body a displacement and a rotation vector (ground axes) about a centre pose.
+// Local coordinates: per body a displacement and a rotation vector (ground axes) about a centre
+// pose.
 //
 //   r = r_c + Δr,   A = exp(φ) A_c,   x = (Δr, φ) of every body, [6nb]
 //
-// A chart is where minimisation happens; after each solution it is centred anew (`poses`), so φ stays small
-// and a dead moment's first-order potential -m·φ becomes exact.
+// The minimisation runs in one chart. After each solution the chart is re-centred (`poses`), so φ
+// stays small and the first-order potential -m·φ of a dead moment becomes exact.
 #pragma once
 
 #include <vector>
@@ -12,7 +13,7 @@
 
 namespace elastocheck::reference::energy {
 
-// One body in its chart: where it is, and by how much it differs from the centre.
+// One body in its chart: centre pose and increment.
 struct Placement {
     Pose centre;
     Eigen::Matrix3d A_c = Eigen::Matrix3d::Identity();
@@ -32,11 +33,11 @@ struct Chart {
 std::vector<Pose> design_poses(const Model& model);
 Chart chart_about(const std::vector<Pose>& centre);
 void move_to(Chart& chart, const Eigen::VectorXd& x);  // x [6nb]
-std::vector<Pose> poses(const Chart& chart);           // where the bodies are now
+std::vector<Pose> poses(const Chart& chart);           // current poses of the bodies
 Eigen::VectorXd increment(const std::vector<Pose>& from,
                           const std::vector<Pose>& to);  // x of `to` in the chart about `from`
 
-// A body point now, and how far it has come from its place at the centre.
+// Current position of a body point, and its displacement from the centre pose.
 struct PointMotion {
     Eigen::Vector3d p, dp;  // [m]
     Eigen::Vector3d lever;  // A s, from the body's origin [m]

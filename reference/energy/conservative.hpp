@@ -1,4 +1,4 @@
-// What has no potential, so that nothing can be minimised.
+// Detects loads and bushing formulations without a potential, for which no energy can be minimised.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace elastocheck::reference::energy {
 
-// The first load or bushing that acts somewhere along the branch and has no energy, and why it has none; nothing where
-// the model is conservative. A follower on ground, one that is held at zero, and a bushing without law and preload do
-// not act.
+// The first load or bushing that acts somewhere along the branch and has no energy, with the
+// reason; empty for a conservative model. A follower on ground, a follower held at zero, and a
+// bushing without law and preload do not act.
 std::optional<std::string> without_potential(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck::reference::energy

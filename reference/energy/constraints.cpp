@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// The rows of one constraint, and by how much its length, offset or angle has been moved.
+// Rows of one constraint, and the displacement of its length, offset or angle.
 struct Rows {
     ConstraintValues& out;
     int row;
@@ -23,7 +23,7 @@ struct Rows {
     void add_row(BodyId body, const Vector3d& dr, const Vector3d& dpi, int after = 0) const {
         if (body != ground) out.Phi_q.slopes.push_back({row + after, body, dr, dpi});
     }
-    // The one row that was added last.
+    // Scales the last added row.
     void scale(double factor) const {
         auto& slopes = out.Phi_q.slopes;
         for (auto s = slopes.rbegin(); s != slopes.rend() && s->row == row; ++s) {
@@ -70,7 +70,7 @@ void fill(const PerpendicularDirections& c, const Chart& chart, const Rows& rows
     rows.add_row(c.j.body, Vector3d::Zero(), j.u.cross(i.u));
 }
 
-// Φ = (D·D - ℓ²)/(2ℓ), a length that is regular everywhere:  δΦ = D·(δp_i - δp_j)/ℓ
+// Φ = (D·D - ℓ²)/(2ℓ), a length that is differentiable everywhere:  δΦ = D·(δp_i - δp_j)/ℓ
 // Φ - Φ_c = ΔD·(D + D_c)/(2ℓ)
 void fill(const DistanceBetween& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
@@ -84,12 +84,13 @@ void fill(const DistanceBetween& c, const Chart& chart, const Rows& rows) {
     rows.add_row(c.j.body, -n, -j.lever.cross(n));
 }
 
-// The direction across α in the plane of x_j and y_j:  v(α) = cos α y_j - sin α x_j,  v(α + π/2) = dv/dα
+// Direction perpendicular to the one at α in the plane of x_j and y_j: v(α) = cos α y_j - sin α
+// x_j,  v(α + π/2) = dv/dα
 Direction across(const DirectionAtAngle& c, double alpha) {
     return {c.j.body, std::cos(alpha) * c.y_j.u_local - std::sin(alpha) * c.j.u_local};
 }
 
-// Φ = u_i·v(α), which is perpendicularity to v.
+// Φ = u_i·v(α): perpendicularity to v.
 void fill(const DirectionAtAngle& c, const Chart& chart, const Rows& rows) {
     fill(PerpendicularDirections{c.i, across(c, c.angle + rows.moved)}, chart, rows);
 }

@@ -1,4 +1,4 @@
-// The basic constraints as equations Φ(x; a) = 0, with their derivatives by hand.
+// Basic constraints as equations Φ(x; a) = 0, with hand-derived derivatives.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 namespace elastocheck::reference::energy {
 
 struct ConstraintValues {
-    Eigen::VectorXd Phi;   // less the prescribed gap [m]: lengths [m], cosines [-]
-    Eigen::VectorXd dPhi;  // Φ(x) - Φ(0), with its own relative accuracy [m]
+    Eigen::VectorXd Phi;   // minus the prescribed gap [m]: lengths [m], cosines [-]
+    Eigen::VectorXd dPhi;  // Φ(x) - Φ(0), to its own relative accuracy [m]
     Jacobian Phi_q;        // ∂Φ/∂x [m × 6nb]
 };
 ConstraintValues constraints(const Model& model, const Prescribed& prescribed, const Chart& chart);
@@ -25,17 +25,17 @@ struct ConstraintRates {
 ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
                                  const Chart& chart);
 
-// Whether Φ is a cosine of directions [-], and not a length [m].
+// Whether Φ is a cosine of directions [-], in contrast to a length [m].
 bool is_cosine(const ConstraintKind& kind);
 
-// The length, offset [m] or angle [rad] that the bodies have at the centre of the chart, as the constraint
-// counts it: an angle within half a turn of the constraint's own. Nothing where there is none to measure.
+// Length, offset [m] or angle [rad] of a constraint at the centre of the chart; an angle within
+// half a turn of the constraint's own. Empty for constraints without an offset.
 std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& chart);
 
 // The constraint's own length, offset or angle; 0 where it has none.
 double own_offset(const ConstraintKind& kind);
 
-// Whether the direction of a DirectionAtAngle lies the other way round, at α + π, where Φ = 0 too.
+// Whether the direction of a DirectionAtAngle is reversed, at α + π, where Φ = 0 too.
 bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart);
 
 }  // namespace elastocheck::reference::energy

@@ -5,9 +5,10 @@
 namespace elastocheck::reference::energy {
 namespace {
 
-constexpr double doublings = 6;              // of the first stride to the span
-constexpr double evaluations_of_a_step = 6;  // counted on the built-in scenes and on chains: 2 to 13
-constexpr double states_of_a_step = 2.5;     // 2 to 5
+constexpr double doublings = 6;  // of the first stride to the span
+// counted on the built-in scenes and on chains: 2 to 13
+constexpr double evaluations_of_a_step = 6;
+constexpr double states_of_a_step = 2.5;  // 2 to 5
 
 }  // namespace
 

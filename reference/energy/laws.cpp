@@ -20,25 +20,26 @@ LawValues<N> quadratic(const Eigen::Matrix<double, N, N>& K, const Eigen::Matrix
 struct Piece {
     const std::array<double, 4>& c;
     double knot;
-    double end;  // t of the next knot; of the piece before the first, t of its own: 0
+    double end;  // t of the next knot; for the piece before the first knot, t of that knot: 0
 
     double force(double t) const { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
     double slope(double t) const { return c[1] + t * (2 * c[2] + t * 3 * c[3]); }
-    // ∫ f from t to t + h, by the Taylor coefficients of f at t: each term a power of h, none lost in another.
+    // ∫ f from t to t + h, by the Taylor coefficients of f at t: each term is a power of h, without
+    // cancellation.
     double work(double t, double h) const {
         return h * (force(t) + h * (slope(t) / 2 + h * ((c[2] + 3 * c[3] * t) / 3 + h * (c[3] / 4))));
     }
 };
 
-// k = 0 before the first knot, then behind knot k - 1.
+// k = 0 before the first knot, else after knot k - 1.
 Piece piece(const Curve& curve, std::size_t k) {
     const auto& x = curve.knots;
     if (k == 0) return {curve.pieces[0], x[0], 0};
     return {curve.pieces[k], x[k - 1], k < x.size() ? x[k] - x[k - 1] : INFINITY};
 }
 
-// From x_c to x_c + δ piece by piece, so that the energy is the exact integral whatever knots lie between, and
-// never the difference of two. A NaN ends the walk where it stands.
+// Integrates from x_c to x_c + δ piece by piece: the exact energy change across any knots, without
+// a difference of two energies. A NaN ends the loop.
 LawValues<1> along(const Curve& curve, double x_c, double delta) {
     const auto& x = curve.knots;
     std::size_t k = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), x_c) - x.begin());

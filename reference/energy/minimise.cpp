@@ -1,26 +1,30 @@
-// What makes SLSQP reach the last digits here, where it otherwise stops at 1e-6 of the gradient:
+// Measures that make SLSQP converge to the last digits; without them it stops at 1e-6 of the
+// gradient.
 //
-// 1. Coordinates y, ξ = T y, in which the problem is round: T = [N B] with
+// 1. Coordinates y, ξ = T y, in which the problem is well scaled: T = [N B] with
 //      B = Z |W|^-½                      the modes along the constraints, each with unit stiffness
 //      N = (1 - Z W⁻¹ Zᵀ H) Y, scaled    the directions across them, conjugate to the modes
-//    so that SLSQP's first Hessian, the unit matrix, is the right one and its first steps are Newton steps.
+//    SLSQP's first Hessian, the unit matrix, is then the right one, and its first steps are Newton
+//    steps.
 //
-// 2. The function is V + λᵀΦ with λ fixed at the best multipliers of the centre. It equals V wherever Φ = 0,
-//    so it has the same constrained minima, but its gradient is small and its own multipliers almost vanish.
-//    The line search on V + Σ μ|Φ| then accepts full steps; with V alone the curvature of constraints under load
-//    spoils them (Maratos).
+// 2. The function is V + λᵀΦ with λ fixed at the least-squares multipliers of the centre. It equals
+//    V wherever Φ = 0, so it has the same constrained minima, but its gradient is small and its own
+//    multipliers almost vanish. The line search on V + Σ μ|Φ| then accepts full steps; with V alone
+//    the curvature of loaded constraints makes it reject them (Maratos effect, 1978).
 //
-// 3. All values are changes since the centre, summed without cancellation (potential.hpp, constraints.hpp):
-//    the function-value test has its floor at the roundoff of the change, not of V. Charts of large steps end
-//    there; the next chart, centred at their result, has a floor far below.
+// 3. All values are changes since the centre, summed without cancellation (potential.hpp,
+//    constraints.hpp): the function-value test has its floor at the roundoff of the change, not of
+//    V. Charts of large steps end there; the next chart, centred at their result, has a far lower
+//    floor.
 //
-// 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not change along
-//    them, so this picks one of many equal minima, where it vanishes. Without it, what little of a stiffness
-//    they show away from equilibrium would send them anywhere. If V did change along them, the measure, which
-//    knows nothing of this, would say so. Modes that turn up idle at the centre itself are left out of T.
+// 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not
+//    change along them, so this selects one of many equal minima, where the added stiffness
+//    vanishes. Without it, the small stiffness that they show away from equilibrium would cause
+//    arbitrary steps. If V did change along them, the acceptance measure, which excludes this term,
+//    would show it. Modes that are idle only at the centre are left out of T.
 //
-// 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them. They stay in
-//    the measure.
+// 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them.
+//    They stay in the acceptance measure.
 #include "reference/energy/minimise.hpp"
 
 #include <nlopt.h>
@@ -36,14 +40,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double aim = 0.01;   // of the tolerance: where to stop at once
+constexpr double aim = 0.01;   // of the tolerance: stop at once below it
 constexpr double holding = 1;  // stiffness given to idle motions, in units of F·L
 constexpr int same_point =
-    20;  // calls at one point in a row: SLSQP's step has vanished, it would go on for ever
-constexpr int patience = 5;        // evaluations without improvement, within the tolerance
-constexpr int long_patience = 20;  // and before that: a chart of large steps ends at the roundoff of these
-// A chart that has come so much closer than its centre was, and still needs more evaluations than this, is left: the
-// Hessian of the next chart takes one step where SLSQP's own learns slowly (long chains, stops that close).
+    20;  // consecutive calls at one point: SLSQP's step has vanished and it would loop for ever
+constexpr int patience = 5;        // evaluations without improvement, once within the tolerance
+constexpr int long_patience = 20;  // before that: a chart of large steps ends at their roundoff
+// A chart that has reduced its residual by this factor and needs more evaluations than this is
+// ended: the Hessian of the next chart achieves in one step what SLSQP's update learns slowly (long
+// chains, closing stops).
 constexpr double closer = 1e-3;
 constexpr int long_enough = 8;
 
@@ -73,7 +78,7 @@ struct Problem {
     const MatrixXd& idle;
     MatrixXd T_t;        // ξ = T y
     VectorXd lambda, D;  // multipliers of D Φ
-    VectorXd row_scale;  // makes the rows of ∂c/∂y unit vectors at the centre
+    VectorXd row_scale;  // scales the rows of ∂c/∂y to unit vectors at the centre
     Chart chart;
     nlopt_opt opt = nullptr;
 
@@ -100,7 +105,7 @@ double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorX
     return excess(left, Phi, p.modes, p.scales, p.tolerance);
 }
 
-// All of f, c and their derivatives at y, and whether to go on.
+// Evaluates f, c and their derivatives at y, and the stop criteria.
 void evaluate(Problem& p, const VectorXd& y) {
     if (p.best.evaluations > 0 && p.y == y) {
         if (++p.repeats >= same_point && p.opt) nlopt_force_stop(p.opt);

@@ -1,4 +1,4 @@
-// std::visit over a closed set of kinds, one lambda a kind.
+// std::visit over a closed set of kinds, one lambda per kind.
 #pragma once
 
 namespace elastocheck::reference::energy {

@@ -19,11 +19,12 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// This far [rad] from where a law ends, the last bits of a rotation still tell the side it lies on: of a rotation by
-// π - this the axis' sign, which the logarithm depends on.
+// Margin [rad] to the end of a law within which rounding decides the side of a rotation: for a
+// rotation by π - this, the sign of the axis, on which the logarithm depends.
 constexpr double closest_to_the_end = 1e-3;
 
-// The geometry of one element in its chart: what deforms, by how much, and how that depends on the poses.
+// Geometry of one element in its chart: its deformation and the derivatives with respect to the
+// poses.
 template <int N>
 struct Deformation {
     BodyId i, j;
@@ -31,8 +32,8 @@ struct Deformation {
     Matrix<double, N, 6> E_i, E_j;    // ∂e/∂(δr, δπ) of either body
 };
 
-// ℓ = |D|, D = p_j - p_i:  δℓ = n·(δp_j - δp_i), n = D/ℓ, and δp = δr + δπ × u, so n·δp = n·δr + (u × n)·δπ.
-// ℓ - ℓ_c = ΔD·(D + D_c)/(ℓ + ℓ_c).
+// ℓ = |D|, D = p_j - p_i:  δℓ = n·(δp_j - δp_i), n = D/ℓ, and δp = δr + δπ × u, so
+// n·δp = n·δr + (u × n)·δπ. ℓ - ℓ_c = ΔD·(D + D_c)/(ℓ + ℓ_c).
 Deformation<1> deformation(const AxialSpring& spring, const Chart& chart) {
     const PointMotion i = motion(chart[spring.i.body], spring.i.s_local);
     const PointMotion j = motion(chart[spring.j.body], spring.j.s_local);
@@ -49,17 +50,19 @@ Deformation<1> deformation(const AxialSpring& spring, const Chart& chart) {
     return e;
 }
 
-// d = A_fᵀ D, θ as the formulation has it, A_f the frame's axes, A_I and A_J the markers'. A small rotation turns the
-// frame by δπ_f, of which the share P goes with j (0: the frame rides on i):
+// d = A_fᵀ D, θ by the formulation, A_f the axes of the frame, A_I and A_J of the markers. A small
+// rotation rotates the frame by δπ_f, of which the share P is that of j (0: the frame is fixed to
+// i):
 //
 //   δπ_f = δπ_i + P (δπ_j - δπ_i)
 //   δd = A_fᵀ (δp_J - δp_I + D × δπ_f)
 //   δθ = S A_Iᵀ (δπ_j - δπ_i),   S = J⁻¹(θ) for the rotation vector (relative_rotation.hpp)
 //
-// and the changes since the centre, with A_I = (1 + T_i) A_Ic, A_f = A_I C and q = q_Icᴴ (1 + Δ_i)ᴴ (1 + Δ_j) q_Jc the
-// relative quaternion:
+// and the changes since the centre, with A_I = (1 + T_i) A_Ic, A_f = A_I C and the relative
+// quaternion q = q_Icᴴ (1 + Δ_i)ᴴ (1 + Δ_j) q_Jc:
 //
-//   d - d_c = A_fᵀ ΔD + ΔA_fᵀ D_c,   ΔA_f = T_i A_Ic C + A_Ic ΔC,   q - q_c = q_Icᴴ (Δ_iᴴ + Δ_j + Δ_iᴴ Δ_j) q_Jc.
+//   d - d_c = A_fᵀ ΔD + ΔA_fᵀ D_c,   ΔA_f = T_i A_Ic C + A_Ic ΔC,
+//   q - q_c = q_Icᴴ (Δ_iᴴ + Δ_j + Δ_iᴴ Δ_j) q_Jc.
 Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
     const Placement& body_i = chart[bushing.i.body];
     const Placement& body_j = chart[bushing.j.body];
@@ -107,29 +110,33 @@ Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
     return e;
 }
 
-// The law with a preload: u(x) + bᵀ e.
+// Geometry and law together: U(e) = s u(e - e₀) + bᵀ e.
 template <int N>
-LawValues<N> loaded(LawValues<N> law, const Matrix<double, N, 1>& b, const Matrix<double, N, 1>& delta) {
-    law.change += b.dot(delta);
-    law.stress_c += b;
-    law.stress += b;
-    return law;
-}
+struct Element : Deformation<N>, LawValues<N> {
+    Matrix<double, N, 1> of_law;  // ∂u/∂e
+};
 
-// Geometry and law together: U(e) = u(e - e₀) + bᵀ e.
 template <int N>
-struct Element : Deformation<N>, LawValues<N> {};
+Element<N> element(const Deformation<N>& e, LawValues<N> law, double s, const Matrix<double, N, 1>& b) {
+    const Matrix<double, N, 1> of_law = law.stress;
+    law.change = s * law.change + b.dot(e.delta);
+    law.stress_c = s * law.stress_c + b;
+    law.stress = s * law.stress + b;
+    law.stiffness *= s;
+    return {e, law, of_law};
+}
 
 Element<1> element(const AxialSpring& spring, const Prescribed& prescribed, int k, const Chart& chart) {
     const Deformation<1> e = deformation(spring, chart);
     const Vector1 e_0(spring.free_length + prescribed.free_length[k]), b(prescribed.preload(0, k));
-    return {e, loaded<1>(values(spring.law, e.e_c - e_0, e.delta), b, e.delta)};
+    return element<1>(e, values(spring.law, e.e_c - e_0, e.delta), 1 + prescribed.strength[k], b);
 }
 
 Element<6> element(const Bushing& bushing, const Prescribed& prescribed, int k, const Chart& chart) {
     const Deformation<6> e = deformation(bushing, chart);
     const Vector6 b = bushing.preload + prescribed.preload.col(k);
-    return {e, loaded<6>(values(bushing.law, e.e_c - bushing.undeformed, e.delta), b, e.delta)};
+    return element<6>(e, values(bushing.law, e.e_c - bushing.undeformed, e.delta), 1 + prescribed.strength[k],
+                      b);
 }
 
 // f(k, element) for every element, in the model's order.
@@ -158,7 +165,7 @@ double add_forces(const Prescribed& prescribed, const Chart& chart, VectorXd& g)
     return change;
 }
 
-// From (δr, δπ) to (δr, δφ): δπ = J δφ.
+// Converts a gradient from (δr, δπ) to (δr, δφ): δπ = J δφ.
 void to_chart(const Chart& chart, VectorXd& g) {
     for (std::size_t b = 0; b < chart.placements.size(); ++b) {
         auto moment = g.segment<3>(6 * static_cast<int>(b) + 3);
@@ -166,7 +173,7 @@ void to_chart(const Chart& chart, VectorXd& g) {
     }
 }
 
-// -m·φ: its own chart coordinate, so after `to_chart`.
+// -m·φ in chart coordinates, so after `to_chart`.
 double add_moments(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
     for (const auto& moment : prescribed.moments) {
@@ -194,7 +201,7 @@ VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const P
                        const Chart& chart) {
     VectorXd g = VectorXd::Zero(coordinates(model));
     for_each_element(model, prescribed, chart, [&]<int N>(int k, const Element<N>& e) {
-        Matrix<double, N, 1> stress_rate = rate.preload.col(k).head<N>();
+        Matrix<double, N, 1> stress_rate = rate.preload.col(k).head<N>() + rate.strength[k] * e.of_law;
         if constexpr (N == 1) stress_rate -= e.stiffness * rate.free_length[k];
         add_gradient<N>(e, stress_rate, g);
     });
@@ -263,7 +270,7 @@ std::vector<int> turning_bushings(const Model& model, const Course& course) {
 
 namespace {
 
-// f(bushing, its relative rotation) for each of these.
+// f(bushing, its relative rotation) for each listed bushing.
 template <class F>
 void for_each_rotation(const Model& model, const std::vector<int>& bushings, const std::vector<Pose>& poses,
                        F f) {

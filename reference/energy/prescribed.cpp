@@ -14,12 +14,13 @@ void add(Prescribed& to, const LoadKind& load, double factor) {
                               if (moment.body != ground)
                                   to.moments.push_back({moment.body, factor * moment.m});
                           },
-                          // Nothing with these is solved, and no forces are judged: conservative.hpp.
+                          // Models with followers are not solved, and their forces are not judged:
+                          // conservative.hpp.
                           [](const FollowerForce&) {}, [](const FollowerMoment&) {}},
                load);
 }
 
-// What a driver prescribes at the value `factor`.
+// Adds the prescribed value of a driver at `factor`.
 void add(Prescribed& to, const Model& model, const Driven& driven, double factor) {
     std::visit(
         overloaded{
@@ -42,7 +43,8 @@ Prescribed nothing_prescribed(const Model& model) {
             .offset = Eigen::VectorXd::Zero(constraints),
             .free_length = Eigen::VectorXd::Zero(elements),
             .preload = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, elements),
-            .gap = Eigen::VectorXd::Zero(constraint_rows(model))};
+            .gap = Eigen::VectorXd::Zero(constraint_rows(model)),
+            .strength = Eigen::VectorXd::Zero(elements)};
 }
 
 Course course_of(const Model& model, const Branch& branch) {
@@ -63,6 +65,7 @@ Prescribed sum(const Prescribed& f, double factor, const Prescribed& g) {
     result.free_length += factor * g.free_length;
     result.preload += factor * g.preload;
     result.gap += factor * g.gap;
+    result.strength += factor * g.strength;
     return result;
 }
 

@@ -5,10 +5,10 @@ namespace elastocheck::reference::energy {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// V + λᵀΦ is stationary, so in a small motion of one body its constraints do the work -λᵀ Φ_q δx. At the
-// centre of the chart δφ = δπ, so the entries of -Φ_qᵀ λ for a body are the force on it and the moment about
-// its origin. About another point p the moment is less by (p - r) × F. If body i is ground, it feels the
-// opposite of what body j feels.
+// V + λᵀΦ is stationary, so in a small motion of one body its constraints do the work -λᵀ Φ_q δx.
+// At the centre of the chart δφ = δπ, so the entries of -Φ_qᵀ λ for a body are the force on it and
+// the moment about its origin. About another point p the moment is less by (p - r) × F. If body i
+// is ground, the wrench is the opposite of that on body j.
 std::vector<Wrench> reactions(const Model& model, const Chart& centre, const ConstraintValues& values,
                               const VectorXd& lambda) {
     std::vector<Wrench> wrenches(model.joints.size());

@@ -1,4 +1,4 @@
-// What the joints exert, from the multipliers.
+// Joint reactions from the Lagrange multipliers.
 #pragma once
 
 #include "models/equilibrium_path.hpp"
@@ -6,8 +6,8 @@
 
 namespace elastocheck::reference::energy {
 
-// One wrench per Model::joints, exerted by the joint on
-// its body i about ModelJoint::at. `lambda` [m], SI, of Φ.
+// One wrench per Model::joints, exerted by the joint on its body i about ModelJoint::at. `lambda`
+// [m], SI, of Φ.
 std::vector<Wrench> reactions(const Model& model, const Chart& centre, const ConstraintValues& values,
                               const Eigen::VectorXd& lambda);
 

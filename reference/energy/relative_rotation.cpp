@@ -1,8 +1,9 @@
-// Entries of B and what is made of them, each as its value at the centre, its change and its slope in β:
+// Entries of B and functions of them, each as value at the centre, change and slope in β:
 //
 //   B_rc = e_r·(B e_c):   δB_rc = e_r·(β × B e_c) = (B e_c × e_r)·β
 //   h = √(x² + y²):       h - h_c = (Δx (x + x_c) + Δy (y + y_c)) / (h + h_c)
-//   α = atan2(y, x):      α - α_c = atan2(x_c Δy - y_c Δx, x x_c + y y_c),   δα = (x δy - y δx)/(x² + y²)
+//   α = atan2(y, x):      α - α_c = atan2(x_c Δy - y_c Δx, x x_c + y y_c),
+//                         δα = (x δy - y δx)/(x² + y²)
 #include "reference/energy/relative_rotation.hpp"
 
 #include <algorithm>
@@ -87,11 +88,12 @@ AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation) {
     return {};
 }
 
-// Half way from 1 to q lies c = s/|s|, s = 1 + q. The turn since the centre is the quaternion
+// Halfway from 1 to q lies c = s/|s|, s = 1 + q. The rotation since the centre is the quaternion
 //
-//   c c_cᴴ = s s_cᴴ / (|s| |s_c|),   of which the vector part is that of Δq s_cᴴ / (|s| |s_c|), since s_c s_cᴴ is real,
+//   c c_cᴴ = s s_cᴴ / (|s| |s_c|)
 //
-// and (w, v) turns by 1 + 2 w ṽ + 2 ṽ². With B = C C and δC = γ̃ C: δB = (γ + C γ)~ B, so β = (1 + C) γ, and by Cayley
+// whose vector part is that of Δq s_cᴴ / (|s| |s_c|), since s_c s_cᴴ is real, and (w, v) rotates by
+// 1 + 2 w ṽ + 2 ṽ². With B = C C and δC = γ̃ C: δB = (γ + C γ)~ B, so β = (1 + C) γ, and by Cayley
 //
 //   (1 + C)⁻¹ = ½ (1 - g̃),   g = tan(θ/4) n = v/(1 + w) of q.
 HalfWay half_way(const RelativeRotation& rotation) {

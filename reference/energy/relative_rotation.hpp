@@ -1,8 +1,8 @@
-// How the axes of a bushing's two markers lie to each other: what its formulation makes of that.
+// Relative rotation of a bushing's two markers, and its angles by formulation.
 //
 //   B = A_iᵀ A_j,   δB = β̃ B,   β = A_iᵀ (δπ_j - δπ_i)
 //
-// As everywhere in this leg, changes since the centre of the chart are not differences of two numbers.
+// Changes since the centre of the chart are computed without differences of two numbers.
 #pragma once
 
 #include <vector>
@@ -23,18 +23,20 @@ struct AngleChange {
 };
 AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation);
 
-// The axes half way from i to j, in the axes of marker i: C = B^½.
+// Axes halfway from i to j, in the axes of marker i: C = B^½.
 struct HalfWay {
     Eigen::Matrix3d C, dC;
     Eigen::Matrix3d share;  // γ = share · β, where δC = γ̃ C
 };
 HalfWay half_way(const RelativeRotation& rotation);
 
-// The same angles, principal values, of B as a quaternion; the way to where they (and B^½, if the formulation
-// asks for it) stop being differentiable, negative or zero there [rad]:
+// The same angles, principal values, of B as a quaternion; and the distance to the nearest point
+// where they (and B^½ if used by the formulation) are not differentiable, zero or negative beyond
+// [rad]:
 //   rotation vector, B^½   half a turn
 //   cardan                 θ_y = ± π/2, gimbal lock; half a turn of the others
-//   projected              half a turn, or both sides of a projection vanish: an axis of j along an axis of i
+//   projected              half a turn, or both sides of a projection vanish: an axis of j along
+//                          an axis of i
 Eigen::Vector3d angles_of(Formulation::Angles kind, const Eigen::Quaterniond& q);
 double way_to_the_end(const Formulation& formulation, const Eigen::Quaterniond& q);
 

@@ -1,4 +1,4 @@
-// Any state judged by this leg's conditions.
+// Residuals of a state from any leg in the conditions of this leg.
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -15,7 +15,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double backwards = 2;  // between two opposite unit vectors
+constexpr double backwards = 2;  // distance of two opposite unit vectors
 
 double max_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b); }
 
@@ -49,7 +49,7 @@ Residuals residuals(const Model& as_told, const Branch& branch, const Equilibriu
         of_kind = max_or_nan(of_kind, error);
         row += rows(kind);
     }
-    // A pose's p is a direction too: it must be a unit quaternion.
+    // An orientation counts as a direction too: it must be a unit quaternion.
     for (const auto& pose : state.poses)
         worst.direction = max_or_nan(worst.direction, std::abs(pose.p.norm() - 1));
     if (without_potential(model, branch) || !within_laws(model, turning_bushings(model, course), state.poses))

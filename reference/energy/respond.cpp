@@ -21,13 +21,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
-constexpr double idle_push = 1e-8;       // of what is asked: what counts as a push on an idle mode
-constexpr double unanswered = 1e-6;      // of what is asked: what the corrections may leave
-constexpr double open = 1e-9;            // of what an offset asks: what redundant joints may leave of it
+constexpr double idle_push = 1e-8;       // of the disturbance: smallest load on an idle mode
+constexpr double unanswered = 1e-6;      // of the disturbance: largest remainder after the corrections
+constexpr double open = 1e-9;            // of an offset's rate: largest part that redundant joints may leave
 constexpr int corrections = 2;
 
-// Central differences of eighth order: of a function that bends over a tenth of L as much as over L, what they miss by
-// such a step is 1e-13 of it, and what rounding makes of it no more.
+// Eighth-order central differences: for a function that varies over a tenth of L as much as over L,
+// the truncation error of this step is 1e-13, and so is the rounding error.
 constexpr double difference = 0.005;  // of L or 1 rad
 constexpr std::array weights{4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
 
@@ -49,7 +49,7 @@ void check(const Model& model, const Equilibrium& state, std::span<const Disturb
                    disturbance);
 }
 
-// What is prescribed grows with s as with the parameter of a branch that drives nothing else.
+// The prescribed quantities grow with s as along a branch that drives only this disturbance.
 Prescribed rate_of(const Model& model, const Disturbance& disturbance) {
     Branch branch;
     const auto drive = [&](const Driven& what) { branch.drivers.push_back({what, 0, 1}); };
@@ -75,15 +75,15 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
         disturbance);
 }
 
-// A state as it answers: all in ξ and units of F·L.
+// Linearised state, in ξ and units of F·L.
 struct Tangent {
     const Path& path;
     const State& state;
     Prescribed prescribed;
     VectorXd S, D, lambda;            // lambda of Φ, SI
-    MatrixXd stiffness, A;            // Σ Eᵀ K E, and of dead moments
-    MatrixXd Z, idle;                 // motions that resist, and those that do not
-    Eigen::PartialPivLU<MatrixXd> W;  // Zᵀ (H + A) Z with the Hessian that steers
+    MatrixXd stiffness, A;            // Σ Eᵀ K E, and A of dead moments
+    MatrixXd Z, idle;                 // resisting motions, and idle ones
+    Eigen::PartialPivLU<MatrixXd> W;  // Zᵀ (H + A) Z with the approximate Hessian
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
 };
 
@@ -113,8 +113,8 @@ Tangent tangent_of(const Path& path, const State& state) {
     return t;
 }
 
-// (H + A) t, to rounding. Only what is due to the elements' being loaded, and the constraints' bending, is differenced,
-// along t itself.
+// (H + A) t to rounding. Only the geometric part of the Hessian and the curvature of the
+// constraints are differenced, along t itself.
 VectorXd times(const Tangent& at, const VectorXd& t) {
     VectorXd product = at.stiffness * t + at.A * t;
     const double size = largest(t);
@@ -164,7 +164,8 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
             left = b + times(at, t);
         }
     if (!t.allFinite()) return {Outcome::not_finite, "the answer is not finite", {}};
-    // Where the Hessian that steers sees no stiffness but its own error, what it leads to does not answer.
+    // Where the stiffness in the approximate Hessian is only its error, the iteration does not
+    // converge to a solution.
     if (!(largest(at.Z.transpose() * left) <= unanswered * size))
         return {Outcome::singular, "what resists a motion is spent", {}};
     if (!(largest(at.idle.transpose() * left) <= idle_push * size))

@@ -17,12 +17,13 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double coincident = 1e-9;      // [m] points closer than this give no length
-constexpr double rounding = 1e-12;       // a distance is known to this, generously
-constexpr double linear_reach = 0.5;     // of L or 1 rad: how far stiffness at the design pose is believed
+constexpr double coincident = 1e-9;  // [m] closer points count as coincident
+constexpr double rounding = 1e-12;   // generous relative error of a distance
+// of L or 1 rad: range of validity of the stiffness at the design pose
+constexpr double linear_reach = 0.5;
 constexpr double rank_threshold = 1e-9;  // of the pivots of scaled matrices
 
-// Every point at which something is attached, in ground axes at the design pose.
+// Every attachment point, in ground axes in the design pose.
 std::vector<Vector3d> attachment_points(const Model& model, const Course& course, const Chart& design) {
     std::vector<Vector3d> points;
     const auto add_point = [&](const auto& p) { points.push_back(motion(design[p.body], p.s_local).p); };
@@ -40,8 +41,9 @@ std::vector<Vector3d> attachment_points(const Model& model, const Course& course
     return points;
 }
 
-// The largest distance between any two of the points. Two points are no farther apart than their distances from any
-// third together: taken from the farthest inwards, few pairs are left to be looked at.
+// Largest distance between any two of the points. By the triangle inequality it is at most the sum
+// of their distances from a third point; testing from the outermost points inwards leaves few
+// pairs.
 double extent_of(const std::vector<Vector3d>& points) {
     Eigen::AlignedBox3d box;
     for (const auto& p : points) box.extend(p);
@@ -64,8 +66,8 @@ double loads_size(const Prescribed& prescribed, double length) {
     return size;
 }
 
-// The work of leading the joints from the design pose to Φ = 0, divided by the way: with J dξ = -Φ, least
-// where the elements are free to give way along the null space Z of J,
+// Work of moving the joints from the design pose to Φ = 0, divided by the distance: with J dξ = -Φ,
+// minimal over the free motion of the elements along the null space Z of J,
 //
 //   dξ = p + Z y,   p = -J⁺ Φ,   y = -(Zᵀ K Z)⁺ Zᵀ K p,   F = dξᵀ K dξ / (L |dξ|).
 double drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,

@@ -1,12 +1,17 @@
-// The design pose need not be the equilibrium at a = 0: loads are held, springs preloaded, joints held away
-// from where they are drawn, links given another length. All of that is switched on along a branch of its
-// own, from τ = 1, where the design pose is in equilibrium whatever they are, to τ = 0, where all is as it
-// should be:
+// Homotopy to the equilibrium at a = 0. The design pose need not be that equilibrium: loads are
+// held, springs preloaded, joints held away from their design position, links given another length.
+// All of these are applied along a branch of their own, from τ = 1, where the design pose is in
+// equilibrium, to τ = 0, where they have their full values:
 //
-//   loads     (1 - τ) f
-//   stresses  ∂U/∂e - τ σ_design
 //   offsets   c + τ (c_drawn - c)      of lengths, planes and angles
 //   gaps      Φ = τ Φ_design           of what has no offset
+//   loads     (1 - τ) f
+//   stresses  ∂U/∂e - τ σ_design
+//
+// This homotopy fails where the loads first act on an unresisted motion (the weight of a pendulum),
+// or where its path turns back. It is then repeated with every body on springs to the ground,
+//
+//   τ ½ κ (|r - r_design|² / L² + |θ|²),   κ in units of F L
 #include "reference/energy/settle.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +25,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double hold = 1;               // κ
 constexpr int closing_steps = 100;       // Gauss-Newton on |Φ|²
 constexpr int closing_halvings = 20;     // of each of them
-constexpr double at_rest = 0.999;        // times the |Φ| before: no longer falling
+constexpr double at_rest = 0.999;        // times the previous |Φ|: stagnation
 constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
 
 Course settling_course(const Model& model, const Prescribed& held) {
@@ -42,6 +48,33 @@ Course settling_course(const Model& model, const Prescribed& held) {
     return {held, change};
 }
 
+// Adds a bushing to the ground for every body, stress-free in the design pose.
+Model on_springs(Model model, const Scales& scales) {
+    LinearStiffness law;
+    law.K.setZero();
+    law.K.diagonal() << Eigen::Vector3d::Constant(hold * scales.force / scales.length),
+        Eigen::Vector3d::Constant(hold * scales.energy());
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const Pose& drawn = model.bodies[b].design;
+        model.elastics.push_back(
+            {"hold",
+             Bushing{{ground, drawn.r, drawn.p}, {static_cast<BodyId>(b), {0, 0, 0}, {1, 0, 0, 0}}, law}});
+    }
+    return model;
+}
+
+// Settling course of a model with springs, from `held` of the model without them: the added springs
+// have full strength at τ = 1 and none at τ = 0.
+Course with_springs(const Model& model, Prescribed held) {
+    const auto before = held.strength.size(), all = static_cast<Eigen::Index>(model.elastics.size());
+    held.free_length.conservativeResizeLike(VectorXd::Zero(all));
+    held.preload.conservativeResizeLike(MatrixXd::Zero(6, all));
+    held.strength.conservativeResizeLike(VectorXd::Constant(all, -1));
+    Course course = settling_course(model, held);
+    course.rate.strength.tail(all - before).setOnes();
+    return course;
+}
+
 std::string joint_of_row(const Model& model, int row) {
     int next = 0;
     for (const auto& constraint : model.constraints) {
@@ -51,10 +84,28 @@ std::string joint_of_row(const Model& model, int row) {
     return {};
 }
 
+// Continuation from τ = 1 to 0. On failure the state is the last one reached.
+std::optional<Failure> follow(const Path& settling, State& state) {
+    state = state_at(settling, 1, design_poses(settling.model));
+    if (!is_stationary(settling, state)) {
+        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes.idle_motions());
+        if (closed.failure) return closed.failure;
+        state = closed.state;
+    }
+    Path path = settling;
+    path.first = state.modes;
+    Walk walk = walk_from(path, state);
+    const auto failure = advance(path, walk, 0);
+    state = walk.state;
+    if (!failure) return {};
+    return Failure{failure->outcome, fmt::format("{}, with {:.3g} % of what is held applied", failure->what,
+                                                 100 * (1 - state.a))};
+}
+
 }  // namespace
 
-// Gauss-Newton on |Φ|², each step halved until |Φ| falls. Where it no longer does, with Φ ≠ 0, the joints
-// contradict each other; the row that is furthest from closed tells which.
+// Gauss-Newton on |Φ|², each step halved until |Φ| falls. At stagnation with Φ ≠ 0 the joints are
+// inconsistent; the row with the largest gap names one.
 std::optional<std::string> contradicting_joint(const Path& path, double a,
                                                const std::vector<Pose>& poses_then) {
     const Prescribed prescribed = at(path.course, a);
@@ -93,24 +144,21 @@ std::optional<Failure> settle(const Path& path, State& state) {
         return Failure{Outcome::branch_lost, turned_over};
     if (is_stationary(path, state) && !state.modes.unstable()) return {};
 
-    Path settling = path;
-    settling.course = settling_course(path.model, at(path.course, 0));
-    settling.span = 1;
-    state = state_at(settling, 1, state.poses);
-    if (!is_stationary(settling, state)) {
-        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes.idle_motions());
-        if (closed.failure) return closed.failure;
-        state = closed.state;
-    }
-    settling.first = state.modes;
-    Walk walk = walk_from(settling, state);
-    const auto failure = advance(settling, walk, 0);
-    state = walk.state;
+    const Prescribed held = at(path.course, 0);
+    const auto along = [&](const Model& model, const Course& course) {
+        return Path{model, path.options, path.scales, course, turning_bushings(model, course),
+                    1,     path.counts};
+    };
+    const auto failure = follow(along(path.model, settling_course(path.model, held)), state);
     if (!failure) return {};
+    const Model on = on_springs(path.model, path.scales);
+    if (State settled; !follow(along(on, with_springs(on, held)), settled)) {
+        state = state_at(path, 0, settled.poses);
+        return {};
+    }
     if (const auto joint = contradicting_joint(path, 0, state.poses))
         return Failure{Outcome::inconsistent_constraints, fmt::format("joint '{}' cannot be closed", *joint)};
-    return Failure{failure->outcome, fmt::format("{}, with {:.3g} % of what is held applied", failure->what,
-                                                 100 * (1 - state.a))};
+    return failure;
 }
 
 }  // namespace elastocheck::reference::energy

@@ -37,7 +37,7 @@ const char* symbol(ParameterUnit unit) {
     return "";
 }
 
-// A link whose length would not be positive.
+// Detects a link whose length would not be positive.
 std::optional<Failure> impossible_length(const Path& path, double a) {
     const Prescribed prescribed = at(path.course, a);
     for (std::size_t k = 0; k < path.model.constraints.size(); ++k) {
@@ -54,7 +54,7 @@ std::optional<Failure> impossible_length(const Path& path, double a) {
     return {};
 }
 
-// Why the branch ends before a: if a joint cannot be closed there, that is the reason.
+// Reason for the end of the branch before a: a joint that cannot be closed there takes precedence.
 Failure reason(const Path& path, const State& last, double a, const Failure& failure) {
     const bool may_open =
         !path.course.rate.offset.isZero(0) &&

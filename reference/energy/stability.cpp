@@ -7,16 +7,18 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double share = 0.5;      // of a stiffness that one step may take, and that a forecast may miss
-constexpr double lever = 0.25;     // of the step: a slope is taken over at least this length, for its noise
-constexpr double unguarded = 100;  // times the noise: below, a stiffness is too small to have a slope
+// of a stiffness: largest predicted fall in a step, and largest misfit of a prediction
+constexpr double share = 0.5;
+// of the step: a slope is taken over at least this length, to limit its noise
+constexpr double lever = 0.25;
+constexpr double unguarded = 100;  // times the noise: a smaller stiffness has no significant slope
 
 StiffnessRecord::Sample sample(double a, const Modes& modes) {
     return {a, modes.stiffness(modes.resisting()), modes.idle_limit};
 }
 
-// dw/da from the last sample and the nearest one before it that is at least `distance` away; zero where there
-// is none.
+// dw/da from the last sample and the nearest one before it at a distance of at least `distance`;
+// zero if none.
 VectorXd slope(const StiffnessRecord& record, double distance) {
     const auto& last = record.samples.back();
     for (auto before = record.samples.rbegin() + 1; before != record.samples.rend(); ++before) {

@@ -14,9 +14,10 @@ using VectorXr = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
 constexpr int refinements = 12;
 constexpr double contraction = 0.25;
-constexpr double answered = 1e-9;  // of what is left of E, scaled: the rest is the border's
+// relative remainder of E, scaled, that counts as solved; a larger one belongs to the border
+constexpr double answered = 1e-9;
 
-// The unknowns as numbers of extended precision.
+// The unknowns in extended precision.
 struct Values {
     const System& system;
     const VectorXr& x;
@@ -57,7 +58,7 @@ VectorXr moved(const System& system, const VectorXr& x, const VectorXd& dx) {
     return to;
 }
 
-// Of a step, the largest of any body.
+// Largest part of a step over the bodies.
 struct Size {
     double length = 0, angle = 0;  // over L, [rad]
     double largest() const { return std::max(length, angle); }
@@ -71,7 +72,8 @@ Size size_of(const System& system, const VectorXd& dx) {
     return size;
 }
 
-// R_0. The signs are those of fractions of multiples of the golden ratio, which know nothing of the system.
+// R_0. The signs come from fractions of multiples of the golden ratio, which are independent of the
+// system.
 Size rounding(const System& system, const Linearisation& at, const VectorXr& x) {
     constexpr int probes = 3;
     VectorXd c(system.equations()), e = VectorXd::Zero(system.equations());
@@ -117,7 +119,7 @@ ErrorBound bound(const Walk& walk, double a) {
     const VectorXr left = residual(system, a, x);
     const auto open = static_cast<double>(left.tail(system.constraint_rows).norm());
     if (!(static_cast<double>(left.norm()) <= answered)) return {};
-    // A pose is written down with the digits of a double.
+    // Poses are stored with the digits of a double.
     constexpr double digits = std::numeric_limits<double>::epsilon();
     double reach = 0;
     for (int body = 0; body < system.bodies; ++body)

@@ -1,30 +1,32 @@
-// What an equilibrium says of itself: how far it may be off, and what stiffness is left there.
+// A-posteriori error bound and remaining stiffness of an equilibrium.
 //
-// The residual E is evaluated in extended precision, ε = 2⁻⁶⁴, at x; with the factors that are there, of J at x in double
-// precision, iterative refinement leads to the equilibrium near:
+// The residual E is evaluated in extended precision, ε = 2⁻⁶⁴, at x. Iterative refinement with the
+// existing factors of J at x, in double precision, leads to the nearby equilibrium:
 //
 //   ⎡ J  U ⎤ ⎧ dx ⎫ᵏ     ⎧ E(xᵏ) ⎫
 //   ⎣ Vᵀ 0 ⎦ ⎩ μ  ⎭   = -⎩   0   ⎭      xᵏ⁺¹ = xᵏ + dxᵏ
 //
-// Where every dx is at most θ = ¼ of the one before (what J changes on the way and what its factors are off by, together)
-// they add up to no more than |dx⁰| / (1 - θ), and there is one equilibrium within that of x (a contraction). Where they
-// no longer fall they are rounding: what E is off by is ε |J| c, c = (|r|/L + 1, 1, |R|) the sizes of the unknowns, and
+// Where every dx is at most θ = ¼ of the one before (the change of J on the way and the error of
+// its factors, together), the sum of all dx is at most |dx⁰| / (1 - θ), and there is one
+// equilibrium within that distance of x (contraction). Where the dx no longer decrease they are
+// rounding: the error of E is ε |J| c, with c = (|r|/L + 1, 1, |R|) the sizes of the unknowns, and
 //
 //   R_0 = max |J⁻¹ (± ε |J| c)|   over a few choices of the signs
 //
 //   bound = Σ |dxᵏ| + |dx_last| + 3 R_0     per body: of the origin, of the orientation
 //
-// Condition times backward error, then, and infinite where they do not fall. Of idle modes nothing is said: dx has no part
-// along V.
+// The bound is condition times backward error, and infinite where the dx do not decrease. It does
+// not cover idle modes: dx has no part along V.
 //
-// The stiffness is the least eigenvalue of M (stability.hpp), which the walk follows anyway, over what it was at a = 0.
+// The remaining stiffness is the least eigenvalue of M (stability.hpp), which the continuation
+// follows anyway, over its value at a = 0.
 #pragma once
 
 #include "reference/equilibrium/walk.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
-// Where the walk stands, as `point`.
+// Writes bound and stiffness of the current station of the continuation to `point`.
 void give_account(const Walk& walk, Equilibrium& point);
 
 }  // namespace elastocheck::reference::equilibrium

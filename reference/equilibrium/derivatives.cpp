@@ -3,18 +3,20 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace elastocheck::reference::equilibrium {
 namespace {
 
 using Eigen::VectorXd;
 
-// A part of the system depends on two bodies, at most three reactions and the parameter: 6 + 6 + 3 + 1 derivatives.
+// A term of the system depends on two bodies, at most three reactions and the parameter:
+// 6 + 6 + 3 + 1 derivatives.
 constexpr int first_reaction = 12, the_parameter = 15;
 using Jet = ceres::Jet<double, 16>;
 
-// A body that makes a step (δr / L, δπ). A turn by δπ changes the quaternion by ½ (δπ, 0) p:
-// δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
+// Frame of a body after a step (δr / L, δπ). A rotation by δπ changes the quaternion by ½ (δπ, 0)
+// p: δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
 struct Seeds {
     const System& system;
     const VectorXd& x;
@@ -38,8 +40,8 @@ struct Seeds {
     }
 };
 
-// Which entries of J a term adds to, always the same and in the same order: `entry(row, column, n)` has the n-th
-// derivative. A direction knows nothing of where its bodies are, nor a constraint of its own reactions.
+// Entries of J to which a term adds, in a fixed order: `entry(row, column, n)` receives the n-th
+// derivative. A direction does not depend on positions, nor a constraint on its own reactions.
 template <class Entry>
 void for_each_entry(const System& system, const Part& part, int row, bool balance, const Entry& entry) {
     const int first = part.directions ? 3 : 0;
@@ -51,8 +53,8 @@ void for_each_entry(const System& system, const Part& part, int row, bool balanc
         for (int k = 0; k < part.rows; ++k) entry(row, 6 * system.bodies + part.row + k, first_reaction + k);
 }
 
-// The terms of the system as they come: the rows of a body's balance, of a force none where a direction is held, and the
-// constraint's.
+// Rows of the terms in assembly order: balance of a body, without forces for a direction
+// constraint, then the constraint.
 template <class Row>
 struct Rows {
     const System& system;
@@ -78,7 +80,7 @@ void for_each_row(const System& system, const Loading& loading, const VectorXd& 
 
 }  // namespace
 
-// Where each term's derivatives go, in the order in which they come.
+// Positions of the derivatives of each term in J, in assembly order.
 struct Pattern {
     Sparse J;                 // zeros
     std::vector<int> places;  // among its values
@@ -101,7 +103,7 @@ Pattern pattern_of(const System& system, const Loading& loading, const VectorXd&
     return pattern;
 }
 
-// A body on its way through x: as above.
+// Frame of a body that moves along dx; the quaternion as above.
 using Dual = ceres::Jet<double, 1>;
 Frame<Dual> at_rest(const Frame<double>& at) { return {at.r.cast<Dual>(), at.p.cast<Dual>()}; }
 Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd& dx, BodyId body) {
@@ -162,6 +164,36 @@ VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x
     Sum sum{system, -loading.held_rate * system.at_design};
     assemble<Dual>(system, a, held, loading.pieces, Source{system, x}, sum);
     return std::move(sum.E_rate);
+}
+
+Deforming deforming(const System& system, const Loading& loading, const VectorXd& x, const VectorXd& dx) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const auto& elastics = system.model->elastics;
+    const auto rows = 6 * static_cast<Eigen::Index>(elastics.size());
+    Deforming all{VectorXd::Zero(rows), VectorXd::Zero(rows)};
+    for (std::size_t e = 0; e < elastics.size(); ++e) {
+        const auto [i, j] = bodies_of(elastics[e].kind);
+        const ElementPieces& on = loading.pieces.empty() ? all_by_themselves : loading.pieces[e];
+        const Vec6<Dual> d = deformations(system, e, Dual(loading.a), moving_frame(system, x, dx, i),
+                                          moving_frame(system, x, dx, j));
+        Vec6<Dual> force = Vec6<Dual>::Constant(Dual(0.0));
+        std::visit(
+            overloaded{[&](const AxialSpring& spring) { force[0] = gradient(spring.law, d[0], on[0]); },
+                       [&](const Bushing& bushing) { force = gradient(bushing.law, d, on); }},
+            elastics[e].kind);
+        const auto row = 6 * static_cast<Eigen::Index>(e);
+        for (int k = 0; k < 6; ++k) {
+            all.rate[row + k] = d[k].v[0];
+            all.answer[row + k] = force[k].v[0] / (system.force * system.length);
+        }
+        const auto* bushing = std::get_if<Bushing>(&elastics[e].kind);
+        const auto* coupled = bushing != nullptr ? std::get_if<LinearStiffness>(&bushing->law) : nullptr;
+        if (coupled == nullptr) continue;
+        const Vector6 sizes = coupled->K.cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
+        for (int k = 0; k < 6; ++k)
+            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.answer[row + k] = 0;
+    }
+    return all;
 }
 
 std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,

@@ -1,10 +1,12 @@
-// The physics of this leg: what joints, elements and loads do to free bodies, for double and for Ceres' Jets.
+// Free-body equations of joints, elements and loads, for double and for Ceres Jets.
 //
-// Free-body diagrams. Whatever connects two bodies acts on body i with a force and a moment, and on body j
-// with the opposite of both, the force on the same line of action. So one `Interaction` says it all:
+// Whatever connects two bodies acts on body i with a force and a moment, and on body j with the
+// opposite of both, the force on the same line of action. One `Interaction` describes both:
 //
 //   on body i:   force  F      moment about r_i   M + (x - r_i) × F
-//   on body j:   force -F      moment about r_j  -M - (x - r_j) × F        x: any point of the line of action
+//   on body j:   force -F      moment about r_j  -M - (x - r_j) × F
+//
+// with x any point of the line of action.
 #pragma once
 
 #include "models/model.hpp"
@@ -14,7 +16,7 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// Where a body is: its origin, and the unit quaternion that turns body axes into ground axes.
+// Pose of a body: its origin, and the unit quaternion from body axes to ground axes.
 template <class T>
 struct Frame {
     Vec3<T> r;
@@ -28,8 +30,8 @@ struct Interaction {
     Vec3<T> at = Vec3<T>::Constant(T(0.0));      // x [m]
 };
 
-// What an element does to each of its bodies: opposed, unless its formulation says that its force acts on each
-// body at another point.
+// Actions of an element on its two bodies: opposite, unless its formulation applies the force to
+// each body at a different point.
 template <class T>
 struct OnBoth {
     Interaction<T> i, j;
@@ -51,7 +53,7 @@ Vec3<T> direction(const Frame<T>& body, const Eigen::Vector3d& u_local) {
     return turned(body.p, u_local);
 }
 
-// ---- Elastic elements: a geometry each, whatever the law
+// ---- Elastic elements: one geometry each, independent of the law
 
 // ℓ - ℓ₀
 template <class T>
@@ -61,30 +63,30 @@ T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i
     return sqrt(dot(along, along)) - free_length;
 }
 
-// A spring pulls its ends together with N = u'(ℓ - ℓ₀) along e = (p_j - p_i) / ℓ.
+// A spring pulls its ends together with N = u'(ℓ - ℓ₀) + preload along e = (p_j - p_i) / ℓ.
 template <class T>
-OnBoth<T> interaction(const AxialSpring& spring, const T& free_length, int piece, const Frame<T>& i,
-                      const Frame<T>& j) {
+OnBoth<T> interaction(const AxialSpring& spring, const T& free_length, const T& preload, int piece,
+                      const Frame<T>& i, const Frame<T>& j) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, spring.i.s_local), p_j = position(j, spring.j.s_local);
     const Vec3<T> along = p_j - p_i;
     const T length = sqrt(dot(along, along));
-    const T pull = gradient(spring.law, T(length - free_length), piece) / length;
+    const T pull = (gradient(spring.law, T(length - free_length), piece) + preload) / length;
     Interaction<T> on_i;
     on_i.force = {pull * along[0], pull * along[1], pull * along[2]};
     on_i.at = p_i;
     return opposed(on_i);
 }
 
-// What a bushing measures. Where neither law nor preload care how the markers are turned against each other
-// (`rotational` is false) they may turn any number of times, and their angles, which end somewhere, are not
-// asked.
+// Deformation of a bushing. Where neither law nor preload depend on the relative rotation of the
+// markers (`rotational` is false), the rotation may be arbitrarily large, and the angles, which
+// have singularities, are not computed.
 template <class T>
 struct Measured {
     Vec3<T> p_i, p_j;          // the markers [m]
     Eigen::Quaternion<T> A_i;  // axes of marker i to ground axes
     Eigen::Quaternion<T> A_f;  // axes of the frame to ground axes
-    Vec3<T> half_turn;         // t = tan(|θ|/4) θ/|θ|, axes of marker i; the frame in the middle only
+    Vec3<T> half_turn;         // t = tan(|θ|/4) θ/|θ|, axes of marker i; frame in the middle only
     Angles<T> angles;          // of B = A_iᵀ A_j; rotational only
     Vec6<T> e;                 // (d [m], θ [rad])
 };
@@ -108,25 +110,27 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
     return m;
 }
 
-// (f, g) = ∂u/∂e + preload are the forces that do work on e = (d, θ): δU = f · δd + g · δθ. Let the bodies
-// move by δr and turn by δπ (ground axes), D = p_j - p_i, F = A_f f, and let the frame turn by δπ_f.
+// (f, g) = ∂u/∂e + preload are work-conjugate to e = (d, θ): δU = f · δd + g · δθ. Let the bodies
+// move by δr and rotate by δπ (ground axes), D = p_j - p_i, F = A_f f, and let the frame rotate by
+// δπ_f.
 //
 //   δd = A_fᵀ (δp_j - δp_i - δπ_f × D)   so   f · δd = F · (δp_j - δp_i) - δπ_f · (D × F)
 //   δθ_k = a_k · A_iᵀ (δπ_j - δπ_i)      so   g · δθ = (A_i m) · (δπ_j - δπ_i),   m = Σ g_k a_k
 //
-// with the axes a_k that the angles turn about (rotations.hpp). The bodies feel -∂U.
+// with the axes a_k of the angles (rotations.hpp). The generalised forces on the bodies are -∂U.
 //
-// Frame on i: δπ_f = δπ_i. On j the force -F at p_j and the moment -A_i m; on i the force F at p_i with D × F,
-// which is F at p_j, and the moment A_i m.
+// Frame on i: δπ_f = δπ_i. On j: force -F at p_j and moment -A_i m. On i: force F at p_i with
+// moment D × F, which equals F at p_j, and moment A_i m.
 //
-// Frame in the middle: A_f = A_i C, C² = B. With w = A_iᵀ (δπ_j - δπ_i) and δC = c̃ C the turn of C,
+// Frame in the middle: A_f = A_i C, C² = B. With w = A_iᵀ (δπ_j - δπ_i) and δC = c̃ C the variation
+// of C,
 //   δB = w̃ B = c̃ C C + C c̃ C = (c + C c)~ B,   so   c = (I + C)⁻¹ w = ½ (I - t̃) w
-// (Cayley: C = (I + t̃) (I - t̃)⁻¹). So δπ_f = δπ_i + A_i c, and of the moment D × F that δπ_f meets, j gets
-// ½ (I + t̃) D × F with t in ground axes, i the rest: beside F at p_j, i feels A_i m - ½ (D×F + t × (D×F)), and j
-// the opposite.
+// (Cayley: C = (I + t̃) (I - t̃)⁻¹). So δπ_f = δπ_i + A_i c. Of the moment D × F that is conjugate
+// to δπ_f, j receives ½ (I + t̃) D × F with t in ground axes, and i the rest. Hence, besides F at
+// p_j, i has the moment A_i m - ½ (D×F + t × (D×F)), and j the opposite.
 //
-// Not conjugate (frame on i): the moment is A_i g, whatever does work. Without offset moment, D × F is on
-// neither body: F acts on each at its own marker.
+// Not conjugate (frame on i): the moment is A_i g, although it is not conjugate to θ. Without
+// offset moment, D × F acts on neither body: F acts on each at its own marker.
 template <class T>
 OnBoth<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational,
                       const ElementPieces& pieces, const Frame<T>& i, const Frame<T>& j) {
@@ -155,11 +159,29 @@ OnBoth<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotat
     return opposed(on_i);
 }
 
+// A spring of unit stiffness, 1 / L and L, that pulls a body back to its design pose:
+//
+//   U = ½ |r - r_0|² / L + 4 L (1 - |cos ½θ|)
+//
+// whose moment is 2 L sin ½θ about the axis: 2 L times the vector part of the relative quaternion.
+template <class T>
+Interaction<T> drawn_back(const Frame<T>& body, const Eigen::Vector3d& r_0, const Eigen::Quaterniond& p_0,
+                          double length) {
+    const Eigen::Quaternion<T> turn = product(body.p, Eigen::Quaterniond(p_0.conjugate()));
+    const double back = turn.w() < 0. ? 2 * length : -2 * length;
+    Interaction<T> on;
+    for (int k = 0; k < 3; ++k) on.force[k] = (body.r[k] - r_0[k]) * (-1 / length);
+    on.moment = {turn.x() * back, turn.y() * back, turn.z() * back};
+    on.at = body.r;
+    return on;
+}
+
 // ---- Constraints
 
-// The rows of a constraint, and the interaction its reactions R [N, or N·m for directions] make. Without
-// friction a joint pushes only where it holds: along the normal, along the bar, about the common
-// perpendicular of the two directions. `value` is what a driver may move: the offset, length or angle.
+// Rows of a constraint, and the interaction of its reactions R [N, or N·m for directions]. A
+// frictionless joint transmits only constraint forces: along the normal, along the bar, about the
+// common perpendicular of the two directions. `value` is the quantity that a driver may move:
+// offset, length or angle.
 template <class T>
 struct Holding {
     Vec3<T> Phi;  // the first rows(kind) count; [m] or [-]
@@ -176,7 +198,7 @@ Holding<T> holding(const CoincidentPoints& c, const T&, const Frame<T>& i, const
     return h;
 }
 
-// The normal belongs to body j, the point that is held to body i: the contact is at that point.
+// The normal is fixed to body j, the constrained point to body i: the force acts at that point.
 template <class T>
 Holding<T> holding(const PointInPlane& c, const T& value, const Frame<T>& i, const Frame<T>& j, const T* R) {
     const Vec3<T> p_i = position(i, c.i.s_local), n = direction(j, c.normal_j.u_local);
@@ -198,7 +220,7 @@ Holding<T> holding(const PerpendicularDirections& c, const T&, const Frame<T>& i
     return h;
 }
 
-// A bar that pushes its ends apart with R.
+// A bar whose compressive force R pushes its ends apart.
 template <class T>
 Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j,
                    const T* R) {
@@ -212,8 +234,9 @@ Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, 
     return h;
 }
 
-// u_i across the direction v_j = cos α y_j - sin α x_j, which turns with α. Then u_i = cos α x_j + sin α y_j,
-// and u_i × v_j is the axis: R is the moment about x_j × y_j on body i.
+// u_i is perpendicular to the direction v_j = cos α y_j - sin α x_j, which rotates with α. Then
+// u_i = cos α x_j + sin α y_j, and u_i × v_j is the axis: R is the moment about x_j × y_j on body
+// i.
 template <class T>
 Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j,
                    const T* R) {
@@ -232,7 +255,8 @@ Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i,
     return h;
 }
 
-// Whether the rows are cosines of directions [-] and their reactions moments, or lengths and forces.
+// Whether the rows are cosines of directions [-] with moments as reactions, in contrast to lengths
+// with forces.
 inline bool is_direction(const ConstraintKind& kind) {
     return std::visit(
         overloaded{[](const CoincidentPoints&) { return false; }, [](const PointInPlane&) { return false; },
@@ -244,7 +268,7 @@ inline bool is_direction(const ConstraintKind& kind) {
 
 // ---- Loads
 
-// What a load of unit factor does to its body: force, and moment about the body's origin.
+// Action of a load of unit factor on its body: force, and moment about the body's origin.
 template <class T>
 Interaction<T> on_body(const DeadForce& load, const Frame<T>& body) {
     Interaction<T> on;
@@ -261,7 +285,7 @@ Interaction<T> on_body(const DeadMoment& load, const Frame<T>& body) {
     return on;
 }
 
-// A follower turns with its body.
+// A follower load rotates with its body.
 template <class T>
 Interaction<T> on_body(const FollowerForce& load, const Frame<T>& body) {
     Interaction<T> on;
@@ -278,7 +302,7 @@ Interaction<T> on_body(const FollowerMoment& load, const Frame<T>& body) {
     return on;
 }
 
-// ---- Which bodies are meant
+// ---- Bodies of an element or constraint
 
 struct Pair {
     BodyId i, j;

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// A pivot may be this much smaller than the largest of its column, if it fills in less. What this loses in digits
-// Newton's method, whose steps the factors are for, gives back.
+// Threshold pivoting: a pivot may be this much smaller than the largest of its column to reduce
+// fill-in. Newton's method recovers the lost digits.
 constexpr double pivot_preference = 0.1;
 
 klu_common settings() {
@@ -27,7 +27,7 @@ klu_common settings() {
     return common;
 }
 
-// KLU takes what it only reads as if it wrote it.
+// KLU takes read-only arguments as non-const.
 int* starts(const Sparse& A) { return const_cast<int*>(A.outerIndexPtr()); }
 int* rows(const Sparse& A) { return const_cast<int*>(A.innerIndexPtr()); }
 double* values(const Sparse& A) { return const_cast<double*>(A.valuePtr()); }
@@ -46,7 +46,7 @@ int parity(const int* permutation, Index n) {
 }  // namespace
 
 struct Order {
-    std::vector<int> start, row;  // of the pattern that it is for
+    std::vector<int> start, row;  // of the pattern it belongs to
     klu_symbolic* symbolic = nullptr;
     explicit Order(const Sparse& A)
         : start(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1),
@@ -89,7 +89,7 @@ double largest_entry(const Sparse& A) {
                              : Eigen::Map<const VectorXd>(A.valuePtr(), A.nonZeros()).cwiseAbs().maxCoeff();
 }
 
-// L U + F = R⁻¹ P A Q with F above the diagonal blocks of U, R > 0.
+// KLU form: L U + F = R⁻¹ P A Q with F above the diagonal blocks of U, R > 0.
 Factors::Factors(const Sparse& A, const Factors* of_such) : size_(A.cols()) {
     if (size_ == 0) return;
     order_ = of_such != nullptr && of_such->order_ && of_such->order_->is_for(A)
@@ -128,7 +128,8 @@ MatrixXd Factors::solve_transposed(MatrixXd right) const {
     return right;
 }
 
-// A P = Q R,  R = [R₁ R₂; 0 ~0]:  A P [-R₁⁻¹ R₂; 1] = 0, and Q's last columns are what A never reaches.
+// A P = Q R,  R = [R₁ R₂; 0 ~0]:  A P [-R₁⁻¹ R₂; 1] = 0, and the last columns of Q span the left
+// null space.
 NullBases null_bases(const Sparse& A, double threshold) {
     const Index n = A.cols();
     Eigen::SPQR<Sparse> qr;

@@ -1,7 +1,8 @@
-// Factors of sparse matrices, behind plain calls: LU (KLU) for what is regular, QR (SPQR) for what may not be.
+// Sparse factorisations: LU (KLU) for regular matrices, QR (SPQR) for matrices that may be
+// singular.
 //
-// The order of elimination is that of the pattern; whoever factorises the same pattern again hands on the factors
-// before, and the order is not sought anew.
+// The elimination order depends only on the pattern. It is reused when the factors of a matrix with
+// the same pattern are passed in.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -22,12 +23,12 @@ class Factors {
     Factors() = default;
     explicit Factors(const Sparse& A, const Factors* of_such = nullptr);
 
-    // Of the determinant: 0 where a pivot is zero, and then nothing is solved.
+    // Sign of the determinant: 0 where a pivot is zero; solve() is then not available.
     int sign() const { return sign_; }
     Eigen::Index size() const { return size_; }
 
-    // Of A, columns and rows scaled to size one: the condition number in the norm of sums (Higham and Tisseur's
-    // estimate), infinite where a pivot is zero.
+    // Condition number of A in the 1-norm, rows and columns scaled to size one (Higham & Tisseur
+    // 2000 estimate); infinite where a pivot is zero.
     double condition(const Sparse& A) const;
 
     Eigen::MatrixXd solve(Eigen::MatrixXd right) const;             // A x = b, column by column
@@ -40,9 +41,9 @@ class Factors {
     std::shared_ptr<Pivots> pivots_;
 };
 
-// Bases of the vectors that A (square) takes to nothing, and that it never reaches: A right = 0, Aᵀ left = 0. Neither is
-// orthonormal; both are sparse where they can be. A column that is within `threshold` of those before it is taken to
-// depend on them.
+// Bases of the null spaces of A (square) and Aᵀ: A right = 0, Aᵀ left = 0. Neither is orthonormal;
+// both are sparse where possible. A column within `threshold` of the span of those before it counts
+// as dependent.
 struct NullBases {
     Sparse right, left;
 };

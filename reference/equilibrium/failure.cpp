@@ -1,4 +1,4 @@
-// Saying why a branch ended.
+// Diagnosis of the end of a branch.
 #include <fmt/format.h>
 
 #include "reference/equilibrium/walk.hpp"
@@ -21,9 +21,9 @@ std::string body_with_largest(const System& system, const VectorXd& n) {
     return name;
 }
 
-// The joints that have a part in what the constraints make of each other, one entry a row [m].
+// Names of the joints that take part in a dependency of the constraints, one entry per row [m].
 std::string joints_in(const System& system, const VectorXd& by_row) {
-    constexpr double no_part = 1e-6;  // below round-off's share
+    constexpr double no_part = 1e-6;  // below round-off
     std::string names;
     int row = 0, last = -1;
     for (const auto& constraint : system.model->constraints) {
@@ -37,10 +37,12 @@ std::string joints_in(const System& system, const VectorXd& by_row) {
     return names;
 }
 
-// What the constraints alone leave open near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ. Where
-// they cannot be met it ends at Φ_qᵀ Φ = 0, so that Φ names those that stand against each other.
+// Remaining gap of the constraints near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ.
+// Where the constraints are inconsistent the iteration ends at Φ_qᵀ Φ = 0, so that Φ names the
+// conflicting ones.
 VectorXd gap(Walk& walk, double a, VectorXd x) {
-    constexpr int iterations = 30;  // it is quadratic where they can be met, and need not be exact where not
+    // quadratic convergence for consistent constraints; no accuracy needed otherwise
+    constexpr int iterations = 30;
     const System& system = walk.system;
     const int m = system.constraint_rows;
     const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
@@ -56,21 +58,24 @@ VectorXd gap(Walk& walk, double a, VectorXd x) {
     return Phi();
 }
 
-// Of the scaled Φ: less is met.
+// Tolerance of the scaled Φ: smaller gaps count as closed.
 constexpr double closed = 1e-9;
 
-// Whether the branch turns back just ahead. With u the left null vector of J where it is singular, M u = 0, the tangent
-// near there is x' = -(u · dE/dt) / μ v + ..., μ the least stiffness: it grows as μ falls unless u · dE/dt = 0, that is,
-// unless dE/dt is in J's range, and another curve crosses this one. So μ |x'| is what it was, or goes to zero as μ does.
+// Whether a limit point lies just ahead, in contrast to a bifurcation. With u the left null vector
+// of J at the singular point, M u = 0, the tangent near it is x' = -(u · dE/dt) / μ v + ..., μ the
+// least stiffness. It grows as μ falls unless u · dE/dt = 0, that is, unless dE/dt is in the range
+// of J and another curve crosses this one. So at a limit point μ |x'| keeps its value, at a
+// bifurcation it goes to zero with μ.
 bool turns_back(const Walk& walk) {
-    constexpr double gone = 0.15, still_there = 0.02;  // of what they were at a = 0
+    constexpr double gone = 0.15, still_there = 0.02;  // relative to their values at a = 0
     const double left = walk.here.stiffness.least / walk.first_stiffness;
     return walk.stage == Stage::branch && std::abs(left) <= gone &&
            std::abs(left) * pose_size(walk.system, walk.here.tangent) >= still_there * walk.first_tangent;
 }
 
-// Past a singular point the same curve goes on, with an eigenvalue of M that is negative: one more curve went through
-// it. Where the constraints divide, M does not tell.
+// Whether a bifurcation was passed: beyond the singular point the same curve continues with a
+// negative eigenvalue of M, so another curve crosses it. M does not show a bifurcation of the
+// constraints.
 bool has_divided(const Walk& walk, const Trial& trial) {
     const Stiffness& past = trial.station.stiffness;
     return trial.verdict == Verdict::turned_over && past.least < -past.round_off &&
@@ -80,7 +85,7 @@ bool has_divided(const Walk& walk, const Trial& trial) {
 }  // namespace
 
 Failure unanswerable(const System& system, const VectorXd& left) {
-    // What truly repeats itself is balanced by itself, and leaves the bodies nothing but round-off.
+    // Truly redundant joints balance each other, and leave only round-off on the bodies.
     constexpr double repeated = 1e-11;
     const double of_joints = left.tail(system.constraint_rows).norm(),
                  of_bodies = left.head(6 * system.bodies).norm();
@@ -96,6 +101,14 @@ Failure unanswerable(const System& system, const VectorXd& left) {
                             joints_in(system, left.tail(system.constraint_rows)))};
     return {Outcome::loaded_idle_mode, fmt::format("body '{}' is pushed along a motion that nothing resists",
                                                    body_with_largest(system, left))};
+}
+
+Failure too_soft(const System& system, const VectorXd& left) {
+    return {Outcome::iteration_limit,
+            fmt::format(
+                "body '{}' is pushed along a motion so much softer than others that arithmetic cannot tell "
+                "its stiffness",
+                body_with_largest(system, left))};
 }
 
 Failure failure(Walk& walk, double t, const Trial& trial) {
@@ -118,8 +131,8 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     if (trial.verdict == Verdict::uncertain)
         return {Outcome::singular,
                 "the system is too nearly singular to say that the branch goes on " + where};
-    // A mechanism at the end of its reach is nearly there already: whether it can go on is seen farther on.
-    constexpr double further = 12, far = 1.8e-4;  // such steps; of the whole way
+    // A mechanism at the end of its range has almost no gap here: its gap is evaluated farther on.
+    constexpr double further = 12, far = 1.8e-4;  // trial steps; share of the whole stage
     const double target =
         settling
             ? 0
@@ -152,8 +165,9 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
         constexpr double mostly = 0.9;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
             return unanswerable(system, U * (U.transpose() * left_over));
-        // At a limit point a good part of the step finds no answer; far below, arithmetic is at its end: of poses of the
-        // model's own size, or so many times farther off.
+        // At a limit point a large part of the step remains unsolved. A far smaller remainder is
+        // the rounding limit, for poses of the model's own size, or proportionally larger farther
+        // from the origin.
         constexpr double good_part = 1e-6, at_home = 1e-13;
         double away = 1;
         for (int body = 0; body < system.bodies; ++body)

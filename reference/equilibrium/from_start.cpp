@@ -16,19 +16,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The longest step [L or rad] of a way that is no branch.
+// Longest Newton step [L or rad], since no branch limits it.
 constexpr double longest_step = 0.3;
 
-// From here Newton's method is on its own [L or rad].
+// Below this step size Newton's method converges without a step limit [L or rad].
 constexpr double close = 1e-3;
 
-// Two states are one where they are no further apart [L or rad]: what a soft spring beside stiff ones leaves open.
+// Two states closer than this are the same [L or rad]: the uncertainty of a soft spring beside
+// stiff ones.
 constexpr double one_state = 1e-6;
 
-// What is less stiff than this, over the stiffest, is idle.
+// Motions with less stiffness than this, relative to the largest, are idle.
 constexpr double idle_stiffness = 1e-10;
 
-// A state that is not to be found again. What is idle there says nothing of where it is.
+// A state to be excluded. Its idle motions do not count in the distance.
 struct Known {
     VectorXd x;
     MatrixXd idle;  // orthonormal [6 nb × k]
@@ -52,11 +53,11 @@ Known known_state(const System& system, double a, const Equilibrium& state) {
     return known;
 }
 
-// Deflation (Brown and Gearhart; Farrell, Birkisson and Funke 2015): the equations times
+// Deflation (Brown & Gearhart 1971; Farrell, Birkisson & Funke 2015): the equations times
 //
-//   m(x) = Π (1 / |x - x_k|² + 1)        over the states x_k that are known
+//   m(x) = Π (1 / |x - x_k|² + 1)        over the known states x_k
 //
-// have the same solutions but for these. Newton's step for m E is the one for E, longer or turned round:
+// have the same solutions except these. The Newton step of m E is that of E, scaled or reversed:
 //
 //   δ / (1 - η),     η = ∇m · δ / m = -Σ 2 (x - x_k)·δ / (s (1 + s)),     s = |x - x_k|²
 double stretched(const System& system, const std::vector<Known>& known, const VectorXd& x,
@@ -83,7 +84,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a, const s
     Derivatives by = derivatives(system, loading, x, counts);
     if (!by.E.allFinite() || !is_finite(by.J)) return {Outcome::not_finite};
     const Index n = 6 * system.bodies, m = system.constraint_rows;
-    // E is linear in the reactions: at first those that leave the least to balance.
+    // E is linear in the reactions: start with those of least imbalance.
     if (n > 0 && m > 0) {
         x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
         by = derivatives(system, loading, x, counts);
@@ -121,7 +122,7 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch, 
     if (system.bodies == 0 || system.bodies > most_bodies) return {};
     const Index n = 6 * system.bodies, m = system.constraint_rows;
     const VectorXd x = unknowns_at(system, state.poses);
-    // The curvature of the constraints takes their reactions.
+    // The curvature of the constraints depends on their reactions.
     VectorXd with_reactions = x;
     Counts counts;
     Derivatives by = derivatives(system, {state.load}, x, counts);
@@ -130,7 +131,7 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch, 
         with_reactions.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
         by = derivatives(system, {state.load}, with_reactions, counts);
     }
-    // M = -Zᵀ ∂(balance)/∂q Z on what the constraints leave free
+    // M = -Zᵀ ∂(balance)/∂q Z in the null space of the constraints
     MatrixXd Z = MatrixXd::Identity(n, n);
     if (m > 0) {
         Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(by.J.bottomLeftCorner(m, n)).transpose());

@@ -8,7 +8,7 @@
 namespace elastocheck::reference::equilibrium {
 namespace {
 
-// What a deformation moves over the whole way, over `at_knot`, and is still said to rest.
+// A deformation whose movement over the whole stage is below this multiple of `at_knot` is at rest.
 constexpr double at_rest = 1e-3;
 
 struct Ends {
@@ -29,18 +29,18 @@ struct Cubic {
         d = b + b_1 - 2 * chord;
     }
     double operator()(double s) const { return x_0 + s * (b + s * (c + s * d)); }
-    // 0, 1, and where x turns in between.
+    // 0, 1, and the extrema of x in between.
     std::array<double, 4> turns() const {
         std::array<double, 4> s = {0, 0, 0, 1};
         const double root = std::sqrt(c * c - 3 * b * d), q = -(c + std::copysign(root, c));
-        const auto within = [](double at) { return at > 0 && at < 1 ? at : 0; };  // NaN is not
+        const auto within = [](double at) { return at > 0 && at < 1 ? at : 0; };  // false for NaN
         s[1] = within(q / (3 * d)), s[2] = within(b / q);
         std::ranges::sort(s);
         return s;
     }
 };
 
-// The first s at which sign · x is past limit by half of `far`, if somewhere it is by all of it.
+// First s at which sign · x exceeds limit by half of `far`, if it exceeds it by `far` anywhere.
 std::optional<double> first_past(const Cubic& x, double sign, double limit, double far) {
     const auto past = [&](double s) { return sign * (x(s) - limit); };
     const auto turns = x.turns();

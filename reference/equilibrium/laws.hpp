@@ -1,5 +1,5 @@
-// The laws of mechanism.hpp as forces, ∂u/∂x and ∂u/∂e, for double and for Ceres' Jets: each law once,
-// whatever the geometry that deforms.
+// Forces ∂u/∂x and ∂u/∂e of the elastic laws of mechanism.hpp, for double and for Ceres Jets; each
+// law once, independent of the geometry.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,10 @@ namespace elastocheck::reference::equilibrium {
 template <class T>
 using Vec6 = Eigen::Matrix<T, 6, 1>;
 
-// Which piece of its curve each deformation of an element is on (a spring has the first only), or `by_itself`:
-// the piece that x lies on. A piece that is named goes on past its knots as its tangent there: as a polynomial, a short
-// steep one falls within a hair's breadth before the knot that it rises from.
+// Piece of its curve for each deformation of an element (a spring has only the first), or
+// `by_itself`: the piece that contains x. A given piece is extrapolated past its knots by its
+// tangent: as a polynomial, a short steep piece would fall again just outside the knot at which it
+// rises.
 inline constexpr int by_itself = -1;
 using ElementPieces = std::array<int, 6>;
 inline constexpr ElementPieces all_by_themselves = {by_itself, by_itself, by_itself,
@@ -70,7 +71,8 @@ Vec6<T> gradient(const SpatialLaw& law, const Vec6<T>& e, const ElementPieces& p
                       law);
 }
 
-// The largest |d²u/dx²| anywhere: within a cubic piece f' is a parabola, largest at an end or at its vertex.
+// The largest |d²u/dx²| anywhere: within a cubic piece f' is a parabola, largest at an end or at
+// its vertex.
 inline double steepest(const ScalarLaw& law) {
     const auto over = [](const std::array<double, 4>& c, double width) {
         const auto slope = [&](double h) { return std::abs(c[1] + h * (2 * c[2] + h * 3 * c[3])); };
@@ -87,7 +89,7 @@ inline double steepest(const ScalarLaw& law) {
                       law);
 }
 
-// Whether u depends on x at all.
+// Whether u depends on x.
 inline bool resists(const ScalarLaw& law) {
     const auto nothing = [](const std::array<double, 4>& c) {
         return std::ranges::all_of(c, [](double c_n) { return c_n == 0; });

@@ -12,28 +12,31 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the equilibrated matrix: a column that its QR finds this close to those before it is null. Healthy models stay
-// above 1e-6.
+// QR threshold on the equilibrated matrix: a column this close to the span of those before is
+// dependent. Healthy models stay above 1e-6.
 constexpr double null_threshold = 1e-11;
 
-// ... but constraints that repeat each other up to an angle σ do hold, and have a singular value σ² over a stiffness in J:
-// what J takes to more than `nothing`, and is of reactions but for a part of about σ that is of bodies.
+// Exception: constraints that are redundant up to an angle σ do constrain, with a singular value of
+// σ² over a stiffness in J. Such a vector has an image larger than `nothing`, and consists of
+// reactions except for a part of about σ on bodies.
 constexpr double nothing = 1e-13, least_angle = 1e-9, largest_angle = 1e-3;
 
-// Of the equilibrated matrix too: with a condition number below it has no null space, and is not asked for one.
+// Below this condition number of the equilibrated matrix the null space is empty and is not
+// computed.
 constexpr double surely_regular = 1e8;
 
-// Sweeps of the equilibration; each halves the logarithm of what the sizes are apart.
+// Equilibration sweeps; each halves the logarithm of the ratio of sizes.
 constexpr int equilibration_sweeps = 10;
 
-// What a tracked mode may have as stiffness, over the largest entry of J, and still be called idle.
+// Largest stiffness of a tracked mode, relative to the largest entry of J, that still counts as
+// idle.
 constexpr double idle_stiffness = 1e-10;
 
-// Of a mode's length: what is below is round-off, and no part of it.
+// Relative to the length of a mode: smaller entries are round-off and dropped.
 constexpr double no_part = 1e-14;
 
-// An orthonormal basis of the columns, oriented as they are: Gram and Schmidt, twice, which is as good as Householder
-// and leaves apart what shares no row.
+// Orthonormal basis of the columns with their orientation: Gram-Schmidt applied twice, which is as
+// accurate as Householder and keeps the sparsity of columns without a common row.
 Sparse orthonormal(const Sparse& columns) {
     Sparse Q(columns.rows(), columns.cols());
     std::vector<Eigen::SparseVector<double>> done;
@@ -53,7 +56,7 @@ Sparse orthonormal(const Sparse& columns) {
     return Q;
 }
 
-// D_r A D_c with rows and columns of size one (Ruiz).
+// D_r A D_c with rows and columns of size one (Ruiz 2001).
 struct Equilibrated {
     Sparse A;
     VectorXd D_r, D_c;
@@ -78,7 +81,7 @@ Equilibrated equilibrated(const Sparse& J) {
     return of;
 }
 
-// The unknowns of bodies: after them A has no entry on both sides.
+// Number of body unknowns: beyond them the diagonal block of A is zero.
 Index of_bodies(const Sparse& A) {
     Index n = 0;
     for (Index j = 0; j < A.cols(); ++j)
@@ -86,8 +89,8 @@ Index of_bodies(const Sparse& A) {
     return n;
 }
 
-// These columns without what is null by the threshold only. Looked for among all their combinations, which takes a dense
-// matrix, where one is not quite null.
+// Removes columns that are null only by the threshold. If one column is not quite null, all
+// combinations are searched, which takes a dense matrix.
 Sparse without_angles(const Sparse& A, const Sparse& columns) {
     const Sparse images = A * columns;
     bool all = true;
@@ -110,7 +113,8 @@ Sparse without_angles(const Sparse& A, const Sparse& columns) {
 Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
     const Index n = J.rows(), k = modes.count();
     if (k == 0) return J;
-    const Sparse V_rows = modes.right.transpose();  // column j: what the modes have in unknown j
+    // column j: the entries of the modes in unknown j
+    const Sparse V_rows = modes.right.transpose();
     Sparse B(n + k, n + k);
     B.reserve(J.nonZeros() + modes.left.nonZeros() + modes.right.nonZeros());
     for (Index j = 0; j < n; ++j) {
@@ -126,8 +130,8 @@ Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
     return B;
 }
 
-// With the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here, turned as little as possible, as
-// long as μ, the stiffness they have got, is nothing but round-off.
+// Tracks the idle modes: with the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here
+// with the least rotation, valid as long as their stiffness μ is round-off.
 bool track(Linearisation& at) {
     const Index n = at.J.rows(), k = at.modes.count();
     MatrixXd ones = MatrixXd::Zero(n + k, k);
@@ -143,8 +147,8 @@ bool track(Linearisation& at) {
 
 }  // namespace
 
-// Rank is judged on the equilibrated matrix D_r J D_c, because stiff and soft elements side by side are no sign of
-// singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
+// Rank is judged on the equilibrated matrix D_r J D_c, because a large ratio of stiffnesses is not
+// a singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
 NullSpaces null_spaces(const Sparse& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
     if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
@@ -168,7 +172,9 @@ Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
         at.bordered = bordered_like(*before, at.J);
         ++counts.factorisations;
         at.modes_are_new = at.modes.count() > 0 && !track(at);
+        at.modes_are_soft = before->modes_are_soft;
         if (!at.modes_are_new) return at;
+        at.modes_are_soft = false;
     }
     at.modes = null_spaces(at.J);
     at.bordered = Factors(bordered_matrix(at.J, at.modes));
@@ -188,13 +194,14 @@ Rate answer(const Factors& bordered, const VectorXd& E_rate) {
     return {solution.head(n), solution.tail(k)};
 }
 
-// The longer of A's sides first, so that only what is dependent is in the null space, which is the border of
+// Augmented system with the longer side of A first, so that its null space, which becomes the
+// border, contains only the dependencies of A:
 //
 //   ⎡ 1   A ⎤ ⎧ r ⎫   ⎧ b ⎫              ⎡ 1   Aᵀ ⎤ ⎧  x ⎫   ⎧ 0 ⎫
 //   ⎣ Aᵀ  0 ⎦ ⎩ x ⎭ = ⎩ 0 ⎭      or      ⎣ A   0  ⎦ ⎩ -y ⎭ = ⎩ b ⎭
 //
-// What is left over, r, is in no column's way, and x is no combination that A takes to nothing; or x is one of A's rows,
-// and what the border takes of b none of its columns.
+// On the left: r is orthogonal to the columns of A, and x has no part in the null space. On the
+// right: x is in the row space of A, and the border takes the part of b outside the range of A.
 VectorXd least_squares(const Sparse& A, const VectorXd& b) {
     const bool tall = A.rows() >= A.cols();
     const Index first = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();

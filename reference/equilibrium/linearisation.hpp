@@ -1,39 +1,42 @@
-// The system linearised at an equilibrium: which way the branch goes on, and what is singular about it.
+// Linearisation of the system at an equilibrium: tangent of the branch, null spaces and idle modes.
 #pragma once
 
 #include "reference/equilibrium/derivatives.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
-// Null spaces of J = ∂E/∂(step), orthonormal columns [n × k]. A right null vector is an idle mode (a motion
-// that nothing resists) or a self-stress of redundant joints; a left null vector is what must not be asked of
-// it: a load on the idle mode, a contradiction between the joints. Links that spin about themselves may be hundreds,
-// each with a few entries of its own.
+// Null spaces of J = ∂E/∂(step), orthonormal columns [n × k]. A right null vector is an idle mode
+// (an unresisted motion) or a self-stress of redundant joints. A left null vector is a right-hand
+// side without a solution: a load on the idle mode, an inconsistency of the joints. There may be
+// hundreds, for example links that spin about their own axes, each with a few nonzero entries.
 struct NullSpaces {
     Sparse right, left;
     Eigen::Index count() const { return right.cols(); }
 };
 NullSpaces null_spaces(const Sparse& J);
 
-// J with the null spaces for a border,
+// J bordered by the null spaces,
 //
 //   ⎡ J   U ⎤ ⎧ dx ⎫   ⎧ -E' ⎫
 //   ⎣ Vᵀ  0 ⎦ ⎩ μ  ⎭ = ⎩  0  ⎭
 //
-// is regular where J is singular: dx is free of idle motion, and μ is the part of E' that J cannot answer.
+// is regular where J is singular: dx has no idle motion, and μ is the part of E' outside the range
+// of J.
 struct Linearisation {
     Sparse J;          // [n × n]
     NullSpaces modes;  // U = left, V = right
     Factors bordered;
-    bool modes_are_new = true;  // then the orientation says nothing about the point before
+    bool modes_are_new = true;  // the orientation is then not comparable to the previous point
+    // some modes have a stiffness too small for the precision of J (resisted.hpp)
+    bool modes_are_soft = false;
     int orientation() const { return bordered.sign(); }
 };
 
-// `before` is the linearisation at the point before on the branch, from which the modes are tracked; nullptr
-// at the first.
+// `before`: linearisation at the previous point of the branch, from which the modes are tracked;
+// nullptr at the first point.
 Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts);
 
-// J with the modes of `like` for a border.
+// J bordered by the modes of `like`.
 Factors bordered_like(const Linearisation& like, const Sparse& J);
 
 struct Rate {
@@ -42,7 +45,7 @@ struct Rate {
 };
 Rate answer(const Factors& bordered, const Eigen::VectorXd& E_rate);
 
-// The shortest x among those for which |A x - b| is least.
+// Minimum-norm solution of the least-squares problem min |A x - b|.
 Eigen::VectorXd least_squares(const Sparse& A, const Eigen::VectorXd& b);
 
 }  // namespace elastocheck::reference::equilibrium

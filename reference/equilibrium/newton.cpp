@@ -5,25 +5,28 @@ namespace {
 
 using Eigen::VectorXd;
 
-// A step after a correction of this size would be of its square, which is round-off.
+// After a correction of this size the next one would be of its square, which is round-off.
 constexpr double last_correction = 1e-8;
 
-// A step is taken if of what it promises, all of the level, it keeps this part for its length.
+// A damped step is accepted if it reduces the level by at least this part of the predicted
+// reduction.
 constexpr double least_promise_kept = 1e-3;
 
-// How short a step may become: at a standstill, no part of it is an improvement.
+// Limit of the damping: at stagnation no shorter step is an improvement.
 constexpr int halvings = 10;
 
-// Newton's steps are the same whatever regular matrix the equations are multiplied by; whether a step is an
-// improvement is not. A member that is turned along its tangent by δ is stretched by ½ δ²: measured in forces, a long
-// step makes things worse where members are stiff, and who takes none that does would creep; and what is
-// left along a soft direction does not show beside the round-off of the stiff ones. So what has to fall is
+// Newton's steps are invariant under multiplication of the equations by a regular matrix; a
+// monotonicity test is not. A member rotated along its tangent by δ is stretched by ½ δ². Measured
+// in forces, a long step increases the residual of stiff members, and rejecting it would make the
+// iteration creep; and the residual of a soft direction is hidden by the round-off of stiff ones.
+// So the test uses
 //
 //   | ⎡ J  U ⎤⁻¹ ⎧ E ⎫ |
 //   | ⎣ Vᵀ 0 ⎦   ⎩ 0 ⎭ |
 //
-// the corrections that E asks for where the step begins (Deuflhard's natural level function; linearisation.hpp has J
-// and its border). It is zero where E is.
+// the corrections for E with the matrix at the start of the step: the natural level function of the
+// natural monotonicity test (Deuflhard 1974; linearisation.hpp has J and its border). It is zero
+// where E is.
 double level(const Linearisation& near, const VectorXd& E) {
     const Rate corrections = answer(near.bordered, E);
     return std::hypot(corrections.dx.norm(), corrections.mu.norm());

@@ -1,4 +1,4 @@
-// Solving the system at one loading.
+// Newton's method for the system at one loading.
 #pragma once
 
 #include "reference/equilibrium/derivatives.hpp"
@@ -9,11 +9,11 @@ namespace elastocheck::reference::equilibrium {
 
 struct Attempt {
     Eigen::VectorXd x;
-    double residual = 0;       // largest entry of |E|, from an evaluation of our own; NaN when there is none
-    bool out_of_time = false;  // the iteration limit came before a standstill
+    double residual = 0;       // largest entry of |E|, evaluated at x; NaN when there is none
+    bool out_of_time = false;  // stopped at the iteration limit, before stagnation
 };
 
-// `near`: the system where the step to `start` began; regular.
+// `near`: regular linearisation at the start of the step to `start`.
 Attempt newton(const System& system, const Loading& loading, const Eigen::VectorXd& start,
                const Linearisation& near, const Options& options, Counts& counts);
 

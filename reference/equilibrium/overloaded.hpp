@@ -1,4 +1,4 @@
-// One function a kind: a kind that is forgotten does not compile.
+// Visitor from one lambda per variant alternative: a missing alternative does not compile.
 #pragma once
 
 namespace elastocheck::reference::equilibrium {

@@ -1,4 +1,4 @@
-// What the joints have to carry where somebody else says the bodies are.
+// Joint reactions for given poses.
 #include <limits>
 
 #include "reference/equilibrium/derivatives.hpp"

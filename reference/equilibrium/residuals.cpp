@@ -1,4 +1,4 @@
-// Judging a state, whoever found it.
+// Residuals of a state from any leg.
 #include <Eigen/QR>
 #include <algorithm>
 
@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Frames = std::vector<Frame<double>>;
 
-// The larger of two sizes; a NaN is larger than anything.
+// Maximum of two sizes; NaN counts as largest.
 void raise(double& size, double to) {
     if (std::isnan(size)) return;
     if (!(to <= size)) size = to;
@@ -44,8 +44,8 @@ struct Judge {
     }
 };
 
-// What a joint's constraints push with, one column a row and unit
-// reaction, as (force; moment about `at` / L) [6 × rows].
+// Wrenches that the constraints of a joint can transmit, one column per row and unit reaction, as
+// (force; moment about `at` / L) [6 × rows].
 MatrixXd transmitted_by(const Judge& judge, std::size_t joint, const Vector3d& at) {
     MatrixXd columns(6, 0);
     const auto& constraints = judge.system.model->constraints;
@@ -80,8 +80,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         judge.constraints[static_cast<std::size_t>(model.constraints[c].joint)].push_back(c);
     Residuals worst;
 
-    // A quaternion off the unit sphere is an error of direction;
-    // what follows is judged for the nearest rotation.
+    // A quaternion off the unit sphere is an error of direction; the other residuals use the
+    // nearest rotation.
     for (const auto& pose : state.poses) {
         raise(worst.direction, std::abs(pose.p.norm() - 1));
         judge.frames.push_back({pose.r - system.centre, pose.p.normalized()});
@@ -95,7 +95,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         for (int k = 0; k < rows(kind); ++k)
             raise(is_direction(kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
         if (const auto* angle = std::get_if<DirectionAtAngle>(&kind)) {
-            // The row alone is met by the opposite direction too.
+            // The row is also zero for the opposite direction.
             const double value = system.values[c].at(a);
             const Frame<double> on_j = judge.frame(j);
             const Vector3d there = std::cos(value) * direction(on_j, angle->j.u_local) +
@@ -106,7 +106,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         const auto [i, j] = bodies_of(model.elastics[e].kind);
-        const auto on = interaction(system, e, a, {}, judge.frame(i), judge.frame(j));
+        const auto on = interaction(system, e, a, 0.0, {}, judge.frame(i), judge.frame(j));
         judge.apply(i, on.i, 1);
         judge.apply(j, on.j, 1);
     }
@@ -126,14 +126,14 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         judge.apply(joint.i, on_i, +1);
         judge.apply(joint.j, on_i, -1);
 
-        // A joint without friction cannot transmit everything:
-        // what lies outside the span of its constraints counts too.
+        // A frictionless joint cannot transmit every wrench: the part outside the span of its
+        // constraints is a residual.
         const MatrixXd C = transmitted_by(judge, n, on_i.at);
         Vector6 left_over;
         left_over << on_i.force, on_i.moment / system.length;
         if (C.cols() > 0 && C.allFinite()) {
             Eigen::ColPivHouseholderQR<MatrixXd> qr;
-            qr.setThreshold(1e-9);  // of columns of size one: rows that say the same
+            qr.setThreshold(1e-9);  // for columns of size one: dependent rows
             left_over -= C * qr.compute(C).solve(left_over).eval();
         }
         raise(worst.force, Vector3d(left_over.head<3>()));

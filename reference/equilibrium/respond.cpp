@@ -12,13 +12,13 @@ namespace {
 
 using Eigen::VectorXd;
 
-// The part of what is asked that may seem unanswered by round-off.
+// Relative part of a disturbance outside the range of ∂E/∂x that counts as round-off.
 constexpr double unanswered_round_off = 1e-9;
 
-// F moves a body no farther, over L: what does has lost its stiffness but for round-off.
+// Largest displacement under F, over L: beyond it the stiffness is round-off.
 constexpr double farthest = 1e10;
 
-// All that the branch moves stands still where it is at a.
+// Freezes the branch's drivers at a.
 void stop(Affine& path, double a) { path = {path.at(a), 0}; }
 System stopped(System system, double a) {
     for (Affine& value : system.values) stop(value, a);
@@ -30,7 +30,7 @@ System stopped(System system, double a) {
     return system;
 }
 
-// The only thing that moves, at rate one, from nothing at a.
+// The disturbance as the only driver, of rate one and value zero at a.
 System disturbed(System system, const Disturbance& disturbance, double a) {
     const Model& model = *system.model;
     std::visit(
@@ -64,8 +64,8 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
                       disturbance);
 }
 
-// The reactions that leave least out of balance: E is linear in them. The second time is for what the factors of the
-// first lost in digits.
+// Reactions of least imbalance: E is linear in them. The second pass recovers digits lost in the
+// factors of the first.
 void balance(const System& system, const Loading& loading, VectorXd& x, Counts& counts) {
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
     if (n == 0 || m == 0) return;
@@ -76,9 +76,9 @@ void balance(const System& system, const Loading& loading, VectorXd& x, Counts& 
     }
 }
 
-// dx with the shortest motion, idle ones being free. Their null vectors hold reactions too, which turn along: that those
-// be short as well, as the border has it, is of no interest. Those that are reactions alone the small number takes care
-// of.
+// dx with minimum-norm motion in the idle modes. The border would minimise motion and reactions of
+// the null vectors together, which is not wanted. The small number regularises modes that consist
+// of reactions alone.
 VectorXd with_shortest_motion(const System& system, const Linearisation& at, const VectorXd& dx) {
     constexpr double nothing = 1e-14;
     if (at.modes.count() == 0) return dx;
@@ -90,7 +90,7 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
     return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
 }
 
-// With one correction, which gives back what the factors lost in digits.
+// Solution with one step of iterative refinement, which recovers digits lost in the factors.
 Rate answered(const Linearisation& at, const VectorXd& E_rate) {
     Rate rate = answer(at.bordered, E_rate);
     if (!rate.dx.allFinite()) return rate;
@@ -100,7 +100,7 @@ Rate answered(const Linearisation& at, const VectorXd& E_rate) {
     return rate;
 }
 
-// What ∂E/∂x never reaches.
+// Whether the disturbance has a part outside the range of ∂E/∂x.
 bool is_pushed(const Rate& rate, const VectorXd& E_rate) {
     return rate.mu.norm() > unanswered_round_off * E_rate.norm();
 }

@@ -1,4 +1,4 @@
-// How a state answers small disturbances, by the Jacobian of the full equations.
+// Forward sensitivity of a state to small disturbances, by the Jacobian of the full equations.
 #pragma once
 
 #include <span>
@@ -8,18 +8,21 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// (dr, dπ) of every body for a unit of each disturbance s, which stands as a driver of rate one beside all others at rest:
-// E(x; s) = 0 differentiated where s = 0,
+// (dr, dπ) of every body per unit of each disturbance s. The disturbance is a driver of rate one,
+// all other drivers at rest: E(x; s) = 0 differentiated at s = 0,
 //
 //   ∂E/∂x dx = -∂E/∂s      [n × n], n = 6 nb + m (system.hpp)
 //
-// Both derivatives by automatic differentiation, at the poses and the load factor of `state`. Its reactions are not read:
-// E is linear in them, and those that leave least out of balance are taken.
+// Both derivatives by automatic differentiation at the poses and the load factor of `state`. The
+// reactions of `state` are not used: E is linear in the reactions, and those with the least
+// imbalance are computed.
 //
-// not_finite: the state or what follows. singular: ∂E/∂x has no factors, none but round-off resists a disturbance, or what
-// the branch's own drivers ask is not reached, at a limit point. loaded_idle_mode, inconsistent_constraints: a disturbance asks what ∂E/∂x never reaches, a body or joints are
-// named. Throws std::invalid_argument as `solve` does, where a wrench acts on no body, a moved joint has no offset, or the
-// state has not one pose a body.
+// Outcomes. not_finite: the state or the result. singular: ∂E/∂x cannot be factorised, a
+// disturbance meets only round-off stiffness, or a limit point prevents the motion of the branch's
+// own drivers. loaded_idle_mode, inconsistent_constraints: a disturbance lies outside the range of
+// ∂E/∂x; the detail names a body or joints. Throws std::invalid_argument as `solve` does, and where
+// a wrench acts on no body, a moved joint has no offset, or `state` does not have one pose per
+// body.
 Response respond(const Model& model, const Branch& branch, const Equilibrium& state,
                  std::span<const Disturbance> disturbances);
 

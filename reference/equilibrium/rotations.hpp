@@ -51,10 +51,11 @@ Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& p, const Eigen::Quatern
 //
 //   J⁻¹(θ) = I - ½ θ̃ + c θ̃²,   c = (1 - (θ/2) cot(θ/2)) / θ².
 //
-// With the quaternion of A as (w, v), w ≥ 0: |v| = sin(θ/2), w = cos(θ/2), so θ = 2 v atan2(|v|, w) / |v| and
-// (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even power series, with derivatives there too:
-// atan(t)/t in t = |v|/w, and c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!).
-// At half a turn the logarithm is not unique: from 1e-6 rad before, all is NaN rather than one of two.
+// With the quaternion of A as (w, v), w ≥ 0: |v| = sin(θ/2), w = cos(θ/2), so
+// θ = 2 v atan2(|v|, w) / |v| and (θ/2) cot(θ/2) = atan2(|v|, w) w / |v|. Near θ = 0 both are even
+// power series, with derivatives there too: atan(t)/t in t = |v|/w, and
+// c = 1/12 + θ²/720 + θ⁴/30240 + ... (Bernoulli numbers B₂ₙ over (2n)!).
+// At half a turn the logarithm is not unique: within 1e-6 rad of it, all values are NaN.
 template <class T>
 struct Logarithm {
     Vec3<T> theta;
@@ -91,8 +92,9 @@ Logarithm<T> logarithm(Eigen::Quaternion<T> q) {
     return {{k * q.x(), k * q.y(), k * q.z()}, c};
 }
 
-// C with C² = A, and t = tan(|θ|/4) θ/|θ|, by which C = (I + t̃) (I - t̃)⁻¹. With the quaternion of A as (w, v), w ≥ 0,
-// that of C halves the way from 1, (1 + w, v) / √(2 + 2w), and t = v / (1 + w). NaN where the logarithm is.
+// C with C² = A, and t = tan(|θ|/4) θ/|θ|, so that C = (I + t̃) (I - t̃)⁻¹. With the quaternion of
+// A as (w, v), w ≥ 0, that of C bisects the arc from 1, (1 + w, v) / √(2 + 2w), and
+// t = v / (1 + w). NaN where the logarithm is.
 template <class T>
 struct HalfTurn {
     Eigen::Quaternion<T> p;
@@ -112,15 +114,15 @@ HalfTurn<T> half_turn(Eigen::Quaternion<T> q) {
             {q.x() / one_w, q.y() / one_w, q.z() / one_w}};
 }
 
-// Three angles of a rotation B and the axes they turn about: where B becomes exp(w̃) B, δθ_k = a_k · w.
+// Three angles of a rotation B and their axes: for a variation exp(w̃) B of B, δθ_k = a_k · w.
 template <class T>
 struct Angles {
     Vec3<T> theta;
     std::array<Vec3<T>, 3> a;
 };
 
-// The angle of (x, y) in its plane. NaN from 1e-6 rad before half a turn, where it jumps, and at the origin,
-// where it has no value.
+// Angle of (x, y) in its plane. NaN within 1e-6 rad of half a turn, where it jumps, and at the
+// origin, where it is undefined.
 template <class T>
 T plane_angle(const T& y, const T& x) {
     using std::atan2;
@@ -131,8 +133,9 @@ T plane_angle(const T& y, const T& x) {
     return atan2(y, x);
 }
 
-// A direction u (unit) of the turning body, as it looks along the axis n: of w × u, the part in the plane turns
-// u's projection v = u - (n·u) n about n by  n · (v × (w × u)) / |v|² = w · (u × (n × v)) / |v|², so
+// Axis of the angle of a rotating unit direction u in the projection along the axis n. Of w × u,
+// the in-plane part rotates the projection v = u - (n·u) n about n at the rate
+// n · (v × (w × u)) / |v|² = w · (u × (n × v)) / |v|², so
 //
 //   a = n - (n·u) v / |v|²
 template <class T>
@@ -145,13 +148,14 @@ Vec3<T> axis_of_projection(const Vec3<T>& u, int n) {
     return a;
 }
 
-// As mechanism.hpp has them. With x, y, z the axes of j in axes of i, the columns of B:
+// Angles as defined in mechanism.hpp. With x, y, z the axes of j in axes of i, the columns of B:
 //
 //   rotation_vector  δθ = J⁻¹ w, so a_k is column k of J⁻ᵀ:  e_k + ½ θ × e_k + c θ × (θ × e_k)
 //   projected        θ_x, θ_y from z along x_i, y_i; θ_z from x along z_i
-//   cardan           the turn is w = x_i δθ_x + y' δθ_y + z δθ_z, y' = (0, z_z, -z_y) / h the axis across x_i and z,
-//                    h = √(z_y² + z_z²) = cos θ_y; the a_k are dual to these three: a_x as projected, a_y = y',
-//                    a_z = (0, z_y, z_z) / h². At θ_y = ±90°, h = 0: no value.
+//   cardan           w = x_i δθ_x + y' δθ_y + z δθ_z, y' = (0, z_z, -z_y) / h normal to x_i and z,
+//                    h = √(z_y² + z_z²) = cos θ_y; the a_k are dual to these three axes:
+//                    a_x as projected, a_y = y', a_z = (0, z_y, z_z) / h². Undefined at
+//                    θ_y = ±90°, h = 0.
 template <class T>
 Angles<T> angles_of(Formulation::Angles kind, const Eigen::Quaternion<T>& B) {
     using std::sqrt;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "reference/equilibrium/account.hpp"
+#include "reference/equilibrium/settle.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
@@ -26,20 +27,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             {Outcome::not_finite, "the equations give a number that is not finite at the design pose"});
     double reach = 0;
     for (const double a : points) reach = std::max(reach, std::abs(a));
-    auto failed = advance(walk, 1);
-    if (failed) {
-        let_joints_carry(system, walk.counts);
-        Walk other = start(system, options);
-        other.counts = walk.counts;
-        const bool settled = !advance(other, 1);
-        walk.counts = other.counts;
-        if (settled) {
-            failed.reset();
-            walk.here = std::move(other.here);
-            walk.pieces = std::move(other.pieces);
-        }
-    }
-    if (!failed) failed = begin_branch(walk, reach);
+    auto failed = settle(walk, system, reach);
     for (auto a = points.begin(); a != points.end() && !failed; ++a) {
         failed = advance(walk, *a);
         if (failed) break;

@@ -1,8 +1,9 @@
-// Reference leg 1: the full nonlinear constraint and equilibrium equations, differentiated by Ceres, solved by Newton's
-// method. Its cost grows with the scene, as long as what connects the bodies is sparse.
+// Reference leg 1: full nonlinear constraint and equilibrium equations, differentiated by Ceres,
+// solved by Newton's method with continuation. The cost grows linearly with the scene as long as
+// the connections of the bodies are sparse.
 //
-// Everything is SI (m, N, N·m, rad). Nothing is kept between calls and nothing is shared: any number of
-// threads may solve and judge one model at the same time.
+// All quantities are SI (m, N, N·m, rad). No state is kept between calls: any number of threads may
+// solve and judge one model at the same time.
 #pragma once
 
 #include <span>
@@ -13,40 +14,42 @@
 namespace elastocheck::reference::equilibrium {
 
 struct Options {
-    double tolerance =
-        1e-12;  // on the largest scaled residual; a point is accepted on this, never on a solver's word
+    // on the largest scaled residual; a point is accepted by this residual, never by a solver's
+    // status
+    double tolerance = 1e-12;
     int iteration_limit = 100;  // per solve
-    int halvings = 40;          // of the whole branch: the smallest step, before the branch is given up
-    bool account =
-        false;  // every point carries its bound, and the stiffness that is left there (account.hpp)
+    // smallest step: the whole branch halved this often; then the branch counts as ended
+    int halvings = 40;
+    bool account = false;  // every point carries its error bound and remaining stiffness (account.hpp)
 };
 
-// The equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the order they
-// are to be visited: E(x; a) = 0, each warm-started from the one before. Before the first, all that stands at
-// a = 0 is settled: static loads and preloads, what the drivers hold, constraints that the design pose
-// misses.
+// Equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the
+// order of the visit: E(x; a) = 0, each warm-started from the one before. Before the first point,
+// everything present at a = 0 is settled: static loads and preloads, values held by the drivers,
+// constraints violated by the design pose.
 //
-// The path has one Equilibrium a point, or `visit` is handed it, up to the first that is not reached. It ends, whatever the points,
-// where the branch does: `branch_lost` where it turns back or steepens, `singular` where it divides or loses
-// its stability, `inconsistent_constraints` where the joints cannot be closed, by name, `loaded_idle_mode`
-// where a load meets no resistance. `not_finite` and `iteration_limit` are failures of numbers. An outcome
-// has its reason in `detail`.
+// The path has one Equilibrium per point, or passes it to `visit`, up to the first that is not
+// reached. It ends where the branch ends, independently of the points: `branch_lost` where it turns
+// back or steepens, `singular` where it bifurcates or loses stability, `inconsistent_constraints`
+// where the joints cannot be closed (named), `loaded_idle_mode` where a load acts on an unresisted
+// motion. `not_finite` and `iteration_limit` are numerical failures. `detail` has the reason of an
+// outcome.
 //
-// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves what its joint or element does
-// not have.
+// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves a quantity
+// that its joint or element does not have.
 //
-// Thread-safe: calls keep nothing between them and may share a model, as long as nobody changes it meanwhile.
+// Thread-safe: calls share nothing except a model that must not change meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options = {}, const Visit& visit = {});
 
-// How well a state, from any leg, satisfies this leg's equations at a = state.load; balances are formed from
-// Equilibrium::reactions. NaN where the state has not one pose a body and one reaction a joint. Throws as
-// `solve` does.
+// Residuals of a state from any leg in this leg's equations at a = state.load; balances use
+// Equilibrium::reactions. NaN unless the state has one pose per body and one reaction per joint.
+// Throws as `solve` does.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
-// The reactions, one a joint, that leave the least of the balances where the bodies are at these poses; of smallest size
-// where joints share a load as they like. Whoever finds poses alone is judged with them. Throws as `solve` does, and
-// unless there is one pose a body; NaN where a pose or a force is none.
+// Reactions, one per joint, with the least imbalance at these poses; of minimum norm where
+// redundant joints share a load. Used to judge legs that compute poses only. Throws as `solve`
+// does, and unless there is one pose per body; NaN where a pose or a force is NaN.
 std::vector<Wrench> reactions_at(const Model& model, const Branch& branch, double a,
                                  const std::vector<Pose>& poses);
 

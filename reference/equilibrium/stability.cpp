@@ -16,15 +16,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// What round-off leaves of an eigenvalue, over the largest entry of ∂(balance)/∂q.
+// Round-off of an eigenvalue, relative to the largest entry of ∂(balance)/∂q.
 constexpr double eigenvalue_round_off = 1e-13;
 
-// How far below its least node the parabola may go before the step is halved.
+// Share of its least node below which the parabola may not dip; otherwise the step is halved.
 constexpr double deepest_dip = 0.5;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// What of J is ∂(balance)/∂q, and Φ_q.
+// The blocks ∂(balance)/∂q and Φ_q of J.
 Sparse balance_rows(const System& system, const Sparse& J) {
     return J.topLeftCorner(6 * system.bodies, 6 * system.bodies);
 }
@@ -32,7 +32,7 @@ Sparse constraint_rows(const System& system, const Sparse& J) {
     return J.bottomLeftCorner(system.constraint_rows, 6 * system.bodies);
 }
 
-// Of the eigenvalues μ of M, as Stiffness has it.
+// Extremes of the eigenvalues μ of M, for Stiffness.
 struct Spectrum {
     double least = std::numeric_limits<double>::infinity(), modulus = least;
     int negative = 0;
@@ -48,10 +48,11 @@ struct Spectrum {
     }
 };
 
-// ---- Without M
+// ---- Definiteness without forming M
 
-// What is idle is held: of every mode, an unknown that is large in it, as stiffly as anything else. A matrix with k null
-// vectors that k such make definite has no negative eigenvalue: each adds one positive at most.
+// Idle modes are fixed by adding a stiffness to one unknown per mode in which the mode is large. By
+// inertia, k added terms create at most k positive eigenvalues, so a matrix with k null vectors
+// that becomes positive definite had no negative eigenvalue.
 std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
     std::vector<Index> held;
     for (Index k = 0; k < modes.cols(); ++k) {
@@ -66,8 +67,8 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
     return held;
 }
 
-// Whether no eigenvalue of the symmetric part of M is below -round_off; `false` may also be for too weak a ρ, beside
-// what is negative in K, or for too strong a one, beside round-off.
+// Whether no eigenvalue of the symmetric part of M is below -round_off. `false` is inconclusive: ρ
+// may be too small for the negative part of K, or so large that round-off dominates.
 bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size,
                    double round_off) {
     constexpr double strengths[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
@@ -87,8 +88,8 @@ bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle,
     return false;
 }
 
-// x = Z M⁻¹ Zᵀ b, what is idle left out of b and x: P = 1 - V (VᵀV)⁻¹ Vᵀ, V what the modes are of the bodies. Some of it
-// may be nothing, which the small number takes care of.
+// x = Z M⁻¹ Zᵀ b, with the idle modes projected out of b and x: P = 1 - V (VᵀV)⁻¹ Vᵀ, V the body
+// part of the modes. Some columns of V may be zero; the small number regularises these.
 struct Inverse {
     const Linearisation& at;
     Index n;
@@ -113,9 +114,10 @@ struct Inverse {
     }
 };
 
-// The eigenvalues of a matrix of Arnoldi's, and how much of each eigenvector is in the last of his vectors. Where an
-// energy makes M symmetric, so is H, nearly: each eigenvalue of S + N, S symmetric, is within |N| of one of S (Bauer and
-// Fike), and those of S are cheaper, and real where two are alike.
+// Ritz values of an Arnoldi matrix H, and the size of the last entry of each eigenvector. Where an
+// energy makes M symmetric, H is nearly symmetric: each eigenvalue of S + N, S symmetric, is within
+// |N| of one of S (Bauer & Fike 1960). The eigenvalues of S are cheaper, and real where two
+// coincide.
 struct Ritz {
     Eigen::VectorXcd theta;
     VectorXd last;
@@ -133,17 +135,16 @@ std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
     return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
 }
 
-// The eigenvalues of M next to zero, by Arnoldi's method on M⁻¹, of which they are the largest: the first ones, to a part
-// in 1e8, as soon as the very first is found, or `all`, which are all that are not equal where no more are free than
-// `most`.
+// Eigenvalues of M next to zero by Arnoldi's method on M⁻¹, whose largest they are: the first ones,
+// to a relative error of 1e-8, as soon as the very first has converged; or `all`, which is the
+// complete spectrum without multiplicity if at most `most` motions are free.
 std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative,
                                      bool all) {
     constexpr Index most = 200, between_looks = 4;
     constexpr double found = 1e-8, round_off = 1e-14;
     const Index size = std::min(most, free);
     MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
-    VectorXd next(
-        n);  // anything that is no eigenvector of anything: fractions of multiples of the golden ratio
+    VectorXd next(n);  // generic start vector: fractions of multiples of the golden ratio
     for (Index k = 0; k < n; ++k)
         next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
     next = inverse(next);
@@ -184,7 +185,7 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
     return std::nullopt;
 }
 
-// The self-stresses among the left null vectors: of what these are of the bodies, the combinations that are nothing.
+// Self-stresses in the left null space: combinations of its vectors whose body part is zero.
 MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
     constexpr double nothing = 1e-14;
     const Index n = 6 * system.bodies, m = system.constraint_rows;
@@ -203,7 +204,8 @@ Stiffness stiffness(const System& system, const Linearisation& at) {
     const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
     const Index free = n - (m - redundant) - (k - redundant);
     if (free == 0) return {};
-    // Constraints so near to repeating each other that J and Φ_q do not agree on how many do: nothing can be said.
+    // Nearly redundant constraints: J and Φ_q disagree on the number of dependencies, so nothing
+    // can be decided.
     if (free < 0) return {nan, nan};
     const Sparse K = -balance_rows(system, at.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
@@ -241,16 +243,17 @@ bool constraints_keep_their_side(const System& system, const Linearisation& from
     return Factors(S).sign() > 0;
 }
 
-// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),  has its
-// least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
+// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),
+// has its least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to) {
     const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
     const double round_off = std::max({from.round_off, middle.round_off, to.round_off});
     const double least = std::min({l_0, l_m, l_1});
     if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1))) return Stability::uncertain;
     if (least < -round_off) return Stability::lost;
-    // A pair of eigenvalues that became negative: through zero together, or round it as a complex pair. Where they
-    // went round, the least modulus is not small, and hardly changes over a step that is short enough.
+    // Two eigenvalues became negative: through zero together, or around it as a complex pair. In
+    // the second case the least modulus is not small, and hardly changes over a sufficiently short
+    // step.
     constexpr double hardly = 0.25;
     const bool pair = from.negative != to.negative || from.negative != middle.negative;
     if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;

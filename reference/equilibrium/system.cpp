@@ -40,9 +40,9 @@ VectorXd sum(const System& system, double a, double held, const Pieces& pieces, 
     return std::move(total.E);
 }
 
-// ---- What the drivers move
+// ---- Driven quantities
 
-// The value of a constraint that a driver may move, as the model has it.
+// Value of a constraint that a driver may move, as in the model.
 double value_of(const ConstraintKind& kind) {
     return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
                                  [](const PointInPlane& c) { return c.offset; },
@@ -112,7 +112,7 @@ void set_paths(System& system) {
         }
 }
 
-// Whether work depends on the way that is gone.
+// Whether the work of a load is independent of the path (the load has a potential).
 bool has_energy(const LoadKind& load) {
     return std::visit(
         overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
@@ -134,7 +134,7 @@ void set_formulations(System& system) {
     }
 }
 
-// From the value that stands at a = 0 to where u_i is drawn between x_j and y_j.
+// Sets System::turns: from the value at a = 0 to the design angle of u_i between x_j and y_j.
 void set_turns(System& system) {
     const VectorXd x = design_unknowns(system);
     for (std::size_t c = 0; c < system.values.size(); ++c) {
@@ -152,7 +152,7 @@ void set_turns(System& system) {
 
 // ---- Scales
 
-// Every point at which something is attached or acts, at the design pose.
+// Every attachment point and load point in the design pose.
 std::vector<Vector3d> hardpoints(const System& system) {
     std::vector<Vector3d> points;
     const auto add = [&](BodyId body, const Vector3d& s_local) {
@@ -184,7 +184,8 @@ double force_of(const LoadKind& load, double length) {
                       load);
 }
 
-// The deformation, over L, whose force is reckoned with: its round-off is that of stiffness times length.
+// Reference deformation over L for the force scale: round-off of stiff elements is stiffness times
+// length.
 constexpr double usual_deformation = 0.01;
 
 double force_of(const ScalarLaw& law, double length) { return steepest(law) * (usual_deformation * length); }
@@ -210,7 +211,7 @@ double force_of(const SpatialLaw& law, double length) {
                       law);
 }
 
-// The larger size at either end of the way from a = 0 to ±a.
+// Larger absolute value at either end of the range from a = 0 to ±a.
 double size_of(const Affine& path, double a) { return std::abs(path.start) + std::abs(path.rate * a); }
 
 double force_scale(const System& system, double a) {
@@ -246,7 +247,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
 
     const auto places = hardpoints(system);
     for (const auto& p : places) system.centre += p / static_cast<double>(places.size());
-    // Points that nothing but rounding parts give no length.
+    // Points that differ only by rounding give no length.
     constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
     double radius = 0, reach = 0;
     for (const auto& p : places)
@@ -261,7 +262,7 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     const double force = force_scale(system, a);
     if (std::isfinite(force) && force > 0) system.force = force;
 
-    // What is stored at the design pose, in the scale so far.
+    // Elastic forces stored in the design pose, in the present scale.
     system.at_design = held_at_design(system);
     const double stored = system.at_design.head(6 * system.bodies).lpNorm<Eigen::Infinity>();
     if (std::isfinite(stored) && stored > 1) {
@@ -272,6 +273,22 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
 }
 
 VectorXd held_at_design(const System& system) { return sum(system, 0, 1, {}, design_unknowns(system)); }
+
+Vector6 stored_at_design(const System& system, std::size_t e) {
+    const VectorXd x = design_unknowns(system);
+    const auto [i, j] = bodies_of(system.model->elastics[e].kind);
+    const Vector6 d = deformations(system, e, 0., frame_of(system, x, i), frame_of(system, x, j));
+    return std::visit(
+        overloaded{[&](const AxialSpring& spring) {
+                       Vector6 pull = Vector6::Zero();
+                       pull[0] = gradient(spring.law, d[0]);
+                       return pull;
+                   },
+                   [&](const Bushing& bushing) {
+                       return Vector6(gradient(bushing.law, d) + preload_at(system.elements[e], 0.));
+                   }},
+        system.model->elastics[e].kind);
+}
 
 Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
     if (body == ground) return ground_frame(system);
@@ -345,7 +362,7 @@ double largest(const VectorXd& E) {
 
 namespace {
 
-// How far B is from where the angles end, less than the least of these [rad].
+// Distance of B from the nearest singularity of the angles [rad].
 double short_of_the_end(const Formulation& formulation, bool rotational, const Eigen::Quaterniond& B) {
     using Kind = Formulation::Angles;
     constexpr double pi = EIGEN_PI;
@@ -417,7 +434,8 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         auto& wrench = state.reactions[static_cast<std::size_t>(constraint.joint)];
         const Vector3d at = position(frame_of(system, x, joint.at.body), joint.at.s_local);
-        const double sign = i == joint.i ? +1 : -1;  // the joint's first body may be the constraint's second
+        // the first body of the joint may be the second of the constraint
+        const double sign = i == joint.i ? +1 : -1;
         wrench.force += sign * h.reaction.force;
         wrench.moment += sign * (h.reaction.moment + cross(Vector3d(h.reaction.at - at), h.reaction.force));
         row += rows(constraint.kind);

@@ -1,19 +1,20 @@
-// The square system of this leg: balance of every body and all constraints, scaled to numbers of order one.
+// Square system of this leg: force and moment balance of every body and all constraints, scaled to
+// order one.
 //
-// Unknowns x [7 nb + m]: per body (r - centre) / L and the quaternion (x, y, z, w), then the reactions R of
-// the constraint rows over F, or F L where a row holds a direction. A step dx [n], n = 6 nb + m, has per body
-// (δr / L, δπ) instead. Residuals E [n], in this order:
+// Unknowns x [7 nb + m]: per body (r - centre) / L and the quaternion (x, y, z, w), then the
+// reactions R of the constraint rows over F, or F L where a row holds a direction. A step dx [n],
+// n = 6 nb + m, has per body (δr / L, δπ) instead. Residuals E [n], in this order:
 //
 //   per body   Σ forces / F,  Σ moments about its origin / (F L)
 //   per row    Φ / L, or Φ where it is a cosine
 //
-// L is the radius of the model about `centre`, F the largest of what is applied, of what is stored at the
-// design pose and of what the stiffest element makes of a hundredth of L: then the round-off of stiff
-// elements stays well below the tolerance, whatever moves the branch, whatever the units and wherever the
-// ground frame sits.
+// L is the radius of the model about `centre`. F is the largest of the applied forces, the elastic
+// forces in the design pose and the force of the stiffest element at a deformation of a hundredth
+// of L. With this F the round-off of stiff elements stays well below the tolerance, for any driver,
+// units and ground frame.
 //
-// All that a driver may move, static or not, stands as start + rate·a. So E is a function of (x, a) like any
-// other, and ∂E/∂a comes out of the same automatic differentiation as ∂E/∂x.
+// Every quantity that a driver may move, static or not, is start + rate·a. So E is a function of
+// (x, a), and ∂E/∂a comes from the same automatic differentiation as ∂E/∂x.
 #pragma once
 
 #include <array>
@@ -33,14 +34,17 @@ struct Affine {
     }
 };
 
-// What an element is along the branch; an element uses the one that its kind has.
+// Driven quantities of an element along the branch; only the one of its kind is used.
 struct ElementPath {
     Affine free_length;             // of a spring [m]
     std::array<Affine, 6> preload;  // of a bushing [N, N·m]
-    bool rotational = false;        // whether the bushing cares how its markers are turned against each other
+    // design force of the element, ∂u/∂x or ∂u/∂e + preload, of which held · stored is subtracted
+    // while settling [N, N·m]
+    Vector6 stored = Vector6::Zero();
+    bool rotational = false;  // the bushing's forces depend on the relative rotation of its markers
 };
 
-// A load, and what multiplies it: 1 for static ones.
+// A load and its factor: 1 for static loads.
 struct LoadPath {
     LoadKind kind;
     Affine factor;
@@ -52,8 +56,9 @@ struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
     std::vector<Affine>
-        values;                 // per Model::constraints: its offset, length or angle [m, rad], if it has one
-    std::vector<double> turns;  // per Model::constraints: from such an angle to the drawn one [rad], or 0
+        values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    // per Model::constraints: from such an angle to its design value [rad], or 0
+    std::vector<double> turns;
     std::vector<ElementPath> elements;                 // per Model::elastics
     std::vector<LoadPath> loads;                       // static and driven
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
@@ -62,54 +67,63 @@ struct System {
     int bodies = 0;                                    // nb
     int constraint_rows = 0;                           // m
     bool conservative = true;                          // no follower, no formulation without energy
-    Eigen::VectorXd carried;                           // what the joints carry at the design pose [m]
-    Eigen::VectorXd at_design;                         // E there, at a = 0 [n]
-    mutable std::shared_ptr<const Pattern> pattern;  // found when J is first asked for; a system has one user
+    bool grows = false;         // loads and element forces grow as `held` falls (settle.hpp)
+    double hold = 0;            // ground springs have stiffness hold · held [F / L, F L]
+    Eigen::VectorXd carried;    // reactions of the joints at the design pose [m]
+    Eigen::VectorXd at_design;  // E there, at a = 0 [n]
+    // computed with the first J; a system is not shared between threads
+    mutable std::shared_ptr<const Pattern> pattern;
 
     int unknowns() const { return 7 * bodies + constraint_rows; }
     int equations() const { return 6 * bodies + constraint_rows; }
 };
 
-// What is asked of the system: E(x; a, held) = held · at_design. With held = 1 the design pose is an
-// equilibrium because somebody holds it; letting go, to held = 0, settles all that stands at a = 0: static
-// loads and preloads, what the drivers hold, constraints that the design pose misses. An angle is let go of
-// as an angle, value + held · turn: its row is a sine, which would let go to the nearer of two opposite
-// directions.
+// Equation to be solved: E(x; a, held) = held · at_design. With held = 1 the design pose is an
+// equilibrium. Towards held = 0 everything that is present at a = 0 is applied: static loads,
+// preloads, held values of drivers, and constraints that the design pose does not satisfy
+// (settle.hpp). A driven angle changes as value + held · turn: its row is a sine, and scaling the
+// row instead would lead to the nearer of two opposite directions.
 //
-// `pieces` names the piece of its curve that each deformation is on, per Model::elastics, so that E is smooth
-// whatever the knots; empty: each by itself.
+// `pieces`: piece of its curve for each deformation, per Model::elastics, so that E is smooth
+// across knots; empty: the piece that contains the deformation.
 using Pieces = std::vector<ElementPieces>;
 struct Loading {
     double a = 0;
     double held = 0;                   // [-]
-    double a_rate = 0, held_rate = 0;  // along the way that is walked
+    double a_rate = 0, held_rate = 0;  // d/dt along the current stage
     Pieces pieces = {};
 };
 
-// `points` are values of a. Throws std::invalid_argument where the model does not stand on the branch, or a
-// driver moves what its joint or element does not have.
+// `points` are values of a. Throws std::invalid_argument where model and branch do not fit, or a
+// driver moves a quantity that its joint or element does not have.
 System make_system(const Model& model, const Branch& branch, std::span<const double> points);
+
+// E at the design pose, a = 0 and held = 1, without the term held · at_design.
+Eigen::VectorXd held_at_design(const System& system);
+// Design force of element e: ElementPath::stored.
+Vector6 stored_at_design(const System& system, std::size_t e);
 
 Frame<double> frame_of(const System& system, const Eigen::VectorXd& x, BodyId body);
 
 Eigen::VectorXd design_unknowns(const System& system);
-// With the bodies at these poses and no reactions. Throws std::invalid_argument unless there is one a body.
+// Unknowns for these poses and zero reactions. Throws std::invalid_argument unless there is one
+// pose per body.
 Eigen::VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses);
-Eigen::VectorXd held_at_design(const System& system);  // E there at a = 0, what is held left out
 Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
 Eigen::VectorXd moved(const System& system, const Eigen::VectorXd& x, const Eigen::VectorXd& dx);
 Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from, const Eigen::VectorXd& to);
 
-// The largest |δr| / L or |δπ| of a body, infinite when anything is not finite.
+// The largest |δr| / L or |δπ| of a body, infinite when any entry is not finite.
 double pose_size(const System& system, const Eigen::VectorXd& dx);
-double largest(const Eigen::VectorXd& E);  // absolute entry, NaN when anything is not finite
+// largest absolute entry, NaN when any entry is not finite
+double largest(const Eigen::VectorXd& E);
 
-// A bushing that is turned nearly to where its angles, or its frame in the middle, end: "bushing 'x' is turned by
-// half a turn, where its rotation has no value", or empty.
+// Message about a bushing close to the singularity of its angles or of its middle frame: "bushing
+// 'x' is turned by half a turn, where its rotation has no value", or empty.
 std::string bushing_without_angles(const System& system, const Eigen::VectorXd& x);
 
-// "1500 N", "-40 mm": the branch's parameter as reports show it.
+// "1500 N", "-40 mm": the branch's parameter in display units.
 std::string parameter(const Branch& branch, double a);
 
 Equilibrium state_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
@@ -127,23 +141,26 @@ Vec6<T> preload_at(const ElementPath& path, const T& a) {
     return preload;
 }
 
-// What element e does to its two bodies.
+// Actions of element e on its two bodies.
 template <class T>
-OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const Pieces& pieces,
+OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& held, const Pieces& pieces,
                       const Frame<T>& i, const Frame<T>& j) {
     const ElementPath& path = system.elements[e];
     const ElementPieces& on = pieces.empty() ? all_by_themselves : pieces[e];
     return std::visit(overloaded{[&](const AxialSpring& spring) {
-                                     return interaction(spring, path.free_length.at(a), on[0], i, j);
+                                     const T preload = system.grows ? T(-held * path.stored[0]) : T(0.0);
+                                     return interaction(spring, path.free_length.at(a), preload, on[0], i, j);
                                  },
                                  [&](const Bushing& bushing) {
-                                     return interaction(bushing, preload_at(path, a), path.rotational, on, i,
-                                                        j);
+                                     Vec6<T> preload = preload_at(path, a);
+                                     if (system.grows)
+                                         for (int k = 0; k < 6; ++k) preload[k] -= held * path.stored[k];
+                                     return interaction(bushing, preload, path.rotational, on, i, j);
                                  }},
                       system.model->elastics[e].kind);
 }
 
-// What the law of element e sees: ℓ - ℓ₀ first, or e - e₀.
+// Deformation that enters the law of element e: ℓ - ℓ₀ as first entry, or e - e₀.
 template <class T>
 Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Frame<T>& i, const Frame<T>& j) {
     const ElementPath& path = system.elements[e];
@@ -170,16 +187,17 @@ Holding<T> holding(const System& system, std::size_t c, const T& a, const T& hel
 
 // ---- Assembly, for double and for Jets
 
-// One term of the system: the bodies it couples, and the constraint rows whose reactions enter.
+// One term of the system: the bodies it couples, and its constraint rows, whose reactions enter.
 struct Part {
     BodyId i = ground, j = ground;
     int row = 0, rows = 0;
-    bool directions = false;  // are what its rows hold: wherever the bodies are, and with moments only
+    // its rows constrain directions: independent of the positions, with moments only
+    bool directions = false;
 };
 
-// `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)` its
-// scaled reactions; `sink.balance(part, body, force, moment)` and `sink.constraint(part, k, Phi)` take the
-// scaled terms, to be summed.
+// `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
+// its scaled reactions; `sink.balance(part, body, force, moment)` and
+// `sink.constraint(part, k, Phi)` take the scaled terms, to be summed.
 template <class T, class Source, class Sink>
 void assemble(const System& system, const T& a, const T& held, const Pieces& pieces, const Source& source,
               Sink& sink) {
@@ -199,7 +217,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{i, j};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
-        const auto on = interaction(system, e, a, pieces, frame_i, frame_j);
+        const auto on = interaction(system, e, a, held, pieces, frame_i, frame_j);
         apply(part, i, frame_i, on.i, T(+1.0));
         apply(part, j, frame_j, on.j, T(+1.0));
     }
@@ -208,8 +226,18 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         if (part.i == ground) continue;
         const Frame<T> body = source.frame(part, 0);
         apply(part, part.i, body, std::visit([&](const auto& k) { return on_body(k, body); }, load.kind),
-              load.factor.at(a));
+              system.grows ? T(load.factor.at(a) * (1.0 - held)) : load.factor.at(a));
     }
+
+    if (system.hold != 0)
+        for (int body = 0; body < system.bodies; ++body) {
+            const Part part{body, ground};
+            const Frame<T> frame = source.frame(part, 0);
+            const Pose& drawn = model.bodies[static_cast<std::size_t>(body)].design;
+            apply(part, body, frame,
+                  drawn_back(frame, Eigen::Vector3d(drawn.r - system.centre), drawn.p, system.length),
+                  T(held * (system.hold * system.force)));
+        }
 
     int row = 0;
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {

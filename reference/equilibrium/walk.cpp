@@ -5,45 +5,51 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/equilibrium/resisted.hpp"
+
 namespace elastocheck::reference::equilibrium {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The chord and the tangents at its ends may be this far apart, over the chord.
+// Largest difference of the chord and the tangents at its ends, over the chord.
 constexpr double straight = 0.25;
 
-// Steps of this part of the model's size are not argued about: their chord is round-off.
+// Below this share of the model's size the chord is round-off and is not tested.
 constexpr double too_short_to_bend = 1e-6;
 
-// The longest step [L or rad]: a body turned further looks different from all sides. One that is moved only may go
-// farther, where the way has been straight: as far as it has bent, were it to bend on, this part of it.
+// Longest step [L or rad]. A body that only translates may go farther on a straight path: as long
+// as the second-order term of the predictor is at most the part `bent` of this length.
 constexpr double longest_step = 0.2;
 constexpr double bent = 0.1;
 
-// A further Newton step from an accepted state is at most this: a small residual alone says little about soft
-// directions beside stiff ones.
+// Largest further Newton step from an accepted state: a small residual does not bound the error in
+// soft directions beside stiff ones.
 constexpr double last_correction = 1e-8;
 
-// What the joints hold is known to this, and nothing is said of a state that it moves farther than a last correction. Where
-// a mechanism divides, the numbers of the scene, rounded, lead over from one curve to the other within the root of it.
+// Rounding of the constrained quantities: a state that it moves by more than a last correction is
+// not judged. At a bifurcation of a mechanism, rounding ε of the scene's numbers connects the two
+// curves within a distance √ε.
 constexpr double held = 2e-15;
 
-// The part of a load that an idle mode may seem to carry by round-off.
+// Relative part of a load on an idle mode that counts as round-off.
 constexpr double unanswered_round_off = 1e-9;
 
-// However close the points, a step between two is halved this often before the branch is given up.
+// However close the points, a step between two of them may be halved at least this often.
 constexpr int least_halvings = 6;
 
-// Trials to find a knot before the step is shortened as any other; each is h⁴ better than the one before.
+// Trials to locate a knot before the step is shortened like any other; the error of each is O(h⁴)
+// of the previous.
 constexpr int most_aims = 20;
 
-// Steps from one point asked for to the next before the branch is called too long: some sixty turns, or four hundred L.
+// Steps between two requested points before the branch counts as too long: about sixty turns, or
+// four hundred L.
 constexpr int most_steps = 2000;
 
-// How far past the smallest step the branch is looked for before it is called lost: the first such step, by how much the
-// next ones are longer, and how many. What is singular within 1e-12 of the way shows the side that it came to farther off.
+// Search past the smallest step before the branch counts as lost: length of the first probe in
+// smallest steps, growth factor, number of probes. A point that is singular within 1e-12 of the
+// stage shows its other side only farther on.
 constexpr double past_the_end = 3, farther = 4;
 constexpr int looks = 14;
 
@@ -53,6 +59,8 @@ Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) 
     station.x = std::move(x);
     Derivatives by = derivatives(walk.system, loading_at(walk, t), station.x, walk.counts);
     station.linearised = linearise(std::move(by.J), last, walk.counts);
+    if (station.linearised.modes_are_new)
+        free_what_is_resisted(walk.system, loading_at(walk, t), station.x, station.linearised, walk.counts);
     station.stiffness = stiffness(walk.system, station.linearised);
     station.E = std::move(by.E);
     station.E_rate = std::move(by.E_rate);
@@ -63,13 +71,13 @@ Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) 
     return station;
 }
 
-// How the tangent has turned since the station before, over h: what a step bends.
+// Second-order term of the predictor over h, from the change of the tangent since the last station.
 std::optional<VectorXd> bend(const Walk& walk, double h) {
     if (!walk.before || walk.before->t == walk.here.t) return std::nullopt;
     return h * h / 2 * (walk.here.tangent - walk.before->tangent) / (walk.here.t - walk.before->t);
 }
 
-// The tangent, bent as it has turned.
+// Predictor: tangent and second-order term.
 VectorXd predicted_step(const Walk& walk, double h) {
     VectorXd dx = h * walk.here.tangent;
     if (const auto more = bend(walk, h); more && more->norm() < 0.5 * dx.norm()) dx += *more;
@@ -85,7 +93,7 @@ bool is_within_reach(const Walk& walk, double h, const VectorXd& dx) {
     return true;
 }
 
-// The chord against both tangents.
+// Compares the chord with both tangents.
 bool is_continuation(const System& system, const Station& from, const Station& to) {
     const VectorXd chord = step_between(system, from.x, to.x);
     const double h = to.t - from.t, size = pose_size(system, chord);
@@ -95,7 +103,7 @@ bool is_continuation(const System& system, const Station& from, const Station& t
            apart <= std::max(straight * size, too_short_to_bend);
 }
 
-// Half way between two equilibria the cubic through both with their tangents is h⁴ from the curve,
+// Midpoint of two equilibria by the cubic Hermite interpolant, with error O(h⁴),
 //
 //   x_m = x₀ + (x₁ - x₀) / 2 + h (x₀' - x₁') / 8
 Stability stability_between(Walk& walk, const Station& from, const Station& to) {
@@ -107,8 +115,8 @@ Stability stability_between(Walk& walk, const Station& from, const Station& to) 
     return over_step(from.stiffness, stiffness(walk.system, middle), to.stiffness);
 }
 
-// Whether a continuation is on this side of every singular point. On the way from the design pose somebody
-// holds the bodies, and only the settled state is judged.
+// Whether a continuation step stays on this side of every singular point. During the homotopy from
+// the design pose the bodies are held externally, and only the settled state is judged.
 Verdict side_of(Walk& walk, const Station& next) {
     if (walk.stage == Stage::settling) return Verdict::accepted;
     if (next.linearised.modes.count() > walk.here.linearised.modes.count()) return Verdict::turned_over;
@@ -124,8 +132,8 @@ Verdict side_of(Walk& walk, const Station& next) {
     return Verdict::uncertain;
 }
 
-// Whether springs and links point where they did, nearly: on a long step one may have gone through where it has no length,
-// and the chord between two straight ways does not tell.
+// Whether springs and links nearly keep their directions: on a long step one may have passed
+// through zero length, which the chord between two straight paths does not show.
 bool directions_are_kept(const System& system, const VectorXd& from, const VectorXd& to) {
     constexpr double nearly = 0.9;  // the cosine
     const auto kept = [&](const Point& i, const Point& j) {
@@ -147,9 +155,9 @@ bool directions_are_kept(const System& system, const VectorXd& from, const Vecto
     return true;
 }
 
-// How far a rounding of all that the joints hold moves a state; its signs are those of fractions of multiples of the golden
-// ratio, which know nothing of the system.
-// What is soft answers with more, and is judged as a stiffness: as far as it has become softer it does not count.
+// Movement of a state under a rounding error of all constrained quantities; the signs come from
+// fractions of multiples of the golden ratio, which are independent of the system. A soft mode
+// moves more and is judged by its stiffness: its softening since the start is divided out.
 double moved_by_rounding(const Walk& walk, const Station& at) {
     const int m = walk.system.constraint_rows;
     VectorXd E = VectorXd::Zero(walk.system.equations());
@@ -188,8 +196,8 @@ Trial try_step(Walk& walk, double t) {
         trial.verdict = Verdict::uncertain;
     else {
         trial.verdict = side_of(walk, next);
-        // It is taken: what a correction leaves behind is its square times how much stiffer members are along than
-        // across, 1e6 and more in a chain of beams.
+        // The corrected state is kept: the error that a correction leaves is its square times the
+        // ratio of axial to lateral member stiffness, 1e6 and more in a chain of beams.
         if (VectorXd x = moved(system, next.x, further);
             largest(residual(system, loading, x)) <= walk.options.tolerance)
             next.x = std::move(x);
@@ -197,8 +205,8 @@ Trial try_step(Walk& walk, double t) {
     return trial;
 }
 
-// No step of h is believed. A singular point that a step happens to hit says nothing; past it there is the
-// branch, on the other side, or there is not.
+// No step of h is accepted. Probes beyond decide whether the branch continues past the singular
+// point on its other side; a singular point that a probe hits exactly decides nothing.
 Failure the_end(Walk& walk, double h, double t, Trial refused) {
     const auto is_clear = [](const Trial& at) {
         return at.verdict == Verdict::turned_over &&
@@ -216,8 +224,8 @@ Failure the_end(Walk& walk, double h, double t, Trial refused) {
     return failure(walk, t, refused);
 }
 
-// Onto the next piece wherever a deformation is at the end of its own and leaves it. The state stays, where it goes
-// from here changes.
+// Switches to the next piece wherever a deformation is at the end of its piece and leaves it. The
+// state stays, its tangent changes.
 std::optional<Failure> change_pieces(Walk& walk, double direction) {
     const auto where = [&] {
         const std::string a = parameter(*walk.system.branch, loading_at(walk, walk.here.t).a);
@@ -254,8 +262,8 @@ std::optional<Failure> change_pieces(Walk& walk, double direction) {
     return std::nullopt;
 }
 
-// A state at a knot may be `at_knot` past it, on the piece before. What is handed on is an equilibrium of the
-// system itself.
+// A state at a knot may be `at_knot` past it, on the old piece. The returned state is corrected to
+// an equilibrium of the system itself.
 std::optional<Failure> onto_its_own_pieces(Walk& walk) {
     constexpr int attempts = 3;
     const auto open = [&] {
@@ -282,19 +290,16 @@ std::optional<Failure> onto_its_own_pieces(Walk& walk) {
 
 Walk start(const System& system, const Options& options) {
     Walk walk{system, options};
-    walk.pieces = pieces_at(system, loading_at(walk, 0), design_unknowns(system));
-    walk.here = station_at(walk, 0, design_unknowns(system), nullptr);
+    hold(walk);
     return walk;
 }
 
-// E is linear in the reactions, and E at the design pose holds what they are to answer.
-void let_joints_carry(System& system, Counts& counts) {
-    const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
-    if (n == 0 || m == 0 || !system.at_design.allFinite()) return;
-    const Sparse J = derivatives(system, {0, 1}, design_unknowns(system), counts).J;
-    if (!is_finite(J)) return;
-    system.carried -= least_squares(J.topRightCorner(n, m), system.at_design.head(n));
-    system.at_design = held_at_design(system);
+void hold(Walk& walk) {
+    walk.stage = Stage::settling;
+    walk.length = 1;
+    walk.pieces = pieces_at(walk.system, loading_at(walk, 0), design_unknowns(walk.system));
+    walk.before.reset();
+    walk.here = station_at(walk, 0, design_unknowns(walk.system), nullptr);
 }
 
 std::optional<Failure> begin_branch(Walk& walk, double reach) {
@@ -302,7 +307,7 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
     walk.length = std::max(std::abs(walk.system.branch->to), reach);
     walk.before.reset();
     walk.here = station_at(walk, 0, walk.here.x, &walk.here.linearised);
-    // What hung on a load that has been let go of is idle only now.
+    // A motion held only by a released load becomes idle only here.
     if (std::abs(walk.here.stiffness.least) <= walk.here.stiffness.round_off)
         walk.here = station_at(walk, 0, walk.here.x, nullptr);
     walk.first_stiffness = walk.here.stiffness.least;
@@ -336,17 +341,21 @@ std::optional<Failure> advance(Walk& walk, double target) {
     double h = target - walk.here.t;
     const double smallest =
         std::min(std::ldexp(walk.length, -walk.options.halvings), std::ldexp(std::abs(h), -least_halvings));
-    std::optional<Trial> refused;  // the most telling since the last step
-    double knot = 0;               // where a piece ends before the end of the step ...
-    int aims = 0;                  // ... and how often it was aimed at: 0 where the whole step is tried
+    std::optional<Trial> refused;  // most informative trial since the last step
+    double knot = 0;               // a piece ends here, before the end of the step ...
+    int aims = 0;                  // ... number of attempts to locate it: 0 for the whole step
     int steps = 0;
     while (walk.here.t != target) {
         if (auto failed = change_pieces(walk, target > walk.here.t ? 1 : -1)) return failed;
         const double rest = target - walk.here.t;
         const double unanswered = std::abs(rest) * walk.here.mu.norm(),
                      asked = std::abs(rest) * walk.here.E_rate.norm();
-        if (unanswered > std::max(walk.options.tolerance, unanswered_round_off * asked))
-            return unanswerable(walk.system, walk.here.linearised.modes.left * walk.here.mu);
+        // A load below the tolerance is harmless on an idle motion, but not on a soft one.
+        const bool soft = walk.here.linearised.modes_are_soft;
+        if (unanswered > std::max(soft ? 0 : walk.options.tolerance, unanswered_round_off * asked)) {
+            const VectorXd left = walk.here.linearised.modes.left * walk.here.mu;
+            return soft ? too_soft(walk.system, left) : unanswerable(walk.system, left);
+        }
         if (!walk.here.tangent.allFinite())
             return Failure{Outcome::singular,
                            fmt::format("the system is singular at {}",

@@ -1,14 +1,15 @@
-// Walking along a branch: from the design pose to the settled state at a = 0, then from point to point.
+// Continuation along a branch: from the design pose to the settled state at a = 0, then from point
+// to point.
 //
-// Newton's method knows nothing of branches; past a limit point it is glad to land on whatever equilibrium
-// there is. So a step is believed only if it is a short, nearly straight piece of one curve, on which nothing
-// becomes singular: the chord between two equilibria and the tangents at both its ends agree within a
-// quarter, the Jacobian is oriented alike at both, and the stiffness stays positive over all of it
-// (stability.hpp), whatever points lie on it. Otherwise the step is halved, and if that does not help, the
-// branch has ended here.
+// Past a limit point Newton's method may converge to an equilibrium of another branch. So a step is
+// accepted only if it is a short, nearly straight piece of one curve without a singular point: the
+// chord between two equilibria and the tangents at both ends agree within a quarter, the Jacobian
+// has the same orientation at both, and the stiffness stays positive over the whole step
+// (stability.hpp). Otherwise the step is halved; if that does not help, the branch ends here. The
+// requested points do not affect these decisions.
 //
-// All that is said of one curve without singular points holds as long as every element stays on one piece of its
-// law; where a law has a knot, the branch has one too, and the walk begins again there (knots.hpp).
+// These criteria assume that every element stays on one piece of its law. At a knot of a law the
+// branch has a kink, and the continuation restarts there (knots.hpp).
 #pragma once
 
 #include <optional>
@@ -20,31 +21,32 @@
 
 namespace elastocheck::reference::equilibrium {
 
-// The way has two legs with a parameter t each: letting go of the design pose (t from 0 to 1), the branch (t
-// = a).
+// The continuation has two stages with a parameter t each: the homotopy from the design pose (t
+// from 0 to 1), and the branch (t = a).
 enum class Stage { settling, branch };
 
-// An equilibrium on the way.
+// An accepted equilibrium.
 struct Station {
     double t = 0;
     Eigen::VectorXd x;
     Linearisation linearised;
     Stiffness stiffness;
-    Eigen::VectorXd E;        // what is left [n]
+    Eigen::VectorXd E;        // remaining residual [n]
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
-    Eigen::VectorXd mu;       // what of dE/dt cannot be answered [k]
+    Eigen::VectorXd mu;       // part of dE/dt outside the range of J [k]
     std::vector<OnCurve> curves;
 };
 
 struct Walk {
     const System& system;
     const Options& options;
-    double length = 1;           // of the way in t, by which the smallest step is measured
-    double first_stiffness = 1;  // the least where the branch begins, and how fast it sets out [1/t]
+    double length = 1;  // of the stage in t, the unit of the smallest step
+    // least stiffness and size of the tangent [1/t] at the start of the branch
+    double first_stiffness = 1;
     double first_tangent = 0;
     Stage stage = Stage::settling;
-    Pieces pieces = {};  // that the walk is on
+    Pieces pieces = {};  // current pieces of the curves
     Station here = {};
     std::optional<Station> before = std::nullopt;  // on the same pieces
     Counts counts = {};
@@ -57,12 +59,12 @@ inline Loading loading_at(const Walk& walk, double t) {
 
 enum class Verdict {
     accepted,
-    out_of_reach,    // the tangent already leads too far away for one step
+    out_of_reach,    // the tangent predicts a movement too large for one step
     past_knot,       // an equilibrium of pieces that end before it
     unsolved,        // the residual stays above the tolerance
     another_branch,  // an equilibrium, but not on this branch
-    unsettled,       // on this branch, but a further Newton step would still move it
-    uncertain,       // on this branch, but what lies between is not told by its ends and middle
+    unsettled,       // on this branch, but a further Newton step is above its tolerance
+    uncertain,       // on this branch, but ends and middle do not determine the stability between
     turned_over,     // on this branch, but past a singular point
 };
 
@@ -70,7 +72,7 @@ struct Trial {
     Verdict verdict;
     Attempt attempt = {};
     Station station = {};
-    double knot = 0;  // t where the first piece ends, about
+    double knot = 0;  // approximate t at which the first piece ends
 };
 
 struct Failure {
@@ -79,22 +81,23 @@ struct Failure {
 };
 
 Walk start(const System& system, const Options& options);  // at the design pose, held
+void hold(Walk& walk);  // restarts at the design pose, with the present system
 
-// Another way to let go: the joints carry at the design pose what they can, the least reactions with the least
-// imbalance. Where somebody holds all, forces that turn with no joint are let go of, and half-way between two stable
-// states there may be an unstable one; here the way is short where the joints are what holds.
-void let_joints_carry(System& system, Counts& counts);
-
-// After settling: from a = 0 along the branch, whose points reach out to `reach`.
+// After settling: starts the branch at a = 0; its points extend to `reach`.
 std::optional<Failure> begin_branch(Walk& walk, double reach);
 
-// From here to t = target, by as few steps as it takes.
+// Continues from the current station to t = target with as few steps as possible.
 std::optional<Failure> advance(Walk& walk, double target);
 
-// Why the branch does not go on from here towards t, judged by the most telling trial.
+// Reason why the branch does not continue from the current station towards t, from the most
+// informative trial.
 Failure failure(Walk& walk, double t, const Trial& trial);
 
-// What cannot be answered, as a left null vector: a load on an idle mode, or joints against each other.
+// Reason of an unsolvable right-hand side, from its left null vector: a load on an idle mode, or
+// inconsistent joints.
 Failure unanswerable(const System& system, const Eigen::VectorXd& left);
+
+// Failure where a mode is resisted by elements but too softly for the precision of J.
+Failure too_soft(const System& system, const Eigen::VectorXd& left);
 
 }  // namespace elastocheck::reference::equilibrium

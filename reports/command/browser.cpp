@@ -31,7 +31,7 @@ std::vector<std::string> parts(const std::string& list, char between) {
     return all;
 }
 
-// As a shell would find its first word.
+// Looks up the first word as a shell does.
 bool is_there(const std::string& command) {
     const auto words = parts(command, ' ');
     if (words.empty()) return false;
@@ -57,14 +57,14 @@ std::string browser() {
 void open_in(const std::string& browser, const std::string& page) {
     const std::string address = fs::absolute(page).string();
     auto words = parts(browser, ' ');
-    bool placed = false;  // %s stands for the page, as in $BROWSER elsewhere
+    bool placed = false;  // %s is replaced by the page, as usual for $BROWSER
     for (auto& word : words)
         if (word == "%s") word = address, placed = true;
     if (!placed) words.push_back(address);
     std::vector<char*> argv;
     for (auto& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    // Its words are not ours: standard output may be a document.
+    // Its output goes to standard error: standard output may be a document.
     posix_spawn_file_actions_t streams;
     ::posix_spawn_file_actions_init(&streams);
     ::posix_spawn_file_actions_adddup2(&streams, STDERR_FILENO, STDOUT_FILENO);

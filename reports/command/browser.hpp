@@ -1,15 +1,16 @@
-// `report --open`.
+// Opens the page of `report --open` in a browser.
 #pragma once
 
 #include <string>
 
 namespace elastocheck::reports {
 
-// The program that opens pages: what $BROWSER says (the first that there is of a list with colons), else xdg-open. Throws
-// std::invalid_argument where there is none, and where CI is set: nobody looks there.
+// Browser program: the first existing one of the colon-separated list $BROWSER, else xdg-open.
+// Throws std::invalid_argument without a browser, and where CI is set.
 std::string browser();
 
-// Runs it on the page, without a shell, and waits for it. Throws std::invalid_argument where it fails.
+// Runs it on the page, without a shell, and waits for it. Throws std::invalid_argument where it
+// fails.
 void open_in(const std::string& browser, const std::string& page);
 
 }  // namespace elastocheck::reports

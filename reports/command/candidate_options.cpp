@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// "75=a.csv", or "a.csv" of no number.
+// "75=a.csv", or "a.csv" without a number.
 std::pair<int, std::string> steps_and_file(const std::string& text) {
     const auto at = text.find('=');
     int steps = 0;
@@ -49,22 +49,17 @@ std::vector<std::string> command_words(const std::string& command) {
 
 }  // namespace
 
-void add_candidate_options(CLI::App& command, CandidateRequest& request) {
-    command
-        .add_option("--candidate", request.files,
-                    "what another solver says: outputs (CSV) or states (JSON lines, CSV); STEPS=FILE where "
-                    "it has steps")
-        ->take_all()
-        ->expected(1)
-        ->check(a_file("*.csv"));
-    command.add_option("--candidate-command", request.command,
-                       "a solver to be run, without a shell: './mysolver {scene} {steps} {output}'");
-    add_number(command, "--candidate-timeout", request.timeout, 0.001, 86400,
-               "seconds after which the command is killed (default: 60)");
-    command
-        .add_option("--map", request.map,
-                    "YAML: how the candidate names its columns, their units, signs, offsets")
-        ->check(a_file("*.yaml"));
+void add_candidate_options(std::vector<Option>& options, CandidateRequest& request) {
+    options.push_back(
+        {"--candidate", TextList{&request.files, TextList::Form::repeated, a_file("*.csv")},
+         "what another solver says: outputs (CSV) or states (JSON lines, CSV); STEPS=FILE where "
+         "it has steps"});
+    options.push_back({"--candidate-command", Text{&request.command},
+                       "a solver to be run, without a shell: './mysolver {scene} {steps} {output}'"});
+    options.push_back({"--candidate-timeout", RealNumber{&request.timeout, 0.001, 86400},
+                       "seconds after which the command is killed (default: 60)"});
+    options.push_back({"--map", Text{&request.map, a_file("*.yaml")},
+                       "YAML: how the candidate names its columns, their units, signs, offsets"});
 }
 
 void check(const CandidateRequest& request, const Settings& settings) {

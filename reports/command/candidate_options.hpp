@@ -1,13 +1,13 @@
-// The options of a command that say who else is to be judged, and what came of running him.
+// Command-line options for external candidates, and their outputs.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compare/candidate.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/load_scene.hpp"
 #include "reports/document/candidate_file.hpp"
 
@@ -21,33 +21,36 @@ struct CandidateRequest {
 
     bool wanted() const { return !files.empty() || !command.empty(); }
 };
-void add_candidate_options(CLI::App& command, CandidateRequest& request);
+void add_candidate_options(std::vector<Option>& options, CandidateRequest& request);
 
-// What one file or one run has to say.
+// Output of one file or one run.
 struct CandidateOutput {
-    std::string name;  // of the file, or of the program
-    std::string file;  // that the content was read from, for messages
-    int steps = 0;     // that it is said to have, or was asked for; 0: not said
+    std::string name;  // of the file or of the program
+    std::string file;  // source of the content, for messages
+    int steps = 0;     // given or requested number of steps; 0: not given
     bool of_command = false;
     std::string content;
-    std::string failed;  // why there is no content: the command crashed, took too long, wrote nothing
+    // reason for missing content: the command crashed, took too long, wrote nothing
+    std::string failed;
     double seconds = 0, cpu = 0;  // of the command
 };
 
-// Throws std::invalid_argument for what cannot be right whatever the candidate says: before the work.
+// Throws std::invalid_argument for a request that is invalid for any candidate; called before the
+// work.
 void check(const CandidateRequest& request, const Settings& settings);
 
-// Reads the files, and runs the command once for each number of steps. What the command does wrong is no exception.
+// Reads the files, and runs the command once per number of steps. A failure of the command is not
+// an exception.
 std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
                                         const std::vector<int>& steps);
 
-// A command that did not do what it should, or wrote what cannot be read, could not be judged; a file that cannot be read
-// is bad input: throws SheetError.
+// A failed command or an unreadable output of it gives a judgement `could not judge`; an unreadable
+// file is bad input and throws SheetError.
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
                                    const compare::Tolerance& tolerance, bool asked);
 
-// The steps of the recursion, which a command is asked for where nobody says how many: of the longest branch.
+// Default number of steps for a command: those of the recursion on the longest branch.
 int steps_of(const Model& model);
 
 }  // namespace elastocheck::reports

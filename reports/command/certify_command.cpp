@@ -1,11 +1,10 @@
-#include "reports/command/certify_command.hpp"
-
+// `elastocheck certify`: proves by interval arithmetic that computed points are equilibria.
 #include <algorithm>
 #include <memory>
 
 #include "compare/certify.hpp"
 #include "recursive/diagnosis.hpp"
-#include "reports/command/arguments.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
@@ -34,7 +33,7 @@ compare::Gait gait_of(const std::string& solver) {
 
 int certify(const Request& request, const std::string& command) {
     compare::CertifyOptions options;
-    options.tolerance = compare::claim(request.tolerance);  // what is wrong with it is said before the work
+    options.tolerance = compare::claim(request.tolerance);  // throws before the work
     if (!request.folder.empty()) Staging::check(request.folder);
     for (const auto& solver : request.solvers) options.solvers.push_back(gait_of(solver));
     options.points = request.points;
@@ -60,29 +59,24 @@ int certify(const Request& request, const std::string& command) {
 
 }  // namespace
 
-CertifyCommand add_certify(CLI::App& app) {
-    auto* command = app.add_subcommand(
-        "certify", "Prove by interval arithmetic that what a solver found are equilibria, and alone");
+Command certify_command() {
     const auto request = std::make_shared<Request>();
-    command->add_option("SCENE", request->scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    add_settings(*command, request->settings);
     std::vector<std::string> known{"equilibrium", "energy"};
     for (const auto& method : recursive::methods) known.emplace_back(method.name);
-    command
-        ->add_option(
-            "--method", request->solvers,
-            "whose points: equilibrium, energy, series (default: these three), or a method of the recursion")
-        ->delimiter(',')
-        ->check(one_of(known));
-    command->add_option("--tolerance", request->tolerance,
-                        "accuracy that is to be proved (default: 1e-6mm,1e-6deg)");
-    command
-        ->add_option("--points", request->points, "of each way of a branch, besides its start (default: 20)")
-        ->check(CLI::Range(1, most_steps));
-    command->add_option("-o,--output", request->folder, "folder for result.json and certify.csv")
-        ->check(a_folder());
-    add_json(*command, request->as_json);
-    return {command, [request](const std::string& line) { return certify(*request, line); }};
+    return {
+        "certify",
+        "Prove by interval arithmetic that what a solver found are equilibria, and alone",
+        {scene_option(request->scene),
+         set_option(request->settings),
+         {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
+          "whose points: equilibrium, energy, series (default: these three), or a method of the recursion"},
+         {"--tolerance", Text{&request->tolerance},
+          "accuracy that is to be proved (default: 1e-6mm,1e-6deg)"},
+         {"--points", Integer{&request->points, 1, most_steps},
+          "of each way of a branch, besides its start (default: 20)"},
+         output_option(request->folder, "folder for result.json and certify.csv"),
+         json_option(request->as_json)},
+        [request](const std::string& line) { return certify(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

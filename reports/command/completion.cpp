@@ -25,10 +25,11 @@ std::string names_of(const std::vector<CommandGrammar>& commands) {
 
 // ---- bash: one function, a case for each option that takes a value and each command.
 
-// What sets COMPREPLY to what may stand there.
+// Statement that sets COMPREPLY for a value.
 std::string bash_offer(const Value& value) {
     switch (value.kind) {
         case Value::Kind::words:
+        case Value::Kind::similar_words:
             return fmt::format("_elastocheck_words {}",
                                for_shell(fmt::format("{}", fmt::join(value.words, " "))));
         case Value::Kind::file: return "_elastocheck_files " + for_shell(value.pattern);
@@ -98,7 +99,7 @@ complete -F _elastocheck {0}
 
 // ---- zsh: _arguments of each command.
 
-// In a specification of _arguments: brackets, colons and backslashes are its own.
+// Escapes brackets, colons and backslashes for a specification of _arguments.
 std::string zsh_text(std::string_view words) {
     std::string safe;
     for (const char c : words) {
@@ -112,7 +113,9 @@ std::string zsh_action(const OptionGrammar& option) {
     const std::string tag = zsh_text(option.value_name.empty() ? option.name : option.value_name);
     switch (option.value.kind) {
         case Value::Kind::none: return "";
-        case Value::Kind::words: return fmt::format(":{}:({})", tag, fmt::join(option.value.words, " "));
+        case Value::Kind::words:
+        case Value::Kind::similar_words:
+            return fmt::format(":{}:({})", tag, fmt::join(option.value.words, " "));
         case Value::Kind::file: return fmt::format(":{}:_files -g \"{}\"", tag, option.value.pattern);
         case Value::Kind::folder: return fmt::format(":{}:_files -/", tag);
         case Value::Kind::text: return fmt::format(":{}: ", tag);
@@ -166,7 +169,7 @@ fi
 
 // ---- fish: a line for each option of each command.
 
-// Between single quotes: fish knows \\ and \' there.
+// Single-quoted text: fish interprets \\ and \' there.
 std::string fish_text(std::string_view words) {
     std::string safe = "'";
     for (const char c : words) {
@@ -176,11 +179,13 @@ std::string fish_text(std::string_view words) {
     return safe + "'";
 }
 
-// -F: also files, which `complete -f` has taken away.
+// -F: also files, which `complete -f` has disabled.
 std::string fish_action(const Value& value) {
     switch (value.kind) {
         case Value::Kind::none: return "";
-        case Value::Kind::words: return " -x -a " + fish_text(fmt::format("{}", fmt::join(value.words, " ")));
+        case Value::Kind::words:
+        case Value::Kind::similar_words:
+            return " -x -a " + fish_text(fmt::format("{}", fmt::join(value.words, " ")));
         case Value::Kind::file:
             return " -x -a " + fish_text(fmt::format("(__fish_complete_suffix {})", value.pattern.substr(1)));
         case Value::Kind::folder: return " -x -a '(__fish_complete_directories)'";

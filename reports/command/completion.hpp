@@ -1,4 +1,4 @@
-// Shell completion of the command: commands, options, the words that an option knows, files by their kind.
+// Shell completion: commands, options, words of an option, files by their pattern.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace elastocheck::reports {
 
-// The text that bash, zsh or fish reads. Pre: `shell` is one of them.
+// Completion script for bash, zsh or fish. Pre: `shell` is one of them.
 std::string completion(const Grammar& grammar, const std::string& shell);
 
 }  // namespace elastocheck::reports

@@ -1,4 +1,5 @@
-// Where a command puts what it found: on the terminal as text, on standard output as one JSON document, in a folder.
+// Output of a command: text on the terminal, one JSON document on standard output, or files in a
+// folder.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ namespace elastocheck::reports {
 struct Delivery {
     std::string folder = {};  // -o, or the file of `solve`; empty: none
     bool as_json = false;
-    std::string command = {};  // as it was given, for the document
+    std::string command = {};  // command line as given, for the document
 
     bool wants_document() const { return as_json || !folder.empty(); }
     void say(std::string_view text) const {
@@ -21,11 +22,11 @@ struct Delivery {
     }
 };
 
-// One document, and nothing else, on standard output.
+// Writes one document, and nothing else, to standard output.
 void print_document(const nlohmann::ordered_json& document);
 
-// The result document of one scene: in the folder, with curves.csv and `tables` beside it, in one step; on standard
-// output; or both.
+// Writes the result document of one scene: to the folder, with curves.csv and `tables` beside it,
+// in one step; to standard output; or both.
 void deliver(const Delivery& delivery, nlohmann::ordered_json scene, std::vector<NamedContent> tables);
 
 }  // namespace elastocheck::reports

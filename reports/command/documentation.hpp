@@ -1,12 +1,13 @@
-// Where the documentation is that this program came with.
+// Location of the documentation of this program.
 #pragma once
 
 #include <string>
 
 namespace elastocheck::reports {
 
-// A file of the sources, by its name there: as installed (PREFIX/share/doc/elastocheck/NAME), where this program is one
-// that was; in the tree that it was built in; or, of a program that was copied away from both, its name.
+// Path of a source file by its name in the tree: the installed one
+// (PREFIX/share/doc/elastocheck/NAME) for an installed program; the one in the source tree for a
+// program in its build tree; else only its name.
 std::string documentation(const std::string& name);
 
 }  // namespace elastocheck::reports

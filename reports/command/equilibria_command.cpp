@@ -1,13 +1,16 @@
-#include "reports/command/equilibria_command.hpp"
-
+// `elastocheck equilibria`: multiple equilibria at one load, each proved, and their relation to the
+// branch.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include "compare/find_all.hpp"
 #include "models/reader/words.hpp"
+#include "reports/command/command.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/load_scene.hpp"
 #include "reports/document/document.hpp"
@@ -16,6 +19,15 @@
 
 namespace elastocheck::reports {
 namespace {
+
+struct Request {
+    std::string scene;
+    Settings settings;
+    std::string branch;  // empty: the first
+    double at = 0;       // of its parameter, in display units: N, N·m, mm, deg
+    double turned = 90;  // excludes states with a body rotated further [deg]
+    bool as_json = false;
+};
 
 const Branch& branch_named(const Model& model, const std::string& name) {
     if (name.empty()) return model.branches.front();
@@ -28,25 +40,8 @@ const Branch& branch_named(const Model& model, const std::string& name) {
                                             reader::did_you_mean(name, names, "branches")));
 }
 
-}  // namespace
-
-CLI::App* add_equilibria_command(CLI::App& app, EquilibriaRequest& request) {
-    auto* command = app.add_subcommand(
-        "equilibria", "All equilibria that can be found at one load, each proved, and what they mean");
-    command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    constexpr double any = std::numeric_limits<double>::infinity();
-    add_number(*command, "--at", request.at, -any, any,
-               "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg")
-        ->required();
-    command->add_option("--branch", request.branch, "name of the branch (default: the first)");
-    add_number(*command, "--turned", request.turned, 0, 180,
-               "list none with a body turned by more [deg] (default: 90)");
-    add_settings(*command, request.settings);
-    return command;
-}
-
-int equilibria(const EquilibriaRequest& request, const Delivery& delivery,
-               const std::function<void(std::string_view)>& progress) {
+// Exit code 0: the branch reaches this value and all found equilibria are proved; else 3.
+int equilibria(const Request& request, const Delivery& delivery) {
     if (!std::isfinite(request.at)) throw std::invalid_argument("--at: not a finite number");
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.branch);
@@ -63,6 +58,26 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery,
         print_document(document);
     }
     return all.outcome == Outcome::converged && all.proved ? fine : could_not_judge;
+}
+
+}  // namespace
+
+Command equilibria_command() {
+    const auto request = std::make_shared<Request>();
+    constexpr double any = std::numeric_limits<double>::infinity();
+    return {"equilibria",
+            "All equilibria that can be found at one load, each proved, and what they mean",
+            {scene_option(request->scene),
+             {"--at", RealNumber{&request->at, -any, any},
+              "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg", true},
+             {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
+             {"--turned", RealNumber{&request->turned, 0, 180},
+              "list none with a body turned by more [deg] (default: 90)"},
+             set_option(request->settings),
+             json_option(request->as_json)},
+            [request](const std::string& line) {
+                return equilibria(*request, {.as_json = request->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

@@ -1,4 +1,4 @@
-// What the command's exit code means.
+// Exit codes of the command.
 #pragma once
 
 namespace elastocheck::reports {

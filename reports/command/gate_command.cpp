@@ -1,5 +1,5 @@
-#include "reports/command/gate_command.hpp"
-
+// `elastocheck gate`: judges scenes by their baselines, or accepts the measurements as new
+// baselines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 #include "compare/changes.hpp"
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
-#include "reports/command/arguments.hpp"
 #include "reports/command/candidate_options.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
@@ -34,7 +34,7 @@ using compare::ToleranceClass;
 struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
-    CandidateRequest candidate;  // somebody else's solver, judged on every scene
+    CandidateRequest candidate;  // external solver, judged on every scene
     std::string folder, junit, summary, kind, from, reason;
     bool accept = false, as_json = false;
     std::function<void(std::string_view)> progress;
@@ -48,10 +48,10 @@ bool says_yes(const char* variable) {
 
 bool blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
 
-// A scene and the baseline that judges it.
+// A scene and its baseline.
 struct Task {
     fs::path scene, baseline;
-    std::string no_scene;  // why no scene is known for this baseline
+    std::string no_scene;  // reason why no scene is known for this baseline
 };
 
 fs::path baseline_of(const fs::path& scene, const std::string& folder) {
@@ -89,9 +89,10 @@ std::vector<Task> tasks(const GateOptions& options) {
     return all;
 }
 
-// The scene as its baseline names it: the way there, which may lead through folders with names that nobody can write down.
+// Relative path from the baseline to the scene. It may contain folder names that are not valid
+// text.
 std::string name_beside(const Task& task) {
-    // Absolute: of a folder that is not there yet, relative() does not know where it is.
+    // Absolute, since relative() fails for a folder that does not exist yet.
     const fs::path folder = fs::absolute(task.baseline).parent_path();
     std::string name = fs::relative(fs::absolute(task.scene), folder).generic_string();
     if (const std::string wrong = flaw(name); !wrong.empty())
@@ -99,7 +100,7 @@ std::string name_beside(const Task& task) {
     return name;
 }
 
-// What this build measures of a scene, or what --from says that another did.
+// Measurement of a scene by this build, or the one given by --from.
 BaselineFile measured(const Task& task, const GateOptions& options) {
     if (!options.from.empty())
         return parse_baseline(read_whole(options.from, largest_baseline), options.from);
@@ -130,13 +131,13 @@ GatedScene unjudged(const Task& task) {
     return scene;
 }
 
-// Something of that name, be it a link that leads nowhere.
+// Whether the name exists, also as a dangling link.
 bool is_there(const fs::path& file) {
     std::error_code failed;
     return fs::symlink_status(file, failed).type() != fs::file_type::not_found;
 }
 
-// The accepted baseline; without one the scene's verdict says why.
+// The accepted baseline; without one the verdict of the scene gives the reason.
 std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
     if (!is_there(task.baseline)) {
         scene.verdict.reasons.push_back(
@@ -150,7 +151,8 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;
-    } catch (const std::runtime_error& error) {  // BaselineError, FileError: one scene's, not the whole run's
+        // BaselineError, FileError: fails this scene, not the whole run
+    } catch (const std::runtime_error& error) {
         scene.verdict.reasons.emplace_back(error.what());
         return std::nullopt;
     }
@@ -174,7 +176,8 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
                                       was.input_hash, is.input_hash, what));
 }
 
-// By the default tolerance, whatever the baseline says: a candidate is right or not, and has nothing accepted.
+// Judges by the default tolerance, independent of the baseline, since no accepted result applies to
+// a candidate.
 void judge_candidate(const Task& task, const GateOptions& options, GatedScene& scene) {
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     compare::Options how;
@@ -191,7 +194,7 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
         if (judgement.verdict != compare::Grade::fail) continue;
         std::vector<compare::Offence> offences;
         for (const auto& worst : judgement.worst)
-            if (!(worst.max <= worst.tolerance))
+            if (!(worst.max <= worst.limit))
                 offences.push_back({.branch = worst.branch,
                                     .quantity = worst.kind == compare::ReadingKind::equal_parameter
                                                     ? compare::Quantity::deviation_at_equal_parameter
@@ -199,7 +202,7 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
                                     .channel = fmt::format("{} of '{}'", worst.channel, judgement.name),
                                     .unit = symbol(worst.unit),
                                     .of_limit = true,
-                                    .was = worst.tolerance,
+                                    .was = worst.limit,
                                     .is = worst.max});
         if (offences.empty())
             scene.verdict.reasons.push_back(
@@ -218,18 +221,19 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
         if (const auto was = accepted(task, scene)) {
             judge(*was, measured(task, options), options.kind, scene);
             if (options.candidate.wanted()) judge_candidate(task, options, scene);
-            // A baseline made in the same run would find itself right.
+            // A baseline made in the same run would always agree.
             if (says_yes("CI"))
                 if (const std::string why = not_committed(task.baseline); !why.empty())
                     scene.verdict.reasons.push_back(
                         fmt::format("nobody can have reviewed {}: {}", task.baseline.string(), why));
         } else {
             compile(read_scene(task.scene,
-                               options.settings));  // a bad scene is to be told apart from a missing baseline
+                               // distinguishes a bad scene from a missing baseline
+                               options.settings));
         }
     } catch (const NotTrimmed& error) {
         scene.verdict.reasons.emplace_back(error.what());
-    } catch (const std::invalid_argument& error) {  // more than there is memory for
+    } catch (const std::invalid_argument& error) {  // more memory than available
         scene.bad_input = true;
         scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));
     } catch (const SceneError& error) {
@@ -244,8 +248,8 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
     return scene;
 }
 
-// Prints what changes, then writes. What proves nothing is not accepted, nor is what breaks an absolute
-// limit: limits are changed by hand, where a review sees it.
+// Prints the changes, then writes. An inconclusive result is not accepted, nor one that breaks an
+// absolute limit: limits are edited by hand, where a review sees the change.
 int accept_scene(const Task& task, const GateOptions& options) {
     if (!task.no_scene.empty()) {
         complain("elastocheck: {}\n", task.no_scene);
@@ -275,7 +279,8 @@ int accept_scene(const Task& task, const GateOptions& options) {
     if (!was) {
         print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
     } else {
-        auto& tolerances = is.baseline.tolerances;  // the defaults, of what the old one had none yet
+        // default tolerances for classes that the old baseline does not define
+        auto& tolerances = is.baseline.tolerances;
         for (auto& [kind, usual] : tolerances)
             if (const auto own = was->baseline.tolerances.find(kind); own != was->baseline.tolerances.end()) {
                 auto kept = own->second;
@@ -340,7 +345,7 @@ int gate(const GateOptions& options) {
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
     if (!options.from.empty() && options.scenes.size() != 1)
         throw std::invalid_argument("--from: needs exactly one SCENE");
-    // GitHub's file is there already, and other steps write to it too.
+    // GitHub's file exists already, and other steps write to it too.
     const char* given = std::getenv("GITHUB_STEP_SUMMARY");
     const bool to_append = given != nullptr && !options.summary.empty() && options.summary == given;
     if (!options.junit.empty()) check_may_write(options.junit, junit_file);
@@ -365,38 +370,30 @@ int gate(const GateOptions& options) {
 
 }  // namespace
 
-GateCommand add_gate(CLI::App& app, std::function<void(std::string_view)> progress) {
+Command gate_command() {
     const auto options = std::make_shared<GateOptions>();
-    options->progress = std::move(progress);
-    auto* command = app.add_subcommand("gate", "Judge scenes by their accepted baselines, for CI");
-    command->add_option("SCENE", options->scenes, "scene files (default: every scene of the baselines)")
-        ->check(a_file("*.yaml"));
-    add_settings(*command, options->settings);
-    command
-        ->add_option("--baseline", options->folder,
-                     "folder of the baselines (default: baselines/ beside each SCENE, or here)")
-        ->check(a_folder());
-    command->add_option("--junit", options->junit, "write JUnit XML to this file")->check(a_file("*.xml"));
-    command
-        ->add_option("--summary", options->summary,
-                     "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY")
-        ->check(a_file("*.md"));
+    options->progress = progress;
     std::vector<std::string> kinds;
-    kinds.reserve(std::size(compare::tolerance_classes));
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
-    command
-        ->add_option("--class", options->kind,
-                     "tolerances: same-build, cross-build or physical (default: by how the builds differ)")
-        ->check(one_of(kinds));
-    command
-        ->add_option("--from", options->from,
-                     "judge this measurement (a file like a baseline); nothing is solved")
-        ->check(a_file("*.json"));
-    add_candidate_options(*command, options->candidate);
-    add_json(*command, options->as_json);
-    command->add_flag("--accept", options->accept, "print what changed, then make it the baseline");
-    command->add_option("--reason", options->reason, "why, in words; with --accept");
-    return {command, [options] { return gate(*options); }};
+    std::vector<Option> list{
+        {"SCENE", TextList{&options->scenes, TextList::Form::separate, a_file("*.yaml")},
+         "scene files (default: every scene of the baselines)"},
+        set_option(options->settings),
+        {"--baseline", Text{&options->folder, a_folder()},
+         "folder of the baselines (default: baselines/ beside each SCENE, or here)"},
+        {"--junit", Text{&options->junit, a_file("*.xml")}, "write JUnit XML to this file"},
+        {"--summary", Text{&options->summary, a_file("*.md")},
+         "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY"},
+        {"--class", Text{&options->kind, one_of(kinds)},
+         "tolerances: same-build, cross-build or physical (default: by how the builds differ)"},
+        {"--from", Text{&options->from, a_file("*.json")},
+         "judge this measurement (a file like a baseline); nothing is solved"}};
+    add_candidate_options(list, options->candidate);
+    list.push_back(json_option(options->as_json));
+    list.push_back({"--accept", Flag{&options->accept}, "print what changed, then make it the baseline"});
+    list.push_back({"--reason", Text{&options->reason}, "why, in words; with --accept"});
+    return {"gate", "Judge scenes by their accepted baselines, for CI", std::move(list),
+            [options](const std::string&) { return gate(*options); }};
 }
 
 }  // namespace elastocheck::reports

@@ -1,78 +1,73 @@
 #include "reports/command/grammar.hpp"
 
-#include <sstream>
-
 namespace elastocheck::reports {
 namespace {
 
-// The name of the first check that says what to offer; the others only refuse.
-std::string offer(CLI::Option& option) {
-    for (int k = 0;; ++k) {
-        try {
-            const std::string& name = option.get_validator(k)->get_name();
-            if (name == "folder" || name.starts_with("files ") || name.starts_with("words ")) return name;
-        } catch (const CLI::OptionNotFound&) {
-            return {};
-        }
+// Description of an option's variable for completion and the manual: value, name of the value,
+// repeatability.
+struct Describer {
+    OptionGrammar& option;
+
+    void describe(Value value, const std::string& name, bool repeated = false) const {
+        option.value = std::move(value);
+        option.value_name = name;
+        option.repeated = repeated;
     }
-}
+    void operator()(const Flag&) const { describe({Value::Kind::none, {}, {}}, ""); }
+    void operator()(const Text& text) const { describe(text.value, value_name(text.value)); }
+    void operator()(const TextList& list) const {
+        describe(list.value, value_name(list.value), list.form != TextList::Form::repeated);
+    }
+    void operator()(const Integer&) const { describe({}, "INT"); }
+    void operator()(const IntegerList&) const { describe({}, "INT", true); }
+    void operator()(const RealNumber&) const { describe({}, "FLOAT"); }
+    void operator()(const Settings*) const { describe({}, "PATH=VALUE"); }
+};
 
-Value value_of(CLI::Option& option) {
-    if (option.get_type_size() == 0) return {};
-    std::istringstream said(offer(option));
-    std::string kind;
-    said >> kind;
-    Value value{Value::Kind::text, {}, {}};
-    if (kind == "folder") value.kind = Value::Kind::folder;
-    if (kind == "files") value.kind = Value::Kind::file, said >> value.pattern;
-    if (kind == "words") value.kind = Value::Kind::words;
-    for (std::string word; said >> word;) value.words.push_back(word);
-    return value;
-}
-
-OptionGrammar of(CLI::Option& option) {
+OptionGrammar of(const Option& option) {
     OptionGrammar grammar;
-    if (!option.get_snames().empty()) grammar.brief = "-" + option.get_snames().front();
-    grammar.name = option.get_positional() ? option.get_name(true) : "--" + option.get_lnames().front();
-    grammar.value = value_of(option);
-    if (grammar.value.kind != Value::Kind::none)
-        grammar.value_name = option.get_type_name().substr(0, option.get_type_name().find(':'));
-    grammar.description = option.get_description();
-    grammar.required = option.get_required();
-    grammar.repeated = option.get_items_expected_max() > 1;
+    const auto comma = option.names.find(',');
+    if (comma != option.names.npos) grammar.brief = option.names.substr(0, comma);
+    grammar.name = comma == option.names.npos ? option.names : option.names.substr(comma + 1);
+    grammar.description = option.description;
+    grammar.required = option.required;
+    std::visit(Describer{grammar}, option.target);
     return grammar;
 }
 
-std::vector<CLI::Option*> options_of(CLI::App& app) {
-    return app.get_options([](CLI::Option* option) { return !option->get_group().empty(); });
-}
-
-std::vector<CLI::App*> shown_commands(CLI::App& app) {
-    return app.get_subcommands([](CLI::App* command) { return !command->get_group().empty(); });
+OptionGrammar flag(const std::string& brief, const std::string& name, const std::string& description) {
+    OptionGrammar grammar;
+    grammar.brief = brief, grammar.name = name, grammar.description = description;
+    grammar.value.kind = Value::Kind::none;
+    return grammar;
 }
 
 }  // namespace
 
-Grammar grammar(CLI::App& app) {
-    Grammar all{.name = app.get_name(), .description = app.get_description(), .footer = app.get_footer()};
-    for (auto* option : options_of(app)) all.options.push_back(of(*option));
-    for (auto* command : shown_commands(app)) {
-        CommandGrammar one{.name = command->get_name(), .description = command->get_description()};
-        for (auto* option : options_of(*command))
-            (option->get_positional() ? one.positionals : one.options).push_back(of(*option));
+std::string value_name(const Value& value) {
+    switch (value.kind) {
+        case Value::Kind::none: return "";
+        case Value::Kind::text: return "TEXT";
+        case Value::Kind::file: return "FILE";
+        case Value::Kind::folder: return "FOLDER";
+        case Value::Kind::words:
+        case Value::Kind::similar_words: return "WORD";
+    }
+    return "";
+}
+
+Grammar grammar(const Program& program, const std::vector<Command>& commands) {
+    Grammar all{.name = program.name, .description = program.description, .footer = program.footer};
+    const OptionGrammar help = flag("-h", "--help", help_help);
+    all.options = {flag("", "--version", version_help), help};
+    for (const auto& command : commands) {
+        if (command.hidden) continue;
+        CommandGrammar one{.name = command.name, .description = command.description, .options = {help}};
+        for (const auto& option : command.options)
+            (option.names.starts_with("-") ? one.options : one.positionals).push_back(of(option));
         all.commands.push_back(std::move(one));
     }
     return all;
-}
-
-void name_values(CLI::App& app) {
-    for (auto* command : shown_commands(app))
-        for (auto* option : options_of(*command)) {
-            const Value value = value_of(*option);
-            if (value.kind == Value::Kind::file) option->type_name("FILE");
-            if (value.kind == Value::Kind::folder) option->type_name("FOLDER");
-            if (value.kind == Value::Kind::words) option->type_name("WORD");
-        }
 }
 
 }  // namespace elastocheck::reports

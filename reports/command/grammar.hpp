@@ -1,24 +1,17 @@
-// What the command line takes, read off the CLI::App that parses it and prints --help: the one source of shell completion
-// and of the manual.
+// Grammar of the command line in the form that shell completion and the manual print.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "reports/command/command.hpp"
+#include "reports/command/parse.hpp"
+
 namespace elastocheck::reports {
 
-// What may stand for a value (arguments.hpp).
-struct Value {
-    enum class Kind { none, text, file, folder, words };
-    Kind kind = Kind::none;  // none: of a flag
-    std::string pattern;     // of a file: "*.yaml"
-    std::vector<std::string> words;
-};
-
 struct OptionGrammar {
-    std::string brief, name;  // "-o", "--output"; of a positional "", "SCENE"
-    std::string value_name;   // "FOLDER"; empty of a flag
+    std::string brief, name;  // "-o", "--output"; for a positional "", "SCENE"
+    std::string value_name;   // "FOLDER"; empty for a flag
     std::string description;
     Value value;
     bool required = false, repeated = false;
@@ -32,12 +25,12 @@ struct CommandGrammar {
 struct Grammar {
     std::string name, description, footer;
     std::vector<OptionGrammar> options = {};
-    std::vector<CommandGrammar> commands = {};  // but those that are not shown
+    std::vector<CommandGrammar> commands = {};  // without the hidden ones
 };
 
-Grammar grammar(CLI::App& app);
+Grammar grammar(const Program& program, const std::vector<Command>& commands);
 
-// Calls what is to be given for an option in --help what it is: FILE, FOLDER, WORD.
-void name_values(CLI::App& app);
+// Type name of a value in --help: FILE, FOLDER, WORD, TEXT.
+std::string value_name(const Value& value);
 
 }  // namespace elastocheck::reports

@@ -1,17 +1,22 @@
-#include "reports/command/import_command.hpp"
-
+// `elastocheck import`: converts a model of another program to a scene. `elastocheck export`: the
+// reverse.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <numbers>
 #include <stdexcept>
 
+#include "compare/formulations.hpp"
+#include "compare/legs.hpp"
 #include "compare/trim.hpp"
+#include "models/compile.hpp"
 #include "models/import/export_adm.hpp"
 #include "models/import/export_chrono.hpp"
 #include "models/import/import.hpp"
 #include "models/reader/scene_file.hpp"
-#include "reports/command/arguments.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/files/files.hpp"
@@ -20,19 +25,91 @@
 namespace elastocheck::reports {
 namespace {
 
+constexpr const char* import_schema = "elastocheck/import/1";
+
+struct ImportRequest {
+    std::vector<std::string> files;
+    std::string output;  // empty: standard output
+    std::string wheel, axes;
+    std::vector<std::string> drop;
+    bool allow_missing = false;
+    bool table = false;  // table of the outcome of each file, instead of a scene
+    bool as_json = false;
+};
+struct ExportRequest {
+    std::string scene, format = "adm";
+    std::string output;       // empty: standard output
+    std::string formulation;  // "adams", "chrono": bushings are converted; empty: as they are
+    bool allow_missing = false;
+    std::vector<Setting> settings;
+};
+
 constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
+constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
+constexpr double least_told = 1e-9;      // [mm], [deg]: smaller differences are rounding
+
 importer::Options options(const ImportRequest& request) {
     return {.wheel = request.wheel,
             .drop_dynamics = !request.drop.empty(),
-            .allow_missing = request.allow_missing};
+            .allow_missing = request.allow_missing,
+            .axes = request.axes};
+}
+
+// Largest distance of the outputs of two scenes, of each unit: "0.0123 mm ('wheel_y' on branch
+// 'jounce' at 3000 N) and 0.004 deg (...)".
+std::string apart(const compare::FormulationStudy& study) {
+    struct Worst {
+        compare::Unit unit;
+        double by;
+        std::string where;
+    };
+    std::vector<Worst> list;
+    for (const auto& branch : study.branches)
+        for (const auto& output : branch.outputs) {
+            const auto& channel = study.channels[output.channel];
+            auto same = std::ranges::find(list, channel.unit, &Worst::unit);
+            if (same == list.end()) same = list.insert(list.end(), {channel.unit, -1, {}});
+            if (output.spread > same->by) {
+                same->by = output.spread;
+                same->where = fmt::format("{} on branch '{}' at {:.6g} {}", channel.name, branch.branch,
+                                          output.at, compare::symbol(branch.unit));
+            }
+        }
+    std::string text;
+    for (const auto& [unit, by, where] : list) {
+        text += text.empty() ? "" : " and ";
+        text += by < least_told ? fmt::format("less than {:g} {}", least_told, compare::symbol(unit))
+                                : fmt::format("{:.2g} {} ({})", by, compare::symbol(unit), where);
+    }
+    return text;
+}
+
+// Converts all bushings to the formulation of the other program, and adds a warning with the change
+// of the outputs by the equilibrium leg. False where that change could not be computed.
+bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
+    const auto conversion =
+        compare::converted(scene, target == "chrono" ? importer::chrono_bushing : importer::adams_bushing);
+    if (conversion.bushings.empty()) return true;
+    const auto study = compare::spread_among({{"as written", scene}, {target, conversion.scene}},
+                                             steps_of_conversion, 1, progress);
+    progress("");
+    scene = conversion.scene;
+    std::string effect = apart(study);
+    if (!effect.empty()) effect = "the outputs move by up to " + effect + ", by the equilibrium leg";
+    for (const auto& why : study.inconclusive)
+        effect +=
+            fmt::format("{}by how much the outputs move is not known: {}", effect.empty() ? "" : "; ", why);
+    notes.warn({0, fmt::format("elements {}", fmt::join(conversion.bushings, ", "))},
+               fmt::format("converted to the bushing formulation of {}: {}", target, effect));
+    return study.conclusive();
 }
 
 std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
 
-// What becomes of each file, a row each; an import that is refused is a row as well.
+// Outcome of each file, one row each, including rejected imports.
 int print_table(const ImportRequest& request) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     if (!request.as_json) print("| file | bodies | joints | elements | outcome |\n|---|---|---|---|---|\n");
@@ -66,37 +143,48 @@ int print_table(const ImportRequest& request) {
     return fine;
 }
 
-}  // namespace
+constexpr std::size_t most_bodies_settled = 200;
 
-CLI::App* add_import_command(CLI::App& app, ImportRequest& request) {
-    auto* command = app.add_subcommand(
-        "import",
-        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints .sub");
-    command->add_option("FILE", request.files, "the model (.adm, .json, .sub)")
-        ->required()
-        ->check(a_file("*"));
-    command->add_option("-o,--output", request.output, "write the scene to this file instead")
-        ->check(a_file("*.yaml"));
-    command->add_option("--wheel", request.wheel,
-                        "the part that carries the wheel, or a marker at its centre: name or id (.adm)");
-    command
-        ->add_option("--drop", request.drop,
-                     "dynamics: leave out whole what acts against motion alone, friction too")
-        ->check(one_of({"dynamics"}));
-    command->add_flag("--allow-missing", request.allow_missing,
-                      "warn of what a scene cannot represent, instead of refusing the file");
-    command->add_flag("--table", request.table, "of any number of files: only what becomes of each");
-    add_json(*command, request.as_json);
-    return command;
+// Message whether the first branch can begin: whether an equilibrium is found at a = 0, and its
+// distance from the design position. Empty for a scene without a branch or with too many bodies.
+std::string settling(const std::string& yaml) {
+    try {
+        const Model model = compile(parse_scene(yaml, "scene"));
+        if (model.branches.empty() || model.bodies.size() > most_bodies_settled) return "";
+        Branch branch = model.branches.front();
+        branch.from = 0;
+        branch.to *= 1e-6;
+        branch.steps = 1;
+        const auto path =
+            compare::walk(compare::ways_of(model, branch, 1), {.leg = compare::Leg::equilibrium});
+        if (path.points.empty())
+            return fmt::format("The drawn position does NOT settle, so no branch begins: {}: {}.",
+                               name(path.outcome), path.detail);
+        double moved = 0, turned = 0;
+        for (std::size_t k = 0; k < model.bodies.size(); ++k) {
+            const Pose &drawn = model.bodies[k].design, &rest = path.points.front().poses[k];
+            moved = std::max(moved, (rest.r - drawn.r).norm());
+            turned = std::max(turned, rest.p.angularDistance(drawn.p));
+        }
+        return fmt::format("The drawn position settles: bodies go by up to {:.3g} mm and {:.3g} deg.",
+                           1e3 * moved, turned * 180 / std::numbers::pi);
+    } catch (const SceneError&) {
+        return "";  // a scene of hardpoints alone is incomplete
+    }
 }
 
 int import(const ImportRequest& request) {
     if (request.table) return print_table(request);
     if (request.files.size() > 1)
         throw std::invalid_argument("import: one FILE at a time makes a scene; several with --table");
-    const importer::Imported result = importer::import_file(request.files.front(), options(request));
+    if (!request.output.empty()) check_may_write(request.output, scene_file);
+    importer::Imported result = importer::import_file(request.files.front(), options(request));
+    auto lines = importer::told(result.notes);
+    if (const std::string line = settling(result.yaml); !line.empty()) {
+        lines.push_back(line);
+        result.yaml.insert(result.yaml.find("\nelastocheck: 1"), importer::commented(line));
+    }
     if (!request.output.empty()) write_whole(request.output, result.yaml, scene_file);
-    const auto lines = importer::told(result.notes);
     if (request.as_json) {
         print_document({{"schema", import_schema},
                         {"files",
@@ -112,7 +200,8 @@ int import(const ImportRequest& request) {
     if (request.output.empty()) {
         print("{}", result.yaml);
         for (const auto& line : lines)
-            if (line.starts_with("Warning") || line.starts_with("MISSING"))
+            if (line.starts_with("Warning") || line.starts_with("MISSING") ||
+                line.find("NOT settle") != line.npos)
                 complain("elastocheck: {}\n", line);
         return fine;
     }
@@ -122,34 +211,67 @@ int import(const ImportRequest& request) {
     return fine;
 }
 
-CLI::App* add_export_command(CLI::App& app, ExportRequest& request) {
-    auto* command =
-        app.add_subcommand("export", "Write a scene as another program's model, trimmed: ADAMS, Chrono");
-    command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    command
-        ->add_option("--format", request.format,
-                     "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)")
-        ->check(one_of({"adm", "chrono"}));
-    command->add_option("-o,--output", request.output, "write it to this file instead")
-        ->check(a_file("*.adm *.json"));
-    command->add_flag("--allow-missing", request.allow_missing,
-                      "warn of what the other program has no element for, instead of refusing the scene");
-    add_settings(*command, request.settings);
-    return command;
-}
-
 int export_scene(const ExportRequest& request) {
-    const Scene scene = compare::trim(read_scene(request.scene, request.settings)).scene;
     const bool chrono = request.format == "chrono";
-    const importer::Exported result = chrono ? importer::export_chrono(scene, request.allow_missing)
-                                             : importer::export_adm(scene, request.allow_missing);
+    if (!request.formulation.empty() && (request.formulation == "chrono") != chrono)
+        throw std::invalid_argument(fmt::format("--formulation {}: not of --format {}; allowed: {}",
+                                                request.formulation, request.format,
+                                                chrono ? "chrono" : "adams"));
+    if (!request.output.empty()) check_may_write(request.output, chrono ? suspension_file : dataset_file);
+    Scene scene = compare::trim(read_scene(request.scene, request.settings)).scene;
+    importer::Notes notes;
+    const bool is_known = request.formulation.empty() || convert(scene, request.formulation, notes);
+    const importer::Exported result = chrono ? importer::export_chrono(scene, request.allow_missing, notes)
+                                             : importer::export_adm(scene, request.allow_missing, notes);
     if (request.output.empty())
         print("{}", result.text);
     else
         write_whole(request.output, result.text, chrono ? suspension_file : dataset_file);
     for (const auto& line : importer::told(result.notes))
         if (line.starts_with("Warning") || line.starts_with("MISSING")) complain("elastocheck: {}\n", line);
-    return fine;
+    return is_known ? fine : could_not_judge;
+}
+
+}  // namespace
+
+Command import_command() {
+    const auto request = std::make_shared<ImportRequest>();
+    return {
+        "import",
+        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints .sub",
+        {{"FILE", TextList{&request->files, TextList::Form::separate, a_file("*")},
+          "the model (.adm, .json, .sub)", true},
+         {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file instead"},
+         {"--wheel", Text{&request->wheel},
+          "the part that carries the wheel, or a marker at its centre: name or id (.adm)"},
+         {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
+          "dynamics: leave out whole what acts against motion alone, friction too"},
+         {"--axes",
+          Text{&request->axes, one_of({importer::axes_of_tables[0], importer::axes_of_tables[1],
+                                       importer::axes_of_tables[2], importer::axes_of_tables[3]})},
+          "axes of a table of hardpoints (.sub), turned to ISO 8855: x-rearward,y-right (default)"},
+         {"--allow-missing", Flag{&request->allow_missing},
+          "warn of what a scene cannot represent, instead of refusing the file"},
+         {"--table", Flag{&request->table}, "of any number of files: only what becomes of each"},
+         json_option(request->as_json)},
+        [request](const std::string&) { return import(*request); }};
+}
+
+Command export_command() {
+    const auto request = std::make_shared<ExportRequest>();
+    return {"export",
+            "Write a scene as another program's model, trimmed: ADAMS, Chrono",
+            {scene_option(request->scene),
+             {"--format", Text{&request->format, one_of({"adm", "chrono"})},
+              "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
+             {"-o,--output", Text{&request->output, a_file("*.adm *.json")}, "write it to this file instead"},
+             {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
+              "adams or chrono, as the format: convert the bushings to that program's formulation, and "
+              "say by how much the outputs move"},
+             {"--allow-missing", Flag{&request->allow_missing},
+              "warn of what the other program has no element for, instead of refusing the scene"},
+             set_option(request->settings)},
+            [request](const std::string&) { return export_scene(*request); }};
 }
 
 }  // namespace elastocheck::reports

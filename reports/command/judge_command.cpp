@@ -1,8 +1,12 @@
-#include "reports/command/judge_command.hpp"
-
+// `elastocheck judge`: judges another solver's results by the references.
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "recursive/diagnosis.hpp"
+#include "reports/command/candidate_options.hpp"
+#include "reports/command/command.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/document/candidate.hpp"
@@ -12,26 +16,24 @@
 
 namespace elastocheck::reports {
 
-CLI::App* add_judge_command(CLI::App& app, JudgeRequest& request) {
-    auto* command =
-        app.add_subcommand("judge", "Judge another solver's results by the references: pass or fail");
-    command->add_option("SCENE", request.scene, "scene file (YAML)")->required()->check(a_file("*.yaml"));
-    add_settings(*command, request.settings);
-    add_candidate_options(*command, request.candidate);
-    command
-        ->add_option("--steps", request.steps,
-                     "that the command is asked for per branch (default: as the scene says)")
-        ->check(CLI::Range(1, most_steps));
-    command->add_option("--tolerance", request.tolerance,
-                        "accuracy asked for: mm, deg, N, Nm (default: 0.01mm,0.001deg)");
-    return command;
-}
+namespace {
 
-int judge(const JudgeRequest& request, const Delivery& delivery) {
+struct Request {
+    std::string scene;
+    Settings settings;
+    CandidateRequest candidate;
+    int steps = 0;  // of the candidate's command and of the references; 0: as in the scene
+    std::string tolerance = "0.01mm,0.001deg,1%";
+    std::string folder;
+    bool as_json = false;
+};
+
+// Exit code: 0 all pass, 1 one fails, 3 none fails and one could not be judged.
+int judge(const Request& request, const Delivery& delivery) {
     if (!request.candidate.wanted())
         throw std::invalid_argument("judge: nobody to judge; give --candidate FILE or --candidate-command");
     const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
-    const bool asked = request.tolerance != JudgeRequest{}.tolerance;
+    const bool asked = request.tolerance != Request{}.tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
@@ -71,6 +73,27 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
         deliver(delivery, std::move(part), {});
     }
     return code;
+}
+
+}  // namespace
+
+Command judge_command() {
+    const auto request = std::make_shared<Request>();
+    std::vector<Option> options{scene_option(request->scene), set_option(request->settings)};
+    add_candidate_options(options, request->candidate);
+    options.insert(options.end(),
+                   {{"--steps", Integer{&request->steps, 1, most_steps},
+                     "that the command is asked for per branch (default: as the scene says)"},
+                    {"--tolerance", Text{&request->tolerance},
+                     "accuracy asked for: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
+                     "(default: 0.01mm,0.001deg,1%)"},
+                    output_option(request->folder, "folder for result.json and curves.csv"),
+                    json_option(request->as_json)});
+    return {"judge", "Judge another solver's results by the references: pass or fail", std::move(options),
+            [request](const std::string& line) {
+                return judge(*request,
+                             {.folder = request->folder, .as_json = request->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

@@ -13,9 +13,11 @@
 namespace elastocheck::reports {
 namespace {
 
-// Of one point: parameter, |Φ| and the outputs in a block of their own, and what growing by doubling leaves empty.
+// Memory of one point: parameter, |Φ| and the outputs in a separate block, and the reserve of
+// doubling growth.
 double bytes_per_row(std::size_t channels, bool written) {
-    // Measured on the McPherson strut: written 270 bytes a number on top: JSON, its text, a line of curves.csv.
+    // Measured on the McPherson strut: a written number takes 270 bytes more, for JSON, its text,
+    // and a line of curves.csv.
     constexpr double in_document = 270;
     const auto numbers = static_cast<double>(channels + 2);
     constexpr double overhead = 2 * (sizeof(double) + sizeof(std::vector<double>));

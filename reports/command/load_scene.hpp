@@ -1,4 +1,4 @@
-// A scene as every command takes it: read, trimmed, compiled.
+// Loads a scene for a command: reads, trims, compiles.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 #include "models/compile.hpp"
 #include "models/model.hpp"
 #include "models/scene.hpp"
-#include "reports/command/arguments.hpp"
+#include "reports/command/command.hpp"
 
 namespace elastocheck::reports {
 
-// A trim that was asked for and not reached, or that the second reference does not confirm: nothing is judged of a scene
-// that is not where it should be. what() reads "FILE:LINE: trim: ...".
+// A requested trim was not reached or not confirmed by the second reference; the scene is not
+// judged. what() reads "FILE:LINE: trim: ...".
 struct NotTrimmed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -25,7 +25,7 @@ struct LoadedScene {
     std::optional<compare::TrimRecord> trim;
 };
 
-// Throws SceneError, also for a trim that is no well-posed question; NotTrimmed.
+// Throws SceneError, also for an ill-posed trim; NotTrimmed.
 LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail = Detail::required);
 
 }  // namespace elastocheck::reports

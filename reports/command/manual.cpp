@@ -7,7 +7,8 @@
 namespace elastocheck::reports {
 namespace {
 
-// Text, of which nothing is a request: a backslash or a hyphen is itself, a dot or an apostrophe begins no line.
+// Escaped text without roff requests: backslash and hyphen literal, no dot or apostrophe at the
+// start of a line.
 std::string text(std::string_view words) {
     std::string roff;
     bool at_start = true;
@@ -42,7 +43,7 @@ void add(std::string& page, const OptionGrammar& option) {
     page += "\n" + text(option.description) + "\n";
 }
 
-// Lines as they stand.
+// Lines without filling.
 std::string lines(const std::string& words) {
     std::string roff;
     std::istringstream in(words);

@@ -1,4 +1,4 @@
-// The page of the manual, elastocheck(1), as roff: what --help says, of all commands.
+// Manual page elastocheck(1) in roff: the --help texts of all commands.
 #pragma once
 
 #include <string>

@@ -1,13 +1,15 @@
-#include "reports/command/new_command.hpp"
+#include "reports/command/templates.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "models/reader/words.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/text/terminal.hpp"
@@ -16,7 +18,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// What a scene file says in its field `name`.
+// Field `name` of a scene file.
 std::string_view title(std::string_view scene) {
     constexpr std::string_view field = "\nname: ";
     const auto begin = scene.find(field);
@@ -39,6 +41,13 @@ std::string_view template_text(const std::string& name) {
     return {};
 }
 
+namespace {
+
+constexpr const char* templates_schema = "elastocheck/templates/1";
+
+// Prints the template `name`; without a name, a list of all, one per line. Throws
+// std::invalid_argument for an unknown name, with the nearest known one. As JSON: schema, and
+// templates, the named one with its text.
 int new_scene(const std::string& name, bool as_json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     std::size_t longest = 0;
@@ -65,6 +74,21 @@ int new_scene(const std::string& name, bool as_json) {
     for (const auto& scene : embedded_scenes) print("{:<{}}  {}\n", scene.name, longest, title(scene.text));
     print("\nelastocheck new NAME > my.yaml\n");
     return fine;
+}
+
+}  // namespace
+
+Command new_command() {
+    struct Request {
+        std::string name;
+        bool as_json = false;
+    };
+    const auto request = std::make_shared<Request>();
+    return {"new",
+            "Print a scene to start from; without a name, which there are",
+            {{"NAME", Text{&request->name, such_as(templates())}, "of the scene to print"},
+             json_option(request->as_json)},
+            [request](const std::string&) { return new_scene(request->name, request->as_json); }};
 }
 
 }  // namespace elastocheck::reports

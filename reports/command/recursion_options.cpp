@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -12,14 +11,14 @@
 
 namespace elastocheck::reports {
 
-void add_recursion_options(CLI::App& command, RecursionRequest& request) {
-    command.add_option("--steps", request.steps, "load steps per branch (default: as the scene says)")
-        ->check(CLI::Range(1, most_steps));
-    command.add_option("--tolerance", request.tolerance,
-                       "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)");
-    command.add_option("--order", request.order, "of the series (default: 16)")->check(CLI::Range(1, 60));
-    command.add_option("--expansions", request.expansions, "of the series, at most (default: 200)")
-        ->check(CLI::Range(1, 1'000'000));
+void add_recursion_options(std::vector<Option>& options, RecursionRequest& request) {
+    options.push_back({"--steps", Integer{&request.steps, 1, most_steps},
+                       "load steps per branch (default: as the scene says)"});
+    options.push_back({"--tolerance", Text{&request.tolerance},
+                       "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)"});
+    options.push_back({"--order", Integer{&request.order, 1, 60}, "of the series (default: 16)"});
+    options.push_back({"--expansions", Integer{&request.expansions, 1, 1'000'000},
+                       "of the series, at most; as many more for each knot gone over (default: 200)"});
 }
 
 recursive::Options recursion(const RecursionRequest& request) {

@@ -1,13 +1,11 @@
-// The options of a command that say how the recursion goes.
+// Command-line options of the recursion.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "recursive/solve.hpp"
-
-namespace CLI {
-class App;
-}
+#include "reports/command/command.hpp"
 
 namespace elastocheck::reports {
 
@@ -18,10 +16,11 @@ struct RecursionRequest {
     bool arc_length = false;
 };
 
-// --steps, --tolerance, --order, --expansions; they write into `request`, which must outlive the parsing.
-void add_recursion_options(CLI::App& command, RecursionRequest& request);
+// --steps, --tolerance, --order, --expansions; they write into `request`, which must outlive the
+// parsing.
+void add_recursion_options(std::vector<Option>& options, RecursionRequest& request);
 
-// Throws std::invalid_argument for an option that the method does not have.
+// Throws std::invalid_argument for an option that does not apply to the method.
 recursive::Options recursion(const RecursionRequest& request);
 
 }  // namespace elastocheck::reports

@@ -1,5 +1,4 @@
-#include "reports/command/report_command.hpp"
-
+// `elastocheck report`: the results of all other commands as an HTML page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,8 +15,9 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "recursive/diagnosis.hpp"
-#include "reports/command/arguments.hpp"
 #include "reports/command/browser.hpp"
+#include "reports/command/candidate_options.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
@@ -44,9 +44,28 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
-using Progress = std::function<void(std::string_view)>;
 
-// The recommended configuration over the whole branch, for the figure that shows it inside the tolerance.
+constexpr const char* report_schema = "elastocheck/report/1";
+
+struct Request {
+    std::vector<std::string> scenes;
+    Settings settings;
+    std::string from;  // a result.json instead of scenes
+    std::string folder;
+    std::string measured;                  // CSV
+    std::string branch_column = "branch";  // of it
+    std::vector<std::string> cases;        // "THEIRS=OURS": name in that column = branch
+    CandidateRequest candidate;            // external solver, for one scene
+    std::string alarms;                    // JSON, results of `./dev mutate`
+    std::string stress;                    // JSON, results of `elastocheck stress`
+    std::string tolerance = "0.01mm,0.001deg,1%";
+    std::string figures = "svg";
+    bool archive = false;
+    bool as_json = false;  // write the answers as a document to standard output
+    bool open = false;     // open the finished page in a browser
+};
+
+// Error of the recommended configuration over the whole branch, for the figure with the tolerance.
 json recommended(const Model& model, const compare::Trade& trade) {
     if (!trade.recommendation) return nullptr;
     const auto& point = trade.points[trade.recommendation->point];
@@ -64,13 +83,13 @@ json recommended(const Model& model, const compare::Trade& trade) {
     return result;
 }
 
-LoadCases load_cases(const ReportRequest& request) {
+LoadCases load_cases(const Request& request) {
     LoadCases cases{request.branch_column, {}};
     for (const auto& text : request.cases) cases.names.push_back(parse_load_case(text));
     return cases;
 }
 
-json solve_scene(const std::string& file, const ReportRequest& request, const Progress& progress) {
+json solve_scene(const std::string& file, const Request& request) {
     const LoadedScene loaded = load_scene(file, request.settings);
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
@@ -105,7 +124,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
     compare::TradeOptions trade_options;
-    trade_options.tolerance = compare::parse_tolerance(request.tolerance);
+    trade_options.tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     if (request.archive) trade_options.rounds = 0;
     trade_options.progress = tell;
     const auto trade = compare::trade(model, trade_options);
@@ -114,22 +133,22 @@ json solve_scene(const std::string& file, const ReportRequest& request, const Pr
 
     document["orders"] = table_json(order_table(compare::order_study(model, {.progress = tell})));
 
-    // A million steps, as `elastocheck trade` takes them, show more of round-off and take half a minute.
+    // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.
     document["precision"] = precision_json(
         compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();
-        const auto tolerance = compare::parse_tolerance(request.tolerance);
+        const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
         for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
             const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
-                                          request.tolerance != ReportRequest{}.tolerance);
+                                          request.tolerance != Request{}.tolerance);
             document["candidates"].push_back(
                 candidate_json(judgement, comparison, sentence(judgement, comparison)));
         }
     }
     add_verdict(document, comparison.compared, reasons);
-    auto judgement = compare::assess(model, comparison, trade_options.tolerance,
-                                     request.tolerance != ReportRequest{}.tolerance);
+    auto judgement =
+        compare::assess(model, comparison, trade_options.tolerance, request.tolerance != Request{}.tolerance);
     if (!reasons.empty()) judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
     return document;
@@ -147,7 +166,7 @@ json read_alarms(const std::string& file) {
     return alarms;
 }
 
-// The map and what is wrong; the cells stay where they are.
+// Map and wrong results; without the cells.
 json read_stress(const std::string& file) {
     json stress;
     try {
@@ -162,7 +181,7 @@ json read_stress(const std::string& file) {
     return stress;
 }
 
-// Of each scene its answer, and whether it passes.
+// Answer of each scene, and whether it passes.
 json answer_document(const json& result, const std::vector<Answer>& answers, const std::string& page) {
     json scenes = json::array();
     for (const auto& answer : answers)
@@ -184,7 +203,7 @@ std::string answer_text(const std::vector<Answer>& answers, const std::string& p
                               answers.size() == 1 ? "" : "s", seconds);
 }
 
-// What differs from run to run.
+// Removes fields that differ from run to run.
 void remove_times(json& value) {
     if (value.is_object()) {
         value.erase("seconds");
@@ -194,48 +213,8 @@ void remove_times(json& value) {
         for (auto& entry : value) remove_times(entry);
 }
 
-}  // namespace
-
-CLI::App* add_report_command(CLI::App& app, ReportRequest& request) {
-    auto* command = app.add_subcommand(
-        "report", "Everything about one or more scenes as a page: verdict, figures, tables");
-    command->add_option("SCENE", request.scenes, "scene files (YAML)")->check(a_file("*.yaml"));
-    add_settings(*command, request.settings);
-    command->add_option("--from", request.from, "draw from this result.json, without solving")
-        ->check(a_file("*.json"));
-    command
-        ->add_option("-o,--output", request.folder,
-                     "folder for report.html, report.md, result.json, curves.csv, figures/")
-        ->required()
-        ->check(a_folder());
-    command->add_option("--tolerance", request.tolerance, "accuracy asked for (default: 0.01mm,0.001deg)");
-    command
-        ->add_option("--alarms", request.alarms,
-                     "results.json of seeded faults (./dev mutate), to show which alarms ring")
-        ->check(a_file("*.json"));
-    command
-        ->add_option("--stress", request.stress,
-                     "stress.json of `elastocheck stress`, to show what becomes of it at the extremes")
-        ->check(a_file("*.json"));
-    command
-        ->add_option("--measured", request.measured, "CSV of measured curves, to draw over and compare with")
-        ->check(a_file("*.csv"));
-    command->add_option("--branch-column", request.branch_column,
-                        "column of --measured that says which branch a point belongs to (default: branch)");
-    command->add_option("--case", request.cases,
-                        "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated");
-    add_candidate_options(*command, request.candidate);
-    command->add_option("--figures", request.figures, "svg (default), or pdf: PDF files beside the SVG")
-        ->check(one_of({"svg", "pdf"}));
-    command->add_flag(
-        "--archive", request.archive,
-        "only what belongs in version control: README.md, numbers.csv, figures/*.svg, without times");
-    add_json(*command, request.as_json);
-    command->add_flag("--open", request.open, "then open the page: by $BROWSER, else by xdg-open");
-    return command;
-}
-
-int report(const ReportRequest& request, const std::string& reproduce, const Progress& progress) {
+// Returns the exit code. `reproduce` is the command line as given.
+int report(const Request& request, const std::string& reproduce) {
     if (request.from.empty() == request.scenes.empty())
         throw std::invalid_argument("report: needs scene files or --from a result.json, one of the two");
     if (!request.measured.empty() && request.scenes.size() != 1)
@@ -244,19 +223,19 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         throw std::invalid_argument("report: --candidate belongs to one scene; give one");
     check(request.candidate, request.settings);
     const auto start = std::chrono::steady_clock::now();
-    // What can be wrong is said before the work, not after it.
+    // Invalid requests are rejected before the work.
     if (request.open && request.archive)
         throw std::invalid_argument("--open: not with --archive, which has no page");
     const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
     run_gnuplot(".", {"--version"});
-    (void)compare::parse_tolerance(request.tolerance);
+    (void)compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
     (void)load_cases(request);
     if (request.measured.empty() &&
-        (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
+        (request.branch_column != Request{}.branch_column || !request.cases.empty()))
         throw std::invalid_argument(
             "report: --branch-column and --case say how to read --measured; give a file");
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
@@ -273,19 +252,19 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
     } else {
         file = "result.json";
         result = document(reproduce, provenance());
-        for (const auto& scene : request.scenes)
-            result["scenes"].push_back(solve_scene(scene, request, progress));
+        for (const auto& scene : request.scenes) result["scenes"].push_back(solve_scene(scene, request));
         if (!stress.is_null()) result["stress"] = stress;
         if (!alarms.is_null()) result["alarms"] = alarms;
         if (request.archive) remove_times(result);
-        result = json::parse(result.dump());  // as a reader of the file will see it: NaN is null
+        result = json::parse(result.dump());  // as read from the file: NaN is null
     }
     const auto answers =
         write_report(result, file, request.folder,
                      {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
-    for (const auto& scene : result["scenes"])  // a candidate's verdict is the page's, as of `judge`
+    // the verdict of a candidate counts for the page, as in `judge`
+    for (const auto& scene : result["scenes"])
         if (scene.contains("candidates"))
             for (const auto& candidate : scene["candidates"]) {
                 complain("{}\n", candidate["sentence"].get<std::string>());
@@ -306,6 +285,41 @@ int report(const ReportRequest& request, const std::string& reproduce, const Pro
         print(answer_text(answers, page, elapsed.count()));
     if (request.open) open_in(opener, page);
     return code;
+}
+
+}  // namespace
+
+Command report_command() {
+    const auto request = std::make_shared<Request>();
+    std::vector<Option> options{
+        {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+         "scene files (YAML)"},
+        set_option(request->settings),
+        {"--from", Text{&request->from, a_file("*.json")}, "draw from this result.json, without solving"},
+        {"-o,--output", Text{&request->folder, a_folder()},
+         "folder for report.html, report.md, result.json, curves.csv, figures/", true},
+        {"--tolerance", Text{&request->tolerance}, "accuracy asked for (default: 0.01mm,0.001deg,1%)"},
+        {"--alarms", Text{&request->alarms, a_file("*.json")},
+         "results.json of seeded faults (./dev mutate), to show which alarms ring"},
+        {"--stress", Text{&request->stress, a_file("*.json")},
+         "stress.json of `elastocheck stress`, to show what becomes of it at the extremes"},
+        {"--measured", Text{&request->measured, a_file("*.csv")},
+         "CSV of measured curves, to draw over and compare with"},
+        {"--branch-column", Text{&request->branch_column},
+         "column of --measured that says which branch a point belongs to (default: branch)"},
+        {"--case", TextList{&request->cases, TextList::Form::separate},
+         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated"}};
+    add_candidate_options(options, request->candidate);
+    options.insert(
+        options.end(),
+        {{"--figures", Text{&request->figures, one_of({"svg", "pdf"})},
+          "svg (default), or pdf: PDF files beside the SVG"},
+         {"--archive", Flag{&request->archive},
+          "only what belongs in version control: README.md, numbers.csv, figures/*.svg, without times"},
+         json_option(request->as_json),
+         {"--open", Flag{&request->open}, "then open the page: by $BROWSER, else by xdg-open"}});
+    return {"report", "Everything about one or more scenes as a page: verdict, figures, tables",
+            std::move(options), [request](const std::string& line) { return report(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

@@ -1,22 +1,27 @@
-#include "reports/command/solve_command.hpp"
-
+// `elastocheck solve`: solves one scene by one leg or method and writes its curves as CSV.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "compare/channels.hpp"
 #include "compare/characteristics.hpp"
 #include "compare/elements.hpp"
+#include "compare/legs.hpp"
 #include "compare/outlook.hpp"
 #include "compare/rates.hpp"
 #include "models/reader/words.hpp"
 #include "recursive/diagnosis.hpp"
 #include "recursive/series/path.hpp"
+#include "reports/command/command.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
+#include "reports/command/load_scene.hpp"
+#include "reports/command/recursion_options.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -28,7 +33,15 @@ namespace {
 
 using compare::Channel;
 
-// The derivatives beside the curves: positions and angles per unit of the parameter.
+struct SolveRequest {
+    compare::Gait gait;
+    Detail detail = Detail::required;
+    std::vector<std::string> channels;  // names, or patterns with *; none: all
+    std::string rates;                  // CSV of the derivatives, by the series; empty: none
+    std::string states = {};            // JSON lines of poses, in the candidate format; empty: none
+};
+
+// Writes the derivatives in a separate file: positions and angles per unit of the parameter.
 void write_rates(const Model& model, const std::vector<Channel>& asked, const SolveRequest& request) {
     std::vector<Channel> channels;
     std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
@@ -51,18 +64,8 @@ void write_rates(const Model& model, const std::vector<Channel>& asked, const So
     csv.finish();
 }
 
-// What bushings, springs and links bear, and what costs as much as a step of a leg, is written where it is asked for by
-// name.
-std::vector<Channel> asked_for(const Model& model, const std::vector<std::string>& patterns) {
-    auto all = compare::channels(model);
-    if (patterns.empty()) return all;
-    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
-    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
-    return chosen(all, patterns);
-}
-
-}  // namespace
-
+// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
+// without a match, with the nearest name.
 std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
     if (patterns.empty()) return all;
     std::vector<Channel> list;
@@ -83,6 +86,20 @@ std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<s
     return list;
 }
 
+// Forces of bushings, springs and links, and characteristics, whose cost is comparable to a step of
+// a leg, are written only if requested by name.
+std::vector<Channel> asked_for(const Model& model, const std::vector<std::string>& patterns) {
+    auto all = compare::channels(model);
+    if (patterns.empty()) return all;
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    return chosen(all, patterns);
+}
+
+// Writes each row when its point is found, except for the branch side that is solved in reverse.
+// Invalid requests are rejected before the work. Returns the exit code; for a branch that does not
+// converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
+// output; the document contains every point, so all are stored for it.
 int solve(const std::string& file, const Settings& settings, const SolveRequest& request,
           const Delivery& delivery) {
     const auto& [leg, how, refine, every, account] = request.gait;
@@ -102,9 +119,10 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     std::optional<FileToBe> csv;
     if (!delivery.folder.empty()) csv.emplace(delivery.folder, curves_file);
     std::optional<FileToBe> states;
+    bool has_states = false;
     if (!request.states.empty()) states.emplace(request.states, states_file);
     const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : delivery.say(lines); };
-    std::vector<compare::Walked> kept;  // for the document alone
+    std::vector<compare::Walked> kept;  // only for the document
     write(curves_header(channels));
     int code = fine;
     const std::string who = leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
@@ -124,7 +142,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             ways, gait,
             [&](const Equilibrium& state) {
                 if (gait.account) add(said, state);
-                if (states) states->add(state_line(model, branch.name, state));
+                if (states) states->add(state_line(model, branch.name, state)), has_states = true;
                 return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
             },
             [&](const compare::Row& row) {
@@ -145,7 +163,10 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         code = could_not_judge;
     }
     if (csv) csv->finish();
-    if (states) states->finish();
+    if (has_states)
+        states->finish();
+    else if (states)
+        complain("{}: not written: no state was reached\n", request.states);
     if (delivery.as_json) {
         nlohmann::ordered_json part =
             scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));
@@ -155,6 +176,68 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         deliver({.as_json = true, .command = delivery.command}, std::move(part), {});
     }
     return code;
+}
+
+// Names of the legs and of the methods of the recursion.
+std::vector<std::string> solvers() {
+    std::vector<std::string> names;
+    for (const auto leg : compare::legs) names.emplace_back(name(leg));
+    for (const auto& method : recursive::methods) names.emplace_back(method.name);
+    return names;
+}
+
+// The request with its leg, and for the recursion with its options.
+SolveRequest with_solver(SolveRequest request, RecursionRequest recursion_request,
+                         const std::string& solver) {
+    const auto leg = std::ranges::find(compare::legs, solver, [](auto l) { return std::string(name(l)); });
+    if (leg == compare::legs.end()) recursion_request.method = solver;
+    request.gait.recursion = recursion(recursion_request);
+    request.gait.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
+    if (!request.rates.empty() &&
+        !std::holds_alternative<recursive::Series>(request.gait.recursion.method.kind))
+        throw std::invalid_argument("--rates: only with --method series");
+    return request;
+}
+
+}  // namespace
+
+Command solve_command() {
+    struct Given {
+        std::string scene, output, method = "published";
+        Settings settings;
+        RecursionRequest recursion;
+        SolveRequest request;
+        bool as_json = false, keep_all = false;
+    };
+    const auto given = std::make_shared<Given>();
+    std::vector<Option> options{scene_option(given->scene), set_option(given->settings),
+                                json_option(given->as_json), keep_all_option(given->keep_all)};
+    add_recursion_options(options, given->recursion);
+    options.insert(
+        options.end(),
+        {{"--method", Text{&given->method, one_of(solvers())},
+          "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive or "
+          "series; equilibrium; energy"},
+         {"--account", Flag{&given->request.gait.account},
+          "say where the stiffness that is left will be gone, as the points announce it; adaptive and "
+          "series always do, and whether they keep what they promise"},
+         {"--arc-length", Flag{&given->recursion.arc_length},
+          "series: follow the path by arc length, through limit points"},
+         {"--rates", Text{&given->request.rates, a_file("*.csv")},
+          "series: write the derivatives of travel and outputs to this CSV file"},
+         {"--states", Text{&given->request.states, a_file("*.jsonl")},
+          "write the poses of the bodies as well, as JSON lines, to this file"},
+         {"--channels", TextList{&given->request.channels, TextList::Form::commas},
+          "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters"},
+         every_option(given->request.gait.every),
+         {"-o,--output", Text{&given->output, a_file("*.csv")}, "write the CSV to this file instead"}});
+    return {"solve", "Solve a scene one way and print the curves as CSV", std::move(options),
+            [given](const std::string& line) {
+                SolveRequest request = with_solver(given->request, given->recursion, given->method);
+                request.detail = given->keep_all ? Detail::everything : Detail::required;
+                return solve(given->scene, given->settings, request,
+                             {.folder = given->output, .as_json = given->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

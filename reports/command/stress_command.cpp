@@ -1,19 +1,21 @@
-#include "reports/command/stress_command.hpp"
-
+// `elastocheck stress`: runs every leg and method on extreme scenes and prints the survival map.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 
 #include "compare/stress.hpp"
 #include "compare/trim.hpp"
 #include "models/reader/scene_file.hpp"
+#include "reports/command/command.hpp"
+#include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/load_scene.hpp"
-#include "reports/command/new_command.hpp"
+#include "reports/command/templates.hpp"
 #include "reports/document/document.hpp"
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
@@ -24,12 +26,19 @@
 namespace elastocheck::reports {
 namespace {
 
+struct Request {
+    std::vector<std::string> scenes;  // files; none: the built-in ones
+    Settings settings;
+    std::string folder;
+    bool as_json = false;
+};
+
 void add(std::vector<compare::Trial>& trials, std::vector<compare::Trial> more) {
     std::ranges::move(more, std::back_inserter(trials));
 }
 
 // The scenes of models/scenes, and those of models/extremes.
-std::vector<compare::Trial> built_in(const std::function<void(std::string_view)>& progress) {
+std::vector<compare::Trial> built_in() {
     std::vector<compare::Trial> trials;
     for (const auto& name : templates()) {
         progress(fmt::format("{}: trim", name));
@@ -40,21 +49,8 @@ std::vector<compare::Trial> built_in(const std::function<void(std::string_view)>
     return trials;
 }
 
-}  // namespace
-
-CLI::App* add_stress_command(CLI::App& app, StressRequest& request) {
-    auto* command = app.add_subcommand(
-        "stress", "Scenes at their extremes, by every leg and method: right, an honest outcome, or wrong");
-    command
-        ->add_option("SCENE", request.scenes,
-                     "scene files (YAML); none: all built-in ones, and some that are extreme by their making")
-        ->check(a_file("*.yaml"));
-    add_settings(*command, request.settings);
-    return command;
-}
-
-int stress(const StressRequest& request, const Delivery& delivery,
-           const std::function<void(std::string_view)>& progress) {
+// Exit code: 0 no wrong result, 1 a wrong result, 3 nothing could be judged.
+int stress(const Request& request, const Delivery& delivery) {
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const auto start = std::chrono::steady_clock::now();
     std::vector<compare::Trial> trials;
@@ -65,7 +61,7 @@ int stress(const StressRequest& request, const Delivery& delivery,
     }
     if (request.scenes.empty()) {
         if (!request.settings.empty()) throw std::invalid_argument("stress: --set changes a scene; give one");
-        trials = built_in(progress);
+        trials = built_in();
     }
     const compare::Survival survival = compare::stress(trials, {.progress = progress});
     progress("");
@@ -91,6 +87,23 @@ int stress(const StressRequest& request, const Delivery& delivery,
     return survival.count(compare::Verdict::wrong) > 0 ? limit_broken
            : survival.judged() == 0                    ? could_not_judge
                                                        : fine;
+}
+
+}  // namespace
+
+Command stress_command() {
+    const auto request = std::make_shared<Request>();
+    return {"stress",
+            "Scenes at their extremes, by every leg and method: right, an honest outcome, or wrong",
+            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+              "scene files (YAML); none: all built-in ones, and some that are extreme by their making"},
+             set_option(request->settings),
+             output_option(request->folder, "folder for stress.json and cells.csv"),
+             json_option(request->as_json)},
+            [request](const std::string& line) {
+                return stress(*request,
+                              {.folder = request->folder, .as_json = request->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

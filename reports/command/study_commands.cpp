@@ -1,21 +1,27 @@
-#include "reports/command/study_commands.hpp"
-
+// Commands that study one scene: inspect, compare, converge, trade. Each returns the exit code;
+// invalid output locations are rejected before the work.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
+#include "compare/compare.hpp"
 #include "compare/formulations.hpp"
 #include "compare/order_study.hpp"
 #include "compare/precision.hpp"
 #include "compare/study.hpp"
 #include "compare/trade.hpp"
 #include "recursive/diagnosis.hpp"
+#include "recursive/solve.hpp"
+#include "reports/command/candidate_options.hpp"
+#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/exit_code.hpp"
 #include "reports/command/limits.hpp"
 #include "reports/command/load_scene.hpp"
+#include "reports/command/recursion_options.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -36,6 +42,15 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+struct CompareRequest {
+    recursive::Options recursion;
+    int every = 1;  // compares every `every`-th step
+    Detail detail = Detail::required;
+    std::string within = "0.01mm,0.001deg,1%";  // tolerance of the verdict
+    CandidateRequest candidate = {};            // external solver, beside the legs
+    bool formulations = false;                  // adds the spread over bushing formulations
+};
+
 json document_of(const LoadedScene& loaded, const std::string& file) {
     json part =
         scene_document(loaded.scene, read_whole(file), loaded.model, recursive::diagnose(loaded.model));
@@ -52,9 +67,10 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
     return methods;
 }
 
-// What a candidate's accuracy costs: its command at some numbers of steps. A run that could not be judged says so in its row.
+// Error and cost of a candidate's command at several numbers of steps. Where a run could not be
+// judged, its row states this and the reason is appended to `reasons`.
 compare::Table price_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
-                        const compare::Tolerance& tolerance) {
+                        const compare::Tolerance& tolerance, std::vector<std::string>& reasons) {
     std::vector<CandidateRun> runs;
     compare::Comparison comparison;
     for (const int steps : {10, 40, 160, 640}) {
@@ -71,10 +87,15 @@ compare::Table price_of(const CandidateRequest& request, const std::string& file
                             judged(output, request, loaded, comparison, tolerance, true)});
     }
     progress("");
+    for (const auto& run : runs)
+        if (run.judgement.verdict == compare::Grade::not_judged)
+            reasons.push_back(fmt::format("the candidate with {} steps could not be judged: {}", run.steps,
+                                          run.judgement.reasons.front()));
     return candidate_trade_table(runs, comparison);
 }
 
-// The levels of a candidate: files that say how many steps they have, or a run of its command for each number.
+// Levels of a candidate: files with their numbers of steps, or a run of its command for each
+// number.
 compare::Study study_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
                         const std::vector<int>& steps) {
     for (const auto& text : request.files)
@@ -113,8 +134,6 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
     return compare::study_candidate(loaded.model, name, levels, progress);
 }
 
-}  // namespace
-
 int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose,
             const Delivery& delivery) {
     const LoadedScene loaded = load_scene(file, settings, detail);
@@ -134,7 +153,8 @@ int inspect(const std::string& file, const Settings& settings, Detail detail, bo
 
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const Delivery& delivery) {
-    (void)compare::parse_tolerance(request.within);  // what is wrong with it is said before the work
+    (void)compare::parse_tolerance(
+        request.within, compare::Asks::forces_too);  // rejects an invalid tolerance before the work
     check(request.candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
@@ -155,7 +175,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     progress("");
     delivery.say(tables(model, comparison));
     if (study) delivery.say(formulation_text(*study, comparison));
-    const auto tolerance = compare::parse_tolerance(request.within);
+    const auto tolerance = compare::parse_tolerance(request.within, compare::Asks::forces_too);
     const bool asked = request.within != CompareRequest{}.within;
     const auto judgement = compare::assess(model, comparison, tolerance, asked);
     std::vector<compare::CandidateJudgement> candidates;
@@ -183,8 +203,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         deliver(delivery, std::move(part), std::move(files));
     }
     delivery.say(sentence(judgement) + "\n");
-    bool judged_all =
-        true;  // that it differs is what `compare` is asked, as of the recursion; `judge` makes it an exit code
+    // a difference is a result of `compare`, as for the recursion; `judge` makes it an exit code
+    bool judged_all = true;
     for (const auto& candidate : candidates) {
         delivery.say(sentence(candidate, comparison) + "\n");
         judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
@@ -258,15 +278,16 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
     compare::TradeOptions options;
-    options.tolerance = compare::parse_tolerance(tolerance);
+    options.tolerance = compare::parse_tolerance(tolerance, compare::Asks::shares_too);
     options.progress = progress;
     const compare::Trade trade = compare::trade(model, options);
     const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
     progress("");
     delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
     std::optional<compare::Table> of_candidate;
+    auto reasons = trade.inconclusive;
     if (candidate.wanted()) {
-        of_candidate = price_of(candidate, file, loaded, options.tolerance);
+        of_candidate = price_of(candidate, file, loaded, options.tolerance, reasons);
         delivery.say("\nthe candidate\n" + candidate_trade_text(*of_candidate));
     }
     if (delivery.wants_document()) {
@@ -274,12 +295,122 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
         if (of_candidate) part["candidate_trade"] = table_json(*of_candidate);
-        add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
-                    trade.inconclusive);
+        add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0, reasons);
         deliver(delivery, std::move(part),
                 {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
     }
-    return trade.recommendation ? fine : could_not_judge;
+    return trade.recommendation && reasons.empty() ? fine : could_not_judge;
+}
+
+// Input of every study.
+struct Common {
+    std::string scene, folder;
+    Settings settings;
+    bool as_json = false;
+
+    Delivery delivery(const std::string& line) const {
+        return {.folder = folder, .as_json = as_json, .command = line};
+    }
+    std::vector<Option> options() {
+        return {scene_option(scene), set_option(settings), json_option(as_json)};
+    }
+};
+
+}  // namespace
+
+Command inspect_command() {
+    struct Given : Common {
+        bool verbose = false, keep_all = false;
+    };
+    const auto given = std::make_shared<Given>();
+    std::vector<Option> options = given->options();
+    options.push_back({"--verbose", Flag{&given->verbose},
+                       "long lists whole, and the size of the matrix, its order and its fill-in"});
+    options.push_back(keep_all_option(given->keep_all));
+    return {"inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes",
+            std::move(options), [given](const std::string& line) {
+                return inspect(given->scene, given->settings,
+                               given->keep_all ? Detail::everything : Detail::required, given->verbose,
+                               given->delivery(line));
+            }};
+}
+
+Command compare_command() {
+    struct Given : Common {
+        RecursionRequest recursion;
+        CompareRequest request;
+        bool keep_all = false;
+    };
+    const auto given = std::make_shared<Given>();
+    std::vector<std::string> methods;
+    for (const auto& method : recursive::methods) methods.emplace_back(method.name);
+    std::vector<Option> options = given->options();
+    options.push_back(keep_all_option(given->keep_all));
+    options.push_back(
+        {"--formulations", Flag{&given->request.formulations},
+         "how much the outputs depend on the formulation of the bushings, in which tools differ"});
+    options.push_back(
+        {"--within", Text{&given->request.within},
+         "accuracy that the verdict asks for: mm, deg, N, Nm, and % of the extent of forces, moments "
+         "and rates (default: 0.01mm,0.001deg,1%)"});
+    add_recursion_options(options, given->recursion);
+    options.push_back(
+        {"--method", Text{&given->recursion.method, one_of(methods)},
+         "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
+         "or series"});
+    options.push_back(every_option(given->request.every));
+    options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
+    add_candidate_options(options, given->request.candidate);
+    return {"compare", "Solve a scene all three ways and show how far apart they are", std::move(options),
+            [given](const std::string& line) {
+                CompareRequest request = given->request;
+                request.recursion = recursion(given->recursion);
+                request.detail = given->keep_all ? Detail::everything : Detail::required;
+                return compare_legs(given->scene, given->settings, request, given->delivery(line));
+            }};
+}
+
+Command converge_command() {
+    struct Given : Common {
+        std::vector<std::string> methods{"published"};
+        std::vector<int> steps;
+        CandidateRequest candidate;
+    };
+    const auto given = std::make_shared<Given>();
+    std::vector<std::string> known{"all"};
+    for (const auto& method : recursive::methods)
+        if (!std::holds_alternative<recursive::Adaptive>(method.kind)) known.emplace_back(method.name);
+    std::vector<Option> options = given->options();
+    options.push_back({"--method", TextList{&given->methods, TextList::Form::commas, one_of(known)},
+                       "published (default), closed, balanced, tangent, chord, midpoint, series, or all"});
+    options.push_back({"--steps", IntegerList{&given->steps, 1, most_steps},
+                       "step counts per branch, at least five, increasing (default: 75,150,...,2400)"});
+    options.push_back(output_option(
+        given->folder, "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
+    add_candidate_options(options, given->candidate);
+    return {"converge", "Split the recursion's error into steps, formulation and reference",
+            std::move(options), [given](const std::string& line) {
+                return converge(given->scene, given->settings, given->methods, given->steps, given->candidate,
+                                given->delivery(line));
+            }};
+}
+
+Command trade_command() {
+    struct Given : Common {
+        std::string tolerance = "0.01mm,0.001deg,1%";
+        CandidateRequest candidate;
+    };
+    const auto given = std::make_shared<Given>();
+    std::vector<Option> options = given->options();
+    options.push_back(
+        {"--tolerance", Text{&given->tolerance}, "accuracy asked for (default: 0.01mm,0.001deg,1%)"});
+    options.push_back(output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
+    add_candidate_options(options, given->candidate);
+    return {"trade", "What accuracy costs: every method against both references, and a recommendation",
+            std::move(options), [given](const std::string& line) {
+                return trade(given->scene, given->settings, given->tolerance, given->candidate,
+                             given->delivery(line));
+            }};
 }
 
 }  // namespace elastocheck::reports

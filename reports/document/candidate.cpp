@@ -25,7 +25,7 @@ json reading_json(const compare::CandidateReading& reading, const CandidateJudge
     return result;
 }
 
-// The points as they are drawn: where each is, and its main outputs.
+// The points for the figures: their positions on the branch, and their main outputs.
 json points_json(const compare::CandidateBranch& branch, const CandidateJudgement& j,
                  const compare::Comparison& comparison) {
     const bool by_parameter = !branch.equal_parameter.columns.empty();
@@ -61,7 +61,7 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
                          {"max", w.max},
                          {"at", w.at},
                          {"range", w.range},
-                         {"tolerance", w.tolerance}});
+                         {"tolerance", w.limit}});
     json channels = json::array();
     for (std::size_t c = 0; c < j.columns.size(); ++c) {
         const auto& channel = comparison.channels[j.columns[c].channel];
@@ -99,6 +99,7 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
               {"deg", j.tolerance.deg},
               {"N", j.tolerance.newton},
               {"Nm", j.tolerance.newton_metre},
+              {"share", j.tolerance.share},
               {"asked", j.asked}}},
             {"worst", worst},
             {"findings", j.said},

@@ -1,4 +1,4 @@
-// A judged candidate in result.json.
+// Judged candidate as a part of result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace elastocheck::reports {
 
-// "candidates" of a scene is a list of these; reports/README.md says what is in one.
+// Entry of the list "candidates" of a scene; format in reports/README.md.
 nlohmann::ordered_json candidate_json(const compare::CandidateJudgement& judgement,
                                       const compare::Comparison& comparison, const std::string& sentence);
 

@@ -25,14 +25,14 @@ using compare::Unit;
 using json = nlohmann::ordered_json;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double unit_length = 1e-6;  // by which a quaternion may miss the length of one
+constexpr double unit_length = 1e-6;  // allowed deviation of a quaternion's length from one
 
-// ---- Units that a table may be written in.
+// ---- Accepted units of a table.
 
 struct Written {
     const char* symbol;
-    Unit unit;      // that it is one of
-    double factor;  // one of them in that unit
+    Unit unit;      // base unit
+    double factor;  // to the base unit
 };
 constexpr double deg = 180 / std::numbers::pi;
 constexpr std::array written{Written{"mm", Unit::mm, 1},
@@ -64,7 +64,7 @@ std::string allowed_units(Unit unit) {
     return reader::listed(list);
 }
 
-// A number, or one that is said to be none: infinite. NaN where nothing stands.
+// A number; infinite for a cell such as NaN; NaN for an empty cell.
 double number_or_none(std::string_view cell, const std::string& file, int line, const std::string& column) {
     if (cell.empty()) return nan;
     double value = 0;
@@ -73,7 +73,7 @@ double number_or_none(std::string_view cell, const std::string& file, int line, 
     return number_in(cell, file, line, column);
 }
 
-// ---- What a column says.
+// ---- Meaning of a column.
 
 struct Meaning {
     enum class Kind { output, parameter, parameter_unit, branch, leg, nothing } kind = Kind::nothing;
@@ -81,7 +81,7 @@ struct Meaning {
     std::size_t channel = 0;
     bool change = false;
     double factor = 1, offset = 0;
-    std::string unit;  // of a parameter, as written; empty: the branch's own, or a column says it
+    std::string unit;  // of a parameter, as written; empty: the branch's own, or given by a column
 };
 using Kind = Meaning::Kind;
 
@@ -186,12 +186,12 @@ Unit unit_of_branch(const std::string& branch, const compare::Comparison& all) {
     return std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit;
 }
 
-// ---- A table of outputs.
+// ---- Table of outputs.
 
 struct Table {
     std::vector<Meaning> columns;
     std::vector<std::vector<double>> values;  // per column
-    std::vector<std::string> branch, unit;    // per point, where a column says it
+    std::vector<std::string> branch, unit;    // per point, where given by a column
     std::vector<int> lines;
     std::set<std::string, std::less<>> legs;
 };
@@ -278,7 +278,7 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
     std::vector<std::size_t> parameters;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         if (table.columns[c].kind == Kind::parameter) parameters.push_back(c);
-    // Each point by the column that goes by its branch's unit, in that unit.
+    // Each point by the column in the unit of its branch, converted to that unit.
     for (const std::size_t c : parameters) {
         const Meaning& meaning = table.columns[c];
         if (points.a.empty()) points.a.assign(n, nan);
@@ -330,7 +330,7 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
 
 // ---- States.
 
-// A body that is a node within a beam: nothing but segments of beams holds it. It need not be said.
+// Nodes within a beam: bodies connected only to beam segments. Their poses may be omitted.
 std::vector<bool> nodes_of(const Model& model) {
     std::vector<bool> beam(model.bodies.size(), false), other(model.bodies.size(), false);
     const auto mark = [](std::vector<bool>& list, BodyId body) {
@@ -355,7 +355,7 @@ struct Bodies {
     std::vector<bool> node;
     std::set<std::string> passed_over;
 
-    // Position in Model::bodies, or -1 of a body of the scene that is not solved for.
+    // Position in Model::bodies, or -1 for a body of the scene that is not modelled.
     int find(const std::string& name, const std::string& file, int line) {
         const auto found = std::ranges::find(model.bodies, name, &Body::name);
         if (found != model.bodies.end()) return static_cast<int>(found - model.bodies.begin());
@@ -398,7 +398,7 @@ void put(Pose& pose, const Eigen::Vector3d& r, const Eigen::Vector4d& wxyz, cons
 }
 
 double entry(const json& value, const std::string& what, const std::string& file, int line) {
-    if (value.is_null()) return INFINITY;  // how JSON writes what is no number
+    if (value.is_null()) return INFINITY;  // JSON's representation of a value that is not finite
     if (!value.is_number()) fail_at(file, line, fmt::format("{}: expected a number", what));
     return value.get<double>();
 }
@@ -534,7 +534,7 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     std::vector<Number> numbers;
     const reader::Cursor top{&tree, "", &file, &numbers};
     top.only_keys({"columns", "branches"});
-    // The names are another tool's, with brackets and all.
+    // Names of another tool may contain brackets.
     const auto entries = [](const reader::Cursor& of) {
         if (of.value->kind != reader::Value::Kind::map)
             of.fail("expected a map of their names, found " + of.found());

@@ -1,4 +1,4 @@
-// The curves of a result.json as CSV, to plot again.
+// Curves of a result.json as CSV.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,13 +6,13 @@
 
 namespace elastocheck::reports {
 
-// Every point of every leg, one number a row, since scenes differ in their outputs:
-// scene,branch,leg,parameter,parameter unit,output,unit,value. Throws ResultError; `file` is where it
-// was read.
-// What is undefined is an empty cell.
+// Every point of every leg, one number per row, since scenes differ in their outputs:
+// scene,branch,leg,parameter,parameter unit,output,unit,value. An undefined value is an empty cell.
+// Throws ResultError; `file` is the source of the document.
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file);
 
-// What elements and links bear at the ends of the branches: the table `forces` of every scene, with its name before.
+// Forces of elements and links at the ends of the branches: the table `forces` of every scene, with
+// the scene's name first.
 std::string forces_csv(const nlohmann::ordered_json& result, const std::string& file);
 
 }  // namespace elastocheck::reports

@@ -50,7 +50,7 @@ json residuals_json(const Residuals& r) {
             {"moment_Nm", r.moment}};
 }
 
-// What moves on the branch, and what is held.
+// Moved and held drivers of a branch.
 json drivers_json(const Model& model, const Branch& branch) {
     json moved = json::array(), held = json::array();
     for (const auto& driver : branch.drivers)
@@ -155,7 +155,7 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
 }
 
-// The worst of the main channels, point by point of the equilibrium leg.
+// Worst main channel at each point of the equilibrium leg.
 json profile_json(const compare::Profile& profile) {
     json mm = json::array(), deg = json::array();
     for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
@@ -228,8 +228,9 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
     return list;
 }
 
-// What the equilibrium leg's states leave in the equations of the energy leg where that one is too large a question,
-// and how much may be left; null where it judges like any other leg.
+// Residuals of the equilibrium leg's states in the equations of the energy leg, and their bounds,
+// where the scene is too large for states of the energy leg; null where the energy leg judges as
+// usual.
 json witness_json(const compare::BranchComparison& branch) {
     if (!energy_bears_witness(branch)) return nullptr;
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];

@@ -38,8 +38,8 @@ struct Sketch {
         return poses;
     }
 
-    // The point's position in the list, new or known; the name is the hardpoint's, else that of what is
-    // attached there.
+    // Index of a point in the list, new or existing; named by its hardpoint, else by the attached
+    // joint or element.
     std::size_t add(const Point& point, const std::string& otherwise) {
         for (std::size_t k = 0; k < points.size(); ++k)
             if (points[k].body == point.body && (points[k].s_local - point.s_local).norm() < same) return k;
@@ -58,11 +58,12 @@ struct Sketch {
     }
 };
 
-// ---- Bodies. What a body carries is known, its shape is not: an arm whose points lie flat is the outline round them
-// all, everything else the shortest tree of lines that joins them, from the wheel's centre where it carries one.
+// ---- Bodies. The shape of a body is unknown, only its attachment points: coplanar points of an
+// arm are drawn as their outline, all other bodies as the shortest tree of lines, which starts at
+// the wheel's centre if the body carries a wheel.
 
-// In order round the outline of points that lie in a plane well enough to be drawn as a plate; empty where they do
-// not, or lie nearly on a line.
+// Points in order along the outline if they are coplanar enough to be drawn as a plate; empty if
+// not, or if nearly collinear.
 std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     if (points.size() < 3) return {};
     Vector3d middle = Vector3d::Zero();
@@ -70,13 +71,14 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const auto& p : points) spread += (p - middle) * (p - middle).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
-    const Vector3d extent = principal.eigenvalues().cwiseMax(0).cwiseSqrt();  // rising
+    const Vector3d extent = principal.eigenvalues().cwiseMax(0).cwiseSqrt();  // ascending
     if (!(extent[1] > 0.15 * extent[2]) || extent[0] > 0.35 * extent[1]) return {};
     const Vector3d u = principal.eigenvectors().col(2), v = principal.eigenvectors().col(1);
     const auto flat = [&](std::size_t k) {
         return Eigen::Vector2d{u.dot(points[k] - middle), v.dot(points[k] - middle)};
     };
-    // Andrew's monotone chain: sorted along u, the lower side of the hull and the upper one back.
+    // Convex hull by Andrew's monotone chain (1979): sorted along u, the lower side and the upper
+    // one back.
     std::vector<std::size_t> sorted(points.size()), hull;
     for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = k;
     std::ranges::sort(sorted, {}, [&](std::size_t k) { return std::pair{flat(k).x(), flat(k).y()}; });
@@ -91,13 +93,13 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
                 hull.pop_back();
             hull.push_back(k);
         }
-        hull.pop_back();  // where the other side begins
+        hull.pop_back();  // the other side starts with the same point
         std::ranges::reverse(sorted);
     }
     return hull;
 }
 
-// Joins the points one after the other, each to the nearest that is joined already (Prim).
+// Minimum spanning tree (Prim 1957): joins each point to the nearest joined one.
 void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine, std::size_t root) {
     std::vector<std::size_t> joined{root};
     std::erase(mine, root);
@@ -122,7 +124,8 @@ void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs
     const std::string& name = sketch.model->bodies[static_cast<std::size_t>(body)].name;
     if (mine.size() < 2) return;
     if (hubs.size() < 2) {
-        std::vector<std::size_t> plate = mine;  // a carrier without the spindle, which stands out of it
+        // a carrier without the spindle, which lies outside its plane
+        std::vector<std::size_t> plate = mine;
         if (!hubs.empty()) std::erase(plate, hubs.front());
         std::vector<Vector3d> places;
         for (const auto k : plate) places.push_back(sketch.points[k].s_local);
@@ -153,39 +156,39 @@ struct Symbol {
 };
 
 std::vector<Symbol> symbols_of(const JointKind& kind) {
-    return std::visit(
-        overloaded{[](const Spherical& j) {
-                       return std::vector<Symbol>{{"spherical", j.i}};
-                   },
-                   [](const Revolute& j) {
-                       return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
-                   },
-                   [](const Universal& j) {
-                       return std::vector<Symbol>{{"universal", j.i}};
-                   },
-                   [](const Cylindrical& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                   },
-                   [](const Translational& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                   },
-                   [](const Planar& j) {
-                       return std::vector<Symbol>{{"plane", j.i}};
-                   },
-                   [](const Fixed& j) {
-                       return std::vector<Symbol>{{"fixed", j.i}};
-                   },
-                   [](const Distance& j) {
-                       return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
-                   },
-                   [](const InPlane& j) {
-                       return std::vector<Symbol>{{"plane", j.i}};
-                   },
-                   [](const InLine& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
-                   },
-                   [](const auto&) { return std::vector<Symbol>{}; }},  // directions alone have no place
-        kind);
+    return std::visit(overloaded{[](const Spherical& j) {
+                                     return std::vector<Symbol>{{"spherical", j.i}};
+                                 },
+                                 [](const Revolute& j) {
+                                     return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
+                                 },
+                                 [](const Universal& j) {
+                                     return std::vector<Symbol>{{"universal", j.i}};
+                                 },
+                                 [](const Cylindrical& j) {
+                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                                 },
+                                 [](const Translational& j) {
+                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                                 },
+                                 [](const Planar& j) {
+                                     return std::vector<Symbol>{{"plane", j.i}};
+                                 },
+                                 [](const Fixed& j) {
+                                     return std::vector<Symbol>{{"fixed", j.i}};
+                                 },
+                                 [](const Distance& j) {
+                                     return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
+                                 },
+                                 [](const InPlane& j) {
+                                     return std::vector<Symbol>{{"plane", j.i}};
+                                 },
+                                 [](const InLine& j) {
+                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
+                                 },
+                                 // direction constraints have no position
+                                 [](const auto&) { return std::vector<Symbol>{}; }},
+                      kind);
 }
 
 bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs::beam; }
@@ -216,7 +219,8 @@ json symbols_json(const Scene& scene) {
                 return driver.rate != 0 && motion != nullptr && motion->joint == static_cast<int>(k);
             });
         });
-        // What drives a joint is a plane that one of its points is held in; a jack is one under a wheel.
+        // The driver of a joint is a plane constraint on one of its points; under a wheel it is a
+        // jack.
         if (const auto* plane = std::get_if<InPlane>(&joint.kind)) {
             const bool jack = std::ranges::any_of(
                 scene.wheels, [&](const Wheel& wheel) { return wheel.body == plane->i.body; });
@@ -236,12 +240,12 @@ json symbols_json(const Scene& scene) {
     return list;
 }
 
-// Segments of a beam lie one after the other: between their middles are the nodes, and beyond the first and the last
-// middle the beam goes on as far as it came from its node.
+// Consecutive segments of a beam: its nodes lie between their middles, and beyond the first and the
+// last middle the beam continues by the same distance.
 void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const Bushing*>& segments) {
     std::vector<Point> line;
     const auto end = [&](const Marker& middle, const Marker& other) {
-        // the node of `other`'s body, seen from the middle, lies as far on the other side as this end on this
+        // the node of `other`'s body is symmetric to this end about the middle
         if (other.body == ground) return Point{middle.body, middle.s_local};
         const Pose& node = sketch.model->bodies[static_cast<std::size_t>(other.body)].design;
         const Vector3d at = 2 * sketch.at({middle.body, middle.s_local}, sketch.design()) - node.r;
@@ -267,7 +271,7 @@ void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const 
 
 json millimetres(const Vector3d& v) { return {1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()}; }
 
-// A circle through the contact patch about the spin axis; nothing where the patch is the centre.
+// Circle through the contact patch about the spin axis; empty where patch and centre coincide.
 json circle(const Wheel& wheel, const Pose& pose) {
     json list = json::array();
     const Vector3d arm = wheel.contact_local - wheel.centre_local;
@@ -297,7 +301,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     json bushings = json::array(), faces = json::array(), wheels = json::array();
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
-        if (joint.only_where_driven) continue;  // a jack is no part of the suspension
+        if (joint.only_where_driven) continue;  // a jack is not part of the suspension
         std::visit(overloaded{[&](const CoincidentPoints& c) {
                                   sketch.add(c.i, joint.name), sketch.add(c.j, joint.name);
                               },
@@ -382,7 +386,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
             along.push_back(entry);
         };
         if (middle) put(branch.branch, "middle", *middle);
-        if (front && back && front->load * back->load < 0)  // walked both ways
+        if (front && back && front->load * back->load < 0)  // a two-sided branch
             put(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
                             symbol(branch.unit)),
                 "end", *front);

@@ -1,4 +1,5 @@
-// Where the points of a suspension are, to draw it: at the design position and along every branch.
+// Drawing data: positions of the points of a suspension at the design position and along every
+// branch.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,13 +10,16 @@
 
 namespace elastocheck::reports {
 
-//   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body, position [mm]
-//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a stop, a beam
-//   faces      a body's points that lie flat, in order round their outline: an arm
-//   symbols    joints and bushings as the scene has them: kind, name, where [mm], its axis where it has one
+//   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body,
+//              position [mm]
+//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a
+//              stop, a beam
+//   faces      a body's coplanar points, in order along their outline: an arm
+//   symbols    joints and bushings of the scene: kind, name, position [mm], axis if any
 //   wheels     centre, patch and spin axis at the design position
 //   bushings   points
-//   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every branch
+//   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every
+//              branch
 nlohmann::ordered_json drawing_json(const Scene& scene, const Model& model,
                                     const compare::Comparison& comparison);
 

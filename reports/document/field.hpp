@@ -1,4 +1,4 @@
-// Reading result.json: one value with its place in the document, which every complaint names.
+// Typed access to result.json with the path of each value for error messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,14 +24,14 @@ struct Field {
     [[noreturn]] void fail(const std::string& what) const;
 
     Field operator[](std::string_view key) const;                // must be there
-    std::optional<Field> find(std::string_view key) const;       // nothing when absent or null
+    std::optional<Field> find(std::string_view key) const;       // empty when absent or null
     std::vector<std::pair<std::string, Field>> entries() const;  // of an object
     std::vector<Field> items() const;                            // of an array
 
-    double number() const;  // NaN where the document says null
+    double number() const;  // NaN for null
     int whole() const;
     bool truth() const;
-    std::string text() const;  // one line, fit to be shown (escape.hpp: flaw)
+    std::string text() const;  // one line without control characters (escape.hpp: flaw)
     std::vector<double> numbers() const;
     std::vector<std::string> texts() const;
 };

@@ -5,8 +5,8 @@
 namespace elastocheck::reports {
 
 nlohmann::ordered_json parse_json(std::string_view text) {
-    // A value is 16 bytes, in an object 48 with its name; a list or an object is a vector on the heap besides, which grows
-    // by doubling.
+    // A value takes 16 bytes, in an object 48 with its name; a list or an object also has a heap
+    // vector with doubling growth.
     constexpr double of_value = 2 * 48, of_list = 48;
     int depth = 0;
     double size = static_cast<double>(text.size());

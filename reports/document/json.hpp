@@ -1,4 +1,4 @@
-// JSON from outside: the only place where it is parsed.
+// Parser of external JSON, with limits; the only place that parses JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,13 +9,13 @@
 
 namespace elastocheck::reports {
 
-// what() says why, without the name of the file.
+// what() gives the reason without the name of the file.
 struct JsonError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Throws JsonError: not JSON, cut off, nested deeper than `deepest_json`, which would end in a crash somewhere, or
-// larger than `largest_json`.
+// Throws JsonError for text that is not JSON, is truncated, is nested deeper than `deepest_json`
+// (which could overflow the stack) or needs more memory than `largest_json`.
 nlohmann::ordered_json parse_json(std::string_view text);
 
 }  // namespace elastocheck::reports

@@ -22,8 +22,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Column {
     std::string name;
     int channel = -1;     // position in Comparison::channels; -1: parameter or branch
-    bool change = false;  // counted from the design position
-    bool travel = false;  // says where the point is
+    bool change = false;  // relative to the design position
+    bool travel = false;  // places the point
     std::vector<double> values;
 };
 
@@ -55,7 +55,7 @@ std::string parameter_column(compare::Unit unit) {
     }
 }
 
-// Of all branches, each once.
+// Of all branches, without duplicates.
 std::vector<std::string> parameter_columns(const compare::Comparison& all) {
     std::vector<std::string> names;
     for (const auto& branch : all.branches)
@@ -69,7 +69,7 @@ std::string column_of(const std::string& branch, const compare::Comparison& all)
         std::ranges::find(all.branches, branch, &compare::BranchComparison::branch)->unit);
 }
 
-// A point in newtons says nothing of a branch that goes by millimetres.
+// Rejects points with a parameter in another unit than their branch.
 void check_parameters(const Points& points, const std::string& file, const compare::Comparison& all) {
     if (points.branch.empty()) {
         if (points.parameters.size() > 1)
@@ -92,12 +92,12 @@ void check_parameters(const Points& points, const std::string& file, const compa
         }
 }
 
-// The channels that may say where a point is: the travel of each wheel.
+// The channels that may place a point: the travel of each wheel.
 bool is_travel(const compare::Channel& channel) {
     return channel.name == "travel" || channel.name.ends_with(".travel");
 }
 
-// The branch that a cell means: a name of the file's own, or one of the scene.
+// Branch of a cell: a name from the file's mapping, or a name of the scene.
 std::string branch_named(std::string_view cell, const compare::Comparison& all, const LoadCases& cases,
                          const std::string& file, int line) {
     const auto own = std::ranges::find(cases.names, cell, &std::pair<std::string, std::string>::first);
@@ -195,7 +195,7 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     for (const auto& column : points.columns) {
         if (column.name == cases.column) continue;
         if (column.channel < 0) {
-            // each point by the column of its branch
+            // each point from the column of its branch's unit
             if (measured.a.empty()) measured.a.assign(column.values.size(), nan);
             for (std::size_t k = 0; k < column.values.size(); ++k)
                 if (points.branch.empty() || column_of(points.branch[k], all) == column.name)

@@ -1,4 +1,4 @@
-// Which code, built how, on what, made a result.
+// Provenance of a result: code version, build and machine.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,19 +18,20 @@ struct Provenance {
     bool dirty = false;    // uncommitted changes in the checkout it was built from
     std::string compiler;  // "GNU 12.2.0"
     std::string flags;     // "-O3 -DNDEBUG -ffp-contract=off"
-    std::string cpu;       // model name, "unknown" where the system does not tell
+    std::string cpu;       // model name, "unknown" if the system does not report it
     std::vector<Library> libraries;
 };
 
 Provenance provenance();
 
-// What --version says: version, commit, compiler, and all libraries, also those that round nothing.
+// Output of --version: version, commit, compiler, and all libraries, also those without
+// floating-point arithmetic.
 std::string version_text(const Provenance& provenance);
 
 // The same in a result or a baseline.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);
 
-// FNV-1a, 64 bit, in hex: tells one input from another, not a proof against forgery.
+// FNV-1a, 64 bit, in hex: detects different inputs; not cryptographic.
 std::string input_hash(std::string_view content);
 
 }  // namespace elastocheck::reports

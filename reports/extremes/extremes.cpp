@@ -16,14 +16,14 @@ using By = compare::Variant::Construction;
 struct Value {
     const char* label;
     std::vector<Setting> settings;
-    By known = By::nothing;  // by construction of the scene
+    By known = By::nothing;  // known by construction of the scene
 };
 struct Extreme {
     const char* scene;
     std::vector<Value> values;
 };
 
-// What is set is in the units of the file: mm.
+// Values in the units of the file: mm.
 const std::vector<Extreme>& table() {
     static const std::vector<Extreme> all{
         {"two_hinges",

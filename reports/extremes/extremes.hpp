@@ -1,5 +1,5 @@
-// Scenes that are extreme by their making, models/extremes/, and the numbers that make them so: all but singular geometry,
-// joints that repeat or contradict each other, stops that just touch, curves that are flat or steep, limit points.
+// Extreme scenes of models/extremes/ with the parameters that make them extreme: nearly singular
+// geometry, redundant or inconsistent joints, stops at contact, flat or steep curves, limit points.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-// One a value, in the order of the table. Of the sweep compare::extreme.
+// One trial per value, in the order of the table, of the sweep compare::extreme.
 std::vector<compare::Trial> extremes();
 
 }  // namespace elastocheck::reports

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -20,14 +21,14 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr std::size_t most_said = 4096;  // [bytes] that are kept of what it says
+constexpr std::size_t most_said = 4096;  // kept end of the program's output [bytes]
 
 void keep_the_end(std::string& said) {
     if (said.size() > 2 * most_said) said.erase(0, said.size() - most_said);
 }
 
-// In the child, between fork and exec: only what is allowed there.
-[[noreturn]] void become(char* const* arguments, int said, int failed) {
+// Runs in the child between fork and exec: only async-signal-safe functions are allowed.
+[[noreturn]] void become(char* const* arguments, const char* folder, int said, int failed) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int nothing = ::open("/dev/null", O_RDONLY);
@@ -35,10 +36,23 @@ void keep_the_end(std::string& said) {
     ::dup2(said, STDOUT_FILENO);
     ::dup2(said, STDERR_FILENO);
     std::signal(SIGXFSZ, SIG_DFL);
-    ::execvp(arguments[0], arguments);
+    if (::chdir(folder) == 0) ::execvp(arguments[0], arguments);
     const int why = errno;
     [[maybe_unused]] const auto told = ::write(failed, &why, sizeof why);
     ::_exit(127);
+}
+
+// Whether the child has ended. It is not reaped, so that its process id is not reused.
+bool has_ended(pid_t child) {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == child;
+}
+
+void end_group(pid_t leader, int signal) {
+    ::kill(-leader, signal);
+    for (int k = 0; k < 100 && !has_ended(leader); ++k) ::usleep(10'000);
+    ::kill(-leader, SIGKILL);
 }
 
 }  // namespace
@@ -79,7 +93,7 @@ std::string describe(const Ended& ended, double limit) {
     return {};
 }
 
-Ended run(const std::vector<std::string>& words, double limit) {
+Ended run(const std::vector<std::string>& words, double limit, const std::string& folder) {
     using clock = std::chrono::steady_clock;
     std::vector<char*> arguments;
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -88,10 +102,13 @@ Ended run(const std::vector<std::string>& words, double limit) {
     if (::pipe2(said, O_CLOEXEC) != 0) throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
     if (::pipe2(failed, O_CLOEXEC) != 0) throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
     const auto start = clock::now();
+    auto lock = no_cleanup_now();
     const pid_t child = ::fork();
     if (child < 0) throw FileError(fmt::format("fork: {}", std::strerror(errno)));
-    if (child == 0) become(arguments.data(), said[1], failed[1]);
-    ::setpgid(child, child);  // whoever comes first
+    if (child == 0) become(arguments.data(), folder.c_str(), said[1], failed[1]);
+    ::setpgid(child, child);  // here and in the child, as either may run first
+    std::optional<CleanupOnSignal> cleanup(std::in_place, [child](int signal) { end_group(child, signal); });
+    lock.unlock();
     ::close(said[1]), ::close(failed[1]);
 
     Ended ended;
@@ -115,15 +132,12 @@ Ended run(const std::vector<std::string>& words, double limit) {
         } else {
             ::usleep(1000);
         }
-        siginfo_t info{};
-        const bool over =
-            ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-            info.si_pid == child;
+        const bool over = has_ended(child);
         if (!over && since() <= limit) continue;
         if (!over) ended.how = Ended::How::too_long;
         ended.seconds = since();
-        ::kill(-child,
-               SIGKILL);  // and what it left behind; nobody else has its number until it is waited for
+        ::kill(-child, SIGKILL);  // the rest of the process group
+        cleanup.reset();          // before the process id can be reused
         ::wait4(child, &status, 0, &used);
         reaped = true;
     }
@@ -149,9 +163,18 @@ Ended run(const std::vector<std::string>& words, double limit) {
 }
 
 TemporaryFolder::TemporaryFolder() {
-    path_ = (std::filesystem::temp_directory_path() / "elastocheck-XXXXXX").string();
+    const char* const said = std::getenv("TMPDIR");
+    const std::string parent = said != nullptr && *said != '\0' ? said : "/tmp";
+    path_ = (std::filesystem::path(parent) / "elastocheck-XXXXXX").string();
+    const auto lock = no_cleanup_now();
     if (::mkdtemp(path_.data()) == nullptr)
-        throw FileError(fmt::format("{}: {}", path_, std::strerror(errno)));
+        throw FileError(fmt::format(
+            "TMPDIR: no temporary folder can be made in {} ({}); set TMPDIR to a folder that can be written",
+            parent, std::strerror(errno)));
+    cleanup_.emplace([path = path_](int) {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    });
 }
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;

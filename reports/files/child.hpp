@@ -1,32 +1,40 @@
-// A program of somebody else's, run: no shell, in a process group of its own, for so long and no longer.
+// Runs another program: without a shell, in its own process group, for a limited time.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "reports/files/cleanup.hpp"
+
 namespace elastocheck::reports {
 
-// "./my solver' 1' {scene} --n {steps}" as words: blanks part them, '...' and "..." keep them together, a backslash takes the
-// next character as it is (not between '...'). Throws std::invalid_argument for a quote that does not close.
+// Splits "./my solver' 1' {scene} --n {steps}" into words: separated by blanks, grouped by '...'
+// and "...", a backslash escapes the next character (not between '...'). Throws
+// std::invalid_argument for an unclosed quote.
 std::vector<std::string> words_of(std::string_view line);
 
 struct Ended {
     enum class How { by_itself, by_signal, too_long, not_started } how = How::by_itself;
     int code = 0;        // exit code, signal, or errno
-    std::string said;    // the end of what it wrote to standard error and output
-    double seconds = 0;  // of a clock
-    double cpu = 0;      // of the program and those that it waited for
+    std::string said;    // last part of its standard error and output
+    double seconds = 0;  // wall-clock time
+    double cpu = 0;      // of the program and the children it waited for
 
     bool well() const { return how == How::by_itself && code == 0; }
 };
-// "ended with exit code 2", "was killed by signal 11 (Segmentation fault)", "took longer than 60 s and was killed"
+// "ended with exit code 2", "was killed by signal 11 (Segmentation fault)", "took longer than 60 s
+// and was killed"
 std::string describe(const Ended& ended, double limit);
 
-// Standard input is empty. What is left of its process group when it ends, or when `limit` seconds are over, is killed.
-Ended run(const std::vector<std::string>& words, double limit);
+// Runs the program in `folder` with empty standard input. When it ends, or after `limit` seconds,
+// the rest of its process group is killed. A signal that ends this program is passed to the group,
+// which is killed after one second.
+Ended run(const std::vector<std::string>& words, double limit, const std::string& folder = ".");
 
-// A folder of one's own that is gone with its owner.
+// A new folder in $TMPDIR or in /tmp, removed by its destructor or when a signal ends the program.
+// Throws FileError.
 class TemporaryFolder {
   public:
     TemporaryFolder();
@@ -37,6 +45,7 @@ class TemporaryFolder {
 
   private:
     std::string path_;
+    std::optional<CleanupOnSignal> cleanup_;
 };
 
 }  // namespace elastocheck::reports

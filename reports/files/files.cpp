@@ -47,7 +47,7 @@ const char* sort_of(const struct stat& entry) {
                                      : "something";
 }
 
-// False with errno set where not all of it could be written.
+// False with errno set for an incomplete write.
 bool write_all(int out, std::string_view content) {
     while (!content.empty()) {
         const ssize_t written = ::write(out, content.data(), content.size());
@@ -58,7 +58,7 @@ bool write_all(int out, std::string_view content) {
     return true;
 }
 
-// Flushes where `good`, and closes in any case; false with errno set where not all was.
+// Flushes if `good`, and closes in any case; false with errno set on failure.
 bool flush_and_close(int out, bool good) {
     good = good && (::fsync(out) == 0 || errno == EINVAL);
     const int error = errno;
@@ -82,7 +82,7 @@ bool is_there(int open) {
 void check_may_write(const fs::path& file, const FileKind& kind) {
     struct stat entry {};
     if (::lstat(file.c_str(), &entry) != 0) {
-        // A folder that is not there will be made; one that cannot be looked into is an error now.
+        // A missing folder will be created; an inaccessible one is an error now.
         if (errno != ENOENT) cannot(file, "written");
         return;
     }
@@ -98,18 +98,36 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
 
 namespace {
 
-// What runs that were killed left beside the file. An owner holds a lock on his while he lives.
-void remove_abandoned(const fs::path& file, const std::string& prefix) {
+// Temporary name of a file, ".NAME.elastocheck-PID-N.tmp", which no other program uses.
+std::string temporary_prefix(const fs::path& file) {
+    return fmt::format(".{}.elastocheck-", file.filename().string());
+}
+bool is_temporary_name(std::string_view name, std::string_view prefix) {
+    constexpr std::string_view suffix = ".tmp", digits = "0123456789";
+    if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
+    name.remove_prefix(prefix.size());
+    name.remove_suffix(suffix.size());
+    const auto dash = name.find('-');
+    const auto is_number = [&](std::string_view part) {
+        return !part.empty() && part.find_first_not_of(digits) == part.npos;
+    };
+    return dash != name.npos && is_number(name.substr(0, dash)) && is_number(name.substr(dash + 1));
+}
+
+// Removes temporary files of killed runs beside the file. A running owner holds a lock on its file.
+void remove_abandoned(const fs::path& file) {
+    const std::string prefix = temporary_prefix(file);
     std::error_code failed;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     for (auto at = fs::directory_iterator(folder, failed); !failed && at != fs::end(at);
          at.increment(failed)) {
         const std::string name = at->path().filename().string();
-        if (!name.starts_with(prefix) || !name.ends_with(".tmp")) continue;
+        if (!is_temporary_name(name, prefix)) continue;
         const int left = ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (left < 0) continue;
         struct stat entry {};
-        // Its owner may have given it its name meanwhile, and begun another by this one: then it is not what was opened.
+        // Checks the inode: the owner may have renamed the file and created another one of this
+        // name since it was opened.
         struct stat now {};
         if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) && ::flock(left, LOCK_EX | LOCK_NB) == 0 &&
             ::lstat(at->path().c_str(), &now) == 0 && now.st_ino == entry.st_ino &&
@@ -127,17 +145,18 @@ FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(st
     if (failed)
         throw FileError(fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
-    const std::string prefix = fmt::format(".{}.", file_.filename().string());
-    remove_abandoned(file_, prefix);
+    remove_abandoned(file_);
     temporary_ = file_;
+    const auto lock = no_cleanup_now();
     for (int k = 0; out_ < 0; ++k) {
-        temporary_.replace_filename(fmt::format("{}{}-{}.tmp", prefix, ::getpid(), k));
+        temporary_.replace_filename(fmt::format("{}{}-{}.tmp", temporary_prefix(file_), ::getpid(), k));
         out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
-        // Another run may have taken it for one that was left, before it was locked.
+        // Another run may have removed it as abandoned before it was locked.
         if (out_ >= 0 && (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
             ::close(std::exchange(out_, -1));
     }
+    cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
 }
 
 FileToBe::~FileToBe() {
@@ -165,13 +184,15 @@ void FileToBe::add(std::string_view content) {
 
 void FileToBe::finish() {
     write_waiting();
-    const int lock = ::fcntl(out_, F_DUPFD_CLOEXEC, 0);  // it stays locked until it has its name
+    // the lock is kept until the file is renamed
+    const int lock = ::fcntl(out_, F_DUPFD_CLOEXEC, 0);
     bool good = lock >= 0 && flush_and_close(std::exchange(out_, -1), true);
     int error = errno;
     if (good) {
-        // Where nothing was, what has come meanwhile is replaced only if it is ours as well.
+        // A file that appeared meanwhile is replaced only if it was made by this program as well.
         good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) == 0;
-        if (!good && (errno == EEXIST || errno == EINVAL)) {  // EINVAL: a file system without it
+        // EINVAL: not supported by the file system
+        if (!good && (errno == EEXIST || errno == EINVAL)) {
             try {
                 check_may_write(file_, *kind_);
             } catch (const FileError&) {
@@ -206,6 +227,7 @@ void append(const fs::path& file, std::string_view content) {
 }
 
 void fill(const fs::path& file, std::string_view content) {
+    const auto lock = no_cleanup_now();
     std::error_code failed;
     fs::create_directories(file.parent_path(), failed);
     if (failed)

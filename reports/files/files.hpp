@@ -1,22 +1,24 @@
-// Files are written whole or not at all, never over what is not ours, and read whole.
+// Atomic writing of files, with protection of files not made by this program, and reading with a
+// size limit.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "reports/files/cleanup.hpp"
 #include "reports/files/limits.hpp"
 
 namespace elastocheck::reports {
 
-// A file could not be read or written, or must not be; what() names it and says why.
+// A file cannot be read or written, or must not be; what() names it with the reason.
 struct FileError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// A kind of file that the command writes where the user says, and how one of its own is told: by how it
-// begins, white space apart.
+// Kind of an output file, recognised by the first characters of its content, white space ignored.
 struct FileKind {
     std::string_view name, beginning;
 };
@@ -28,13 +30,14 @@ inline constexpr FileKind junit_file{
     "JUnit report", R"(<?xml version="1.0" encoding="UTF-8"?><testsuites name="elastocheck gate")"};
 inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 
-// Throws FileError unless there is nothing at `file`, or a regular file that begins as its kind does: no
-// device, no link, no folder, nothing that somebody else wrote.
+// Throws FileError unless `file` does not exist or is a regular file that begins as its kind does:
+// no device, no link, no folder, no file of another program.
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
-// A file that is written piece by piece, and is there once it is whole: until then it has a temporary name beside its
-// own, and what is not finished is removed: by its owner, or by the next that writes the file where the owner was killed.
-// Throws FileError; an older file of that name is then untouched.
+// A file that is written in pieces under a temporary name beside its own, and renamed when it is
+// complete. An unfinished file is removed by its owner, also when a signal ends the program; if the
+// owner was killed, by the next run that writes this file. Throws FileError; an older file of that
+// name is then untouched.
 class FileToBe {
   public:
     // check_may_write; creates the folder when it is missing.
@@ -50,22 +53,23 @@ class FileToBe {
     [[noreturn]] void give_up(int error);
     void write_waiting();
 
-    const FileKind* kind_;  // outlives it: one of those above
+    const FileKind* kind_;  // one of the constants above
     std::filesystem::path file_, temporary_;
-    std::string waiting_;  // to be written together
+    std::string waiting_;  // write buffer
     int out_ = -1;
+    std::optional<CleanupOnSignal> cleanup_;
 };
 
-// The whole of it at once.
+// Writes a file at once.
 void write_whole(const std::filesystem::path& file, std::string_view content, const FileKind& kind);
 
-// Adds to a regular file that is there already. Throws FileError.
+// Appends to an existing regular file. Throws FileError.
 void append(const std::filesystem::path& file, std::string_view content);
 
-// Writes a file in a folder that nobody else knows of yet (folder.hpp). Throws FileError.
+// Writes a file in a staging folder (folder.hpp). Throws FileError.
 void fill(const std::filesystem::path& file, std::string_view content);
 
-// The content of a file or a pipe; throws FileError, of what is larger as soon as it shows.
+// Reads a file or a pipe; throws FileError, for a larger one as soon as it exceeds the limit.
 std::string read_whole(const std::filesystem::path& file, std::size_t largest = largest_file);
 
 }  // namespace elastocheck::reports

@@ -38,14 +38,14 @@ std::vector<std::string> files_in(const fs::path& folder) {
     return files;
 }
 
-// In a staging folder until it is published: whatever is in there, this program put there.
+// Marks a staging folder until it is published: all its content was written by this program.
 constexpr const char* marker = ".elastocheck-staging";
 
 std::string line_of(const fs::path& folder, const std::string& file) {
     return fmt::format("{}  {}", input_hash(read_whole(folder / file)), file);
 }
 
-// The lines of a manifest of ours; none where there is another file of that name.
+// Lines of the manifest; empty for a file of that name made by another program.
 std::set<std::string> listed_in(const fs::path& folder) {
     std::set<std::string> lines;
     if (!fs::is_regular_file(fs::symlink_status(folder / manifest))) return lines;
@@ -60,10 +60,31 @@ bool is_ours(const fs::path& folder, const std::string& file, const std::set<std
     return fs::is_regular_file(fs::symlink_status(folder / file)) && listed.contains(line_of(folder, file));
 }
 
-// Everything in the folder must be on its manifest, as it was written.
+// Subfolders at any depth, the deepest first.
+std::vector<std::string> folders_in(const fs::path& folder) {
+    std::vector<std::string> folders;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_directory() && !entry.is_symlink())
+            folders.push_back(entry.path().lexically_relative(folder).generic_string());
+    std::ranges::sort(folders, std::ranges::greater{}, [](const auto& name) { return name.size(); });
+    return folders;
+}
+
+// Whether some file of the manifest is in the folder `inner` or below it.
+bool is_ours(const std::string& inner, const std::set<std::string>& listed) {
+    return std::ranges::any_of(
+        listed, [&](const auto& line) { return line.find("  " + inner + "/") == line.find("  "); });
+}
+
+// Throws FileError unless every file of the folder is on its manifest with unchanged content, and
+// every subfolder contains such a file.
 void check_all_ours(const fs::path& folder) {
     const auto files = files_in(folder);
     const auto listed = listed_in(folder);
+    for (const auto& inner : folders_in(folder))
+        if (!is_ours(inner, listed))
+            fail(folder / inner,
+                 "is no part of a report, and replacing the folder would lose it; choose another folder");
     for (const auto& file : files) {
         if (is_ours(folder, file, listed) || (file == manifest && !listed.empty())) continue;
         const bool changed =
@@ -76,15 +97,14 @@ void check_all_ours(const fs::path& folder) {
     }
 }
 
-// What tells a folder from the one that is put in its place; nothing where there is none.
+// Identity of a folder, to detect its replacement; empty if it does not exist.
 std::optional<std::pair<dev_t, ino_t>> identity(const fs::path& folder) {
     struct stat entry {};
     if (::stat(folder.c_str(), &entry) != 0) return std::nullopt;
     return std::pair{entry.st_dev, entry.st_ino};
 }
 
-// The same of a folder that another run may replace while it is looked at: what was seen then is of two, and is looked
-// at again.
+// The same for a folder that another run may replace during the check: the check is then repeated.
 void check_ours(const fs::path& folder) {
     for (;;) {
         const auto before = identity(folder);
@@ -96,27 +116,25 @@ void check_ours(const fs::path& folder) {
     }
 }
 
-// Removes what check_ours would let pass, then the folders that are empty; the manifest last, so that a kill
-// on the way leaves what can still be recognised.
+// Removes the files accepted by check_ours, then empty folders; the manifest last, so that an
+// interrupted removal leaves a recognisable folder.
 void remove_ours(const fs::path& folder) {
     std::error_code ignored;
     if (fs::is_regular_file(fs::symlink_status(folder / marker))) {
         for (const auto& entry : fs::directory_iterator(folder, ignored))
             if (entry.path().filename() != marker) fs::remove_all(entry.path(), ignored);
-        fs::remove(folder / marker, ignored);  // last: a kill on the way leaves what is still recognised
+        // last: an interrupted removal leaves a recognisable folder
+        fs::remove(folder / marker, ignored);
         ::rmdir(folder.c_str());
         return;
     }
     const auto listed = listed_in(folder);
     for (const auto& file : files_in(folder))
         if (file != manifest && is_ours(folder, file, listed)) fs::remove(folder / file, ignored);
-    std::vector<fs::path> folders;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_directory() && !entry.is_symlink()) folders.push_back(entry.path());
-    std::ranges::sort(folders, std::ranges::greater{}, [](const fs::path& f) { return f.native().size(); });
-    for (const auto& inner : folders) ::rmdir(inner.c_str());
+    for (const auto& inner : folders_in(folder))
+        if (is_ours(inner, listed)) ::rmdir((folder / inner).c_str());
     if (!listed.empty() && files_in(folder).size() == 1) fs::remove(folder / manifest, ignored);
-    ::rmdir(folder.c_str());  // fails where something is left
+    ::rmdir(folder.c_str());  // fails if the folder is not empty
 }
 
 std::string staging_prefix(const fs::path& target) {
@@ -134,7 +152,7 @@ int lock_folder(const fs::path& folder) {
     return lock;
 }
 
-// What a run that was killed left beside the folder. Its owner held a lock on it while it lived.
+// Removes staging folders of killed runs. A living owner holds a lock on its folder.
 void remove_abandoned(const fs::path& target) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(target.parent_path(), ignored)) {
@@ -145,7 +163,8 @@ void remove_abandoned(const fs::path& target) {
         if (lock < 0) continue;
         try {
             remove_ours(entry.path());
-        } catch (const std::exception&) {  // somebody else's after all, or not to be read: it stays
+            // a folder of another program, or an unreadable one: kept
+        } catch (const std::exception&) {
         }
         ::close(lock);
     }
@@ -158,7 +177,7 @@ void flush_folder(const fs::path& folder) {
     ::close(open);
 }
 
-// The folder itself, behind links, after the check that it may be replaced.
+// The folder after resolving links and checking that it may be replaced.
 fs::path resolved(const fs::path& folder) {
     std::error_code failed;
     if (folder.empty()) fail("''", "is no name of a folder");
@@ -186,7 +205,9 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
     fs::create_directories(target_.parent_path(), failed);
     if (failed) fail(folder, fmt::format("cannot make its folder: {}", failed.message()));
     remove_abandoned(target_);
-    // Another run may take it for one that was left, before it is locked; then it is gone, or locked by that one.
+    const auto no_cleanup = no_cleanup_now();
+    // Before this run locks the new folder, another run may remove it as abandoned: then it does
+    // not exist, or is locked by the other run, and a new one is created.
     while (lock_ < 0) {
         std::string name = (target_.parent_path() / (staging_prefix(target_) + "XXXXXX")).string();
         if (::mkdtemp(name.data()) == nullptr)
@@ -194,10 +215,12 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
         staging_ = name;
         lock_ = lock_folder(staging_);
         struct stat entry {};
-        if (lock_ < 0 && errno != EWOULDBLOCK && errno != ENOENT) break;  // a file system without locks
+        // a file system without locks
+        if (lock_ < 0 && errno != EWOULDBLOCK && errno != ENOENT) break;
         if (lock_ >= 0 && (::fstat(lock_, &entry) != 0 || entry.st_nlink == 0))
             ::close(std::exchange(lock_, -1));
     }
+    cleanup_.emplace([staging = staging_](int) { remove_ours(staging); });
     fill(staging_ / marker, "");
     ::chmod(
         staging_.c_str(), 0777 & ~[] {
@@ -212,7 +235,7 @@ Staging::~Staging() {
     if (staging_.empty()) return;
     try {
         remove_ours(staging_);
-    } catch (const std::exception&) {  // what cannot be read is left beside the folder
+    } catch (const std::exception&) {  // an unreadable folder is left beside the new one
     }
 }
 
@@ -228,7 +251,7 @@ void Staging::publish() {
     if (::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
         staging_.clear();
     } else if (errno == EEXIST) {
-        check_ours(target_);  // again: somebody may have put a file there meanwhile
+        check_ours(target_);  // repeated: a file may have been added meanwhile
         if (::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
             fail(target_, fmt::format("cannot be replaced in one step ({}); remove it or choose another "
                                       "folder",

@@ -1,8 +1,8 @@
-// A folder of files is replaced in one step: at any moment it is the old one or the new one.
+// Atomic replacement of a folder of files: at any moment it is the old one or the new one.
 //
-// What a folder holds stands in its `manifest`, each file with a hash of its content. Only a folder whose
-// every file is on its own manifest, as it was written, is ever replaced: nobody's files but our own are
-// deleted, nor what somebody made of them.
+// The `manifest` of a folder lists each file with a hash of its content. A folder is replaced only
+// if every file is on its manifest with unchanged content, and every subfolder contains such a
+// file. So no file of another program and no edited file is deleted.
 #pragma once
 
 #include <filesystem>
@@ -14,31 +14,34 @@
 namespace elastocheck::reports {
 
 inline constexpr const char* manifest = "files.txt";
-inline constexpr const char* manifest_head = "elastocheck files 1";  // its first line; then "HASH  PATH"
+// its first line; then "HASH  PATH"
+inline constexpr const char* manifest_head = "elastocheck files 1";
 
-// The new folder while it is being filled, beside the one it will replace. One that is not published is
-// removed.
+// Staging folder: the new folder while it is written, beside the one that it replaces. It is
+// removed unless published, also when a signal ends the program.
 class Staging {
   public:
-    // Throws FileError when `folder` is a file, or holds anything that cannot be shown to be ours.
+    // Throws FileError when `folder` is a file, or holds a file that is not certainly made by this
+    // program.
     explicit Staging(const std::filesystem::path& folder);
-    static void check(const std::filesystem::path& folder);  // only that
+    static void check(const std::filesystem::path& folder);  // the check alone
     ~Staging();
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
 
     const std::filesystem::path& path() const { return staging_; }
 
-    // Writes the manifest and puts the new folder in the place of the old one. Throws FileError; the old one
-    // is then untouched.
+    // Writes the manifest and replaces the old folder. Throws FileError; the old folder is then
+    // untouched.
     void publish();
 
   private:
     std::filesystem::path target_, staging_;
-    int lock_ = -1;  // held on the staging folder while its owner lives
+    int lock_ = -1;  // on the staging folder, held for the lifetime of its owner
+    std::optional<CleanupOnSignal> cleanup_;
 };
 
-// A whole folder in one step: of every file its name and content.
+// A whole folder in one step: names and contents of its files.
 struct NamedContent {
     std::string name, content;
 };

@@ -1,4 +1,4 @@
-// How much is read of what comes from elsewhere. What this program writes is smaller, within the limits of its runs
+// Size limits of external input. Output of this program is smaller, by the limits of its runs
 // (command/limits.hpp).
 #pragma once
 
@@ -6,12 +6,13 @@
 
 namespace elastocheck::reports {
 
-inline constexpr std::size_t largest_file = std::size_t{512} << 20;  // [bytes] of a result, the largest kind
+// [bytes] of a result, the largest kind
+inline constexpr std::size_t largest_file = std::size_t{512} << 20;
 inline constexpr std::size_t largest_baseline = std::size_t{64} << 20;     // [bytes]
 inline constexpr std::size_t largest_measurement = std::size_t{64} << 20;  // [bytes]
 inline constexpr std::size_t most_measured = 100'000;                      // points in a measurement
 
 inline constexpr int deepest_json = 64;      // a result needs fourteen
-inline constexpr double largest_json = 2e9;  // [bytes] in memory, as its signs tell before it is parsed
+inline constexpr double largest_json = 2e9;  // [bytes] in memory, estimated before parsing
 
 }  // namespace elastocheck::reports

@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view word) {
     return word;
 }
 
-// Where the cell ends that the line begins with: a comma between quotes is none.
+// End of the first cell of a line; commas between quotes do not count.
 std::size_t end_of_cell(std::string_view line) {
     const auto begin = line.find_first_not_of(" \t");
     if (begin == line.npos || line[begin] != '"') return line.find(',');
@@ -62,7 +62,8 @@ double number_in(std::string_view cell, const std::string& file, int line, const
 void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
                 const std::function<void(const Cells&, int)>& head,
                 const std::function<void(const Cells&, int)>& row) {
-    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // the byte-order mark that spreadsheets write
+    // byte-order mark written by spreadsheets
+    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);
     if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
         fail_at(file, 0, "is UTF-16; save it as CSV in UTF-8");
     int number = 0;

@@ -25,7 +25,7 @@ bool is_known(const std::string& unit) {
            std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
 }
 
-// A field of the file, with the path to it for messages.
+// A field of the file with its path for messages.
 struct Field {
     const json& value;
     std::string path;
@@ -35,7 +35,7 @@ struct Field {
     throw BaselineError(fmt::format("{}: {}", field.path.empty() ? "the file" : field.path, what));
 }
 
-// The fields of an object: exactly these, and perhaps `more`.
+// Requires exactly these fields of an object, and optionally `more`.
 void expect_fields(const Field& in, std::initializer_list<const char*> names, std::string_view more = "") {
     if (!in.value.is_object()) refuse(in, "is not an object");
     for (const char* name : names)
@@ -63,7 +63,7 @@ std::string text(const Field& field) {
     return text;
 }
 
-// Text of several lines.
+// A text of several lines.
 std::string paragraphs(const Field& field) {
     if (!field.value.is_string()) refuse(field, "is not a text");
     auto text = field.value.get<std::string>();
@@ -85,7 +85,7 @@ std::vector<double> numbers(const Field& field) {
     return values;
 }
 
-// The one of `kinds` that has this name.
+// The element of `kinds` with this name.
 template <class Kinds>
 auto named(const Field& field, const Kinds& kinds) {
     const std::string word = text(field);
@@ -126,7 +126,7 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& field) 
     for (const auto kind : compare::tolerance_classes) {
         const Field of_class = at(field, name(kind));
         if (!of_class.value.is_object()) refuse(of_class, "is not an object");
-        compare::Tolerances& tolerances = result[kind];  // be there none of its own
+        compare::Tolerances& tolerances = result[kind];  // also if it has no entries
         for (const auto& [key, value] : of_class.value.items()) {
             const Field tolerance{value, of_class.path + "." + key};
             expect_fields(tolerance, {"atol", "rtol"});
@@ -211,7 +211,7 @@ BaselineFile parse(const json& whole) {
     return file;
 }
 
-// First line of what a command prints, "" when it fails.
+// First line of the output of a command, "" when it fails.
 std::string first_line(const std::string& command) {
     FILE* pipe = ::popen((command + " 2>/dev/null").c_str(), "r");
     if (pipe == nullptr) return "";
@@ -289,8 +289,8 @@ BuildDistance distance(const Provenance& was, const Provenance& is) {
 }
 
 std::string not_committed(const std::filesystem::path& file) {
-    // A container's checkout often belongs to another user
-    // than the one who looks at it; only blobs are compared.
+    // A container's checkout often belongs to another user, which git rejects; only blobs are
+    // compared.
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
     const std::string git = "git -c safe.directory='*' -C " + for_shell(folder) + " ";
     const std::string leaf = file.filename().string();

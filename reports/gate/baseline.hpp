@@ -1,7 +1,7 @@
-// Baseline files: what was accepted of one scene, small enough to be read in a review.
+// Baseline files: accepted results of one scene, small enough to be reviewed.
 //
-// Beside each scene, in baselines/SCENE.json: one line a curve, sorted. The same format carries a measurement
-// that was made elsewhere.
+// Stored in baselines/SCENE.json beside each scene: one line per curve, sorted. The same format
+// carries a measurement from another machine.
 #pragma once
 
 #include <filesystem>
@@ -16,37 +16,38 @@
 
 namespace elastocheck::reports {
 
-// Raised when a field changes its meaning or vanishes.
+// Incremented when a field changes its meaning or is removed.
 inline constexpr const char* baseline_schema = "elastocheck/baseline/2";
 
 struct BaselineFile {
-    std::string scene_file;                      // relative to the folder of the baseline
-    std::string input_hash;                      // of the scene file
-    std::optional<std::vector<Number>> numbers;  // in it; none in files of before they were kept
+    std::string scene_file;  // relative to the folder of the baseline
+    std::string input_hash;  // of the scene file
+    // numbers of the scene; empty for older files without them
+    std::optional<std::vector<Number>> numbers;
     Provenance provenance;
     compare::Baseline baseline;
 };
 
-// A baseline that cannot be read; what() names the file and says why.
+// A baseline cannot be read; what() names the file with the reason.
 struct BaselineError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 std::string baseline_text(const BaselineFile& file);
 
-// Strict: a field that is missing, unknown or of another kind is an error, so that a limit whose name is
-// misspelt is not silently no limit. A null among the numbers is NaN.
+// Strict: a missing, unknown or mistyped field is an error, so that a misspelt limit is not
+// silently ignored. A null among the numbers is NaN.
 BaselineFile parse_baseline(std::string_view text, const std::string& file_name);
 
-// The closest class that both builds allow, and in words what differs ("" for the same build).
+// Closest tolerance class for the two builds, and the differences as text ("" for the same build).
 struct BuildDistance {
     compare::ToleranceClass kind = compare::ToleranceClass::same_build;
     std::string differs;  // "compiler: GNU 12.2.0, now Clang 14.0.6"
 };
 BuildDistance distance(const Provenance& was, const Provenance& is);
 
-// Why nobody can have reviewed this baseline file: it is not what the git checkout around it has committed.
-// Empty when it is.
+// Reason why a baseline file is unreviewed: it differs from the committed version in its git
+// checkout. Empty if it is committed.
 std::string not_committed(const std::filesystem::path& file);
 
 }  // namespace elastocheck::reports

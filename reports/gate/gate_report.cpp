@@ -19,17 +19,17 @@ using compare::Offence;
 using json = nlohmann::ordered_json;
 
 constexpr std::size_t rows_in_table = 10, annotations_in_all = 10;
-// A step summary is refused from 1 MiB on; this many rows of cells this long stay below it.
+// A step summary is rejected from 1 MiB; this many rows with cells of this length stay below it.
 constexpr std::size_t rows_in_summary = 100, scenes_in_summary = 300, cell_length = 300;
 
-// The worst number of a channel or counter, over branches, legs and loads: what a reader wants to know first.
+// Worst number of a channel or counter over branches, legs and loads.
 struct Worst {
     const GatedScene* scene;
     const Offence* offence;
-    std::size_t numbers = 1;  // of this channel out of tolerance in all
+    std::size_t numbers = 1;  // number of values of this channel out of tolerance
 };
 
-// Of offences in the order of comes_before.
+// Keeps the order of comes_before.
 std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
                                          const std::vector<const Offence*>& offences) {
     std::vector<Worst> all;
@@ -44,7 +44,7 @@ std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
     return all;
 }
 
-// In the order of comes_before, over all scenes.
+// Over all scenes, in the order of comes_before.
 std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& scenes) {
     std::vector<Worst> all;
     for (const auto* scene : scenes) {
@@ -74,7 +74,7 @@ std::string what(const Offence& o) {
     return o.of_limit ? fmt::format("limit on {}", name(o.quantity)) : name(o.quantity);
 }
 
-// How often what an engineer would notice; of a limit that is no question.
+// Ratio to a noticeable change; "limit" for an absolute limit.
 std::string times_noticeable(const Offence& o) {
     return o.of_limit ? "limit" : fmt::format("{:.3g}", o.noticed());
 }
@@ -107,10 +107,11 @@ std::string headline(const GatedScene& scene) {
     return line;
 }
 
-// One cell of a Markdown table, not too long; nothing in it is markup.
+// One cell of a Markdown table, truncated and escaped.
 std::string cell(std::string_view text) {
     if (std::string safe = for_markdown(text); safe.size() <= cell_length) return safe;
-    std::size_t end = std::min(text.size(), cell_length / 2);  // every character may need a backslash
+    // each character may take a backslash
+    std::size_t end = std::min(text.size(), cell_length / 2);
     while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
     return for_markdown(text.substr(0, end)) + "...";
 }
@@ -125,7 +126,7 @@ json count_beyond(std::size_t all, std::size_t shown) {
     return all > shown ? json(std::to_string(all - shown)) : json(false);
 }
 
-// ---- JUnit: a test that says whether the scene could be judged, and one a branch that says what came of it.
+// ---- JUnit: one test for whether the scene could be judged, and one per branch for its result.
 
 struct Test {
     const GatedScene* scene;
@@ -148,7 +149,7 @@ std::vector<Test> tests_of(const GatedScene& scene) {
     return tests;
 }
 
-// The beginning of a text, whole characters, where it is longer than `most` bytes.
+// Truncates a text to `most` bytes at a character boundary.
 std::string beginning(std::string_view text, std::size_t most) {
     if (text.size() <= most) return std::string(text);
     while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
@@ -157,7 +158,7 @@ std::string beginning(std::string_view text, std::size_t most) {
 
 constexpr std::size_t line_length = 300;
 
-// Up to `most` lines, each not too long, and how many more there are.
+// Up to `most` truncated lines, and the number of the others.
 std::string lines(const std::vector<std::string>& all, std::size_t most) {
     std::string text;
     for (std::size_t k = 0; k < std::min(most, all.size()); ++k)
@@ -190,7 +191,7 @@ void add_test(pugi::xml_node suite, const Test& test, std::size_t most_lines) {
     add_message(node, "failure", stories.front(), lines(stories, most_lines) + changed);
 }
 
-// The first `most` of the tests, with up to `most_lines` numbers of each.
+// The first `most` tests, with up to `most_lines` numbers each.
 std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size_t most_lines) {
     pugi::xml_document document;
     auto declaration = document.append_child(pugi::node_declaration);

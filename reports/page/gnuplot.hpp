@@ -1,4 +1,4 @@
-// Running gnuplot.
+// Runs gnuplot.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-// gnuplot is missing or refused a script; what() says which and what it said.
+// gnuplot is missing or rejected a script; what() names the script and contains gnuplot's message.
 struct PlotError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -10,12 +10,12 @@ namespace {
 
 constexpr double gap = 2;  // [px] between boxes
 
-// Whether the segment a b has a point in the box (Liang and Barsky): the part of 0 ... 1 that lies within each pair of
-// sides in turn.
+// Whether the segment a b intersects the box (Liang & Barsky 1984): the part of 0 ... 1 within each
+// pair of sides in turn.
 bool crosses(const Spot& a, const Spot& b, const Box& box) {
     if (std::max(a.x, b.x) < box.left || std::min(a.x, b.x) > box.right || std::max(a.y, b.y) < box.bottom ||
         std::min(a.y, b.y) > box.top)
-        return false;  // most are
+        return false;  // the usual case
     double from = 0, to = 1;
     const auto clip = [&](double start, double step, double low, double high) {
         if (step == 0) return start >= low && start <= high;
@@ -38,9 +38,10 @@ bool overlap(const Box& a, const Box& b) {
 }
 
 double text_width(std::string_view text, double size) {
-    double letters = 0;  // in ems
+    double letters = 0;  // in em
     for (const char c : text) {
-        if ((static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;  // not the first byte of a letter
+        // continuation byte of a character
+        if ((static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;
         letters += std::string_view("ijlI.,:;'|!()[] ").find(c) != std::string_view::npos ? 0.4
                    : std::string_view("mwMW%@").find(c) != std::string_view::npos         ? 1.0
                    : c >= 'A' && c <= 'Z'                                                 ? 0.72
@@ -50,7 +51,7 @@ double text_width(std::string_view text, double size) {
 }
 
 std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, const Paper& paper) {
-    // Where there are most others about, first.
+    // Points in crowded places first.
     std::vector<std::size_t> order(labels.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     const auto company = [&](std::size_t k) {
@@ -71,7 +72,8 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
         for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
-                // The box touches the circle of this reach with the side or corner that faces the point.
+                // The side or corner of the box that faces the point touches the circle of this
+                // radius.
                 const double x = label.at.x + reach * std::cos(angle),
                              y = label.at.y + reach * std::sin(angle);
                 const double across = 0.5 * (std::cos(angle) - 1), up = 0.5 * (std::sin(angle) - 1);
@@ -84,7 +86,7 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                     continue;
                 const Spot near{std::clamp(label.at.x, box.left, box.right),
                                 std::clamp(label.at.y, box.bottom, box.top)};
-                // Neither may a leader run through words, nor words lie on a leader.
+                // Leaders must not cross words, nor words cover leaders.
                 if (reach > 15 && std::ranges::any_of(taken, [&](const Box& other) {
                         return crosses(label.at, near, other) &&
                                !crosses(label.at, label.at, wider(other, gap));

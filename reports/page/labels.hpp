@@ -1,4 +1,4 @@
-// Where the words of a drawing go, so that none lies on another.
+// Placement of labels in a drawing without overlap.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@ struct Box {
 };
 bool overlap(const Box& a, const Box& b);
 
-// Room for a line of text, more rather than less: what its letters take in the widest of the usual fonts.
+// Estimated width of a line of text, at least that of the widest usual font.
 double text_width(std::string_view text, double size);
 
 struct Label {
-    Spot at;  // of what it names
+    Spot at;  // of the labelled point
     double width = 0, height = 0;
 };
 
 struct Paper {
     double width = 0, height = 0;
-    std::vector<std::array<Spot, 2>> lines;  // which a label crosses only where there is nowhere else
-    std::vector<Box> taken;                  // by other words and by symbols, where no label goes
+    std::vector<std::array<Spot, 2>> lines;  // crossed by a label only as a last resort
+    std::vector<Box> taken;                  // boxes of other words and symbols, which labels avoid
 };
 
-// The box of each label, or nothing where there is no room for it near enough.
+// Box of each label; empty where there is no free place near the point.
 std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, const Paper& paper);
 
 }  // namespace elastocheck::reports

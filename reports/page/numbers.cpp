@@ -9,8 +9,8 @@ namespace {
 
 constexpr const char* dash = "–";
 constexpr const char* minus = "−";
-constexpr const char* narrow_space = "\u202f";  // not broken at the end of a line
-constexpr const char* solid_space = "\u00a0";   // neither
+constexpr const char* narrow_space = "\u202f";  // no line break
+constexpr const char* solid_space = "\u00a0";   // no line break
 
 std::string raised(int exponent) {
     constexpr const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -19,7 +19,7 @@ std::string raised(int exponent) {
     return text;
 }
 
-// Of a positive number: digits without exponent where that is short, else a mantissa and a power of ten.
+// A positive number: digits without exponent where short, else mantissa and power of ten.
 std::string magnitude(double value, int digits) {
     const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
     const auto e = scientific.find('e');

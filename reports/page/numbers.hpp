@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Formatting of numbers for readers.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace elastocheck::reports {
 
-// Three to four significant digits, a true minus sign, powers of ten as such: "2.91", "−0.0018",
-// "2.6 × 10⁻¹³". A dash for what is not finite.
+// Three to four significant digits, a true minus sign, powers of ten: "2.91", "−0.0018",
+// "2.6 × 10⁻¹³". A dash for a value that is not finite.
 std::string number(double value, int digits = 3);
 std::string signed_number(double value, int digits = 3);  // with a plus
 
-// Below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's: 0.
+// 0 for values below 1e-9 of a mm, deg, N or N·m, which are rounding.
 std::string deviation_number(double value);
 
 // "2.9 %"; two significant digits, "< 0.001 %" for less.
@@ -21,6 +21,6 @@ std::string whole_number(long value);  // "12 345", with narrow spaces
 
 // Two significant digits and the unit, kept on one line: "0.0018 deg".
 std::string quantity(double value, std::string_view unit);
-std::string setting(double value, std::string_view unit);  // as somebody gave it: "0.01 mm"
+std::string setting(double value, std::string_view unit);  // as entered by the user: "0.01 mm"
 
 }  // namespace elastocheck::reports

@@ -1,4 +1,5 @@
-// What a report is made of, before it is HTML, Markdown or a plot: sections with sentences, figures, tables.
+// Content of a report independent of HTML, Markdown and plots: sections with sentences, figures,
+// tables.
 #pragma once
 
 #include <limits>
@@ -12,14 +13,14 @@ namespace elastocheck::reports {
 
 struct Column {
     std::string name;    // with its unit
-    bool words = false;  // text, set flush left
+    bool words = false;  // text, left-aligned
 };
 
 struct Table {
     std::string caption{};
     std::vector<Column> columns{};
     std::vector<std::vector<std::string>> rows{};
-    bool folded = false;  // shown on demand
+    bool folded = false;  // collapsed by default
 };
 
 // Position in the palette (svg.hpp): 0 is ink.
@@ -27,12 +28,13 @@ enum Colour { ink, vermilion, blue, green, purple, ochre, slate, pink, sky, fain
 
 struct Series {
     enum class Style { line, wide, dashed, thin, points, rings, line_points, bars, heavy, hair, face };
-    std::string title{};  // empty: not in the key
+    std::string title{};  // empty: not in the legend
     Style style = Style::line;
     Colour colour = ink;
-    int mark = 0;                             // which symbol, for points
-    std::vector<std::vector<double>> rows{};  // x, y; bars: x, y, x low, x high, y low, y high. Empty: a gap
-                                              // face: the corners of one area
+    int mark = 0;  // symbol index, for points
+    // x, y; bars: x, y, x low, x high, y low, y high; face: corners of one area. An empty row is a
+    // gap
+    std::vector<std::vector<double>> rows{};
 };
 
 struct Band {
@@ -41,14 +43,14 @@ struct Band {
     Colour colour = green;
 };
 
-// A word in a drawing, centred in height.
+// A word in a drawing, vertically centred.
 struct Word {
     double x = 0, y = 0;
     std::string text{};
     Colour colour = ink;
 };
 
-// What a drawing without axes shows of the plane: from x, y on, to scale.
+// Visible part of the plane in a drawing without axes, from x, y on.
 struct Sheet {
     double x = 0, y = 0;
     double scale = 1;           // [px] per unit
@@ -56,37 +58,38 @@ struct Sheet {
 };
 
 struct Figure {
-    std::string id{};           // within its scene
+    std::string id{};           // unique within its scene
     std::string title{};        // short, above the plot
-    std::string description{};  // what is seen, for those who do not see it
+    std::string description{};  // alternative text
     std::string x{}, y{};       // axes with units
     bool log_x = false, log_y = false, equal_axes = false, reversed_x = false, reversed_y = false;
     bool key = true;
-    double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: as the data ask
-    double x_tick = 0, y_tick = 0;  // distance of ticks; 0: as the data ask
-    double width = 1, height = 1;   // shares of the usual ones
+    double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: from the data
+    double x_tick = 0, y_tick = 0;  // distance of ticks; 0: automatic
+    double width = 1, height = 1;   // relative to the default size
     std::vector<Series> series{};
     std::vector<Band> bands{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
-    std::optional<Sheet> sheet{};  // a drawing; `width` and the like say nothing then
+    // a drawing without axes; `width` and similar fields are unused then
+    std::optional<Sheet> sheet{};
     std::vector<Word> words{};
 };
 
-// Figures that are read together, with what they say and their numbers.
+// Figures that belong together, with a caption and their numbers.
 struct FigureGroup {
     std::string caption{};
     std::vector<Figure> figures{};
     Table table{};
 };
 
-enum class Mark { none, pass, fail, open };  // what a sentence of judgement says
+enum class Mark { none, pass, fail, open };  // verdict mark of a section
 
 struct Section {
     std::string id;  // also the name of its text template
     std::string title;
-    std::string part{};  // of the page, a heading above the first section of each
+    std::string part{};  // of the page; heading above the first section of each part
     Mark mark = Mark::none;
-    nlohmann::ordered_json words = nlohmann::ordered_json::object();  // what the template says it with
+    nlohmann::ordered_json words = nlohmann::ordered_json::object();  // data of the template
     std::vector<FigureGroup> figures{};
     std::vector<Table> tables{};
 };

@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr int width = 440, height = 290;  // [px] of a figure, for the type to keep its size on a phone
+// [px] of a figure, such that text stays readable on a phone
+constexpr int width = 440, height = 290;
 
 const char* style_of(Series::Style style) {
     switch (style) {
@@ -41,7 +42,7 @@ json range_of(double low, double high) {
     return fmt::format("{}:{}", end(low), end(high));
 }
 
-// From tick to tick of a logarithmic axis: so many decades that seven ticks or so are left, which no two of touch.
+// Tick distance of a logarithmic axis in decades, for at most about seven ticks without overlap.
 std::string decades(const Figure& figure, std::size_t axis, double low, double high) {
     double least = std::isfinite(low) ? low : INFINITY, most = std::isfinite(high) ? high : 0;
     for (const auto& series : figure.series)
@@ -68,7 +69,7 @@ json script_data(const Figure& figure, const std::string& name) {
                           {"bars", s.style == Series::Style::bars},
                           {"last", k + 1 == figure.series.size() && !labelled}});
     }
-    // Under an equal-axes plot's key there is room for as many lines as it has entries.
+    // The legend under an equal-axes plot has one line per entry.
     const auto entries =
         std::ranges::count_if(figure.series, [](const Series& s) { return !s.title.empty(); });
     for (const auto& band : figure.bands)
@@ -88,9 +89,9 @@ json script_data(const Figure& figure, const std::string& name) {
                  {"y", range_of(s->y, s->y + s->height / s->scale)}};
     const double wide = figure.sheet ? figure.sheet->width : width * figure.width,
                  high = figure.sheet ? figure.sheet->height : height * figure.height;
-    double widest = 0;  // of the words beside the axis [px], which gnuplot takes for narrower than they are
+    double widest = 0;  // width of the words beside the axis [px], which gnuplot underestimates
     for (const auto& [at, text] : figure.y_ticks) {
-        std::string plain;  // to gnuplot a tick's text is a format
+        std::string plain;  // gnuplot interprets a tick label as a format
         for (const char c : text) plain += c == '%' ? "%%" : std::string(1, c);
         ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", plain}});
         widest = std::max(widest, text_width(text, 11));
@@ -126,14 +127,14 @@ json script_data(const Figure& figure, const std::string& name) {
             {"faint", palette[faint].light}};
 }
 
-// One block per series, two blank lines between them, one where a line is broken.
+// One block per series, separated by two blank lines; one blank line at a gap.
 std::string figure_data(const Figure& figure) {
     const bool bars = !figure.series.empty() && figure.series.front().style == Series::Style::bars;
     std::string text = bars ? "series,x,y,x low,x high,y low,y high\n" : "series,x,y\n";
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
         if (k > 0) text += "\n\n";
         const std::string name = for_csv(figure.series[k].title);
-        bool broken = true;  // no blank line first, none twice
+        bool broken = true;  // avoids a blank line at the start, and two in a row
         for (const auto& row : figure.series[k].rows) {
             if (row.empty() && broken) continue;
             broken = row.empty();
@@ -162,7 +163,7 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
         scripts.push_back("figures/" + plot.name + ".gp");
     }
     if (scripts.empty()) return {};
-    run_gnuplot(folder, scripts);  // one process: each script begins by resetting everything
+    run_gnuplot(folder, scripts);  // one process: each script resets all settings first
     if (options.pdf) {
         scripts.insert(scripts.begin(), {"-e", "pdf=1"});
         run_gnuplot(folder, scripts);

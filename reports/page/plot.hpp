@@ -1,4 +1,4 @@
-// Figures drawn by gnuplot, each from a script and data that stay beside it.
+// Figures by gnuplot, with script and data kept beside each.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace elastocheck::reports {
 
 struct Plot {
     const Figure* figure = nullptr;
-    std::string name;  // of its files, without an ending
+    std::string name;  // of its files, without extension
 };
 
 struct PlotOptions {
@@ -21,11 +21,11 @@ struct PlotOptions {
     bool keep_source = true;  // scripts and data
 };
 
-// A figure's script and data, as they stand beside it: NAME.csv, NAME.gp.
+// Script and data of a figure: NAME.csv, NAME.gp.
 std::vector<NamedContent> sources(const Plot& plot);
 
-// Writes figures/NAME.svg with NAME.gp and NAME.csv into `folder`; one picture per plot. The k-th picture's
-// ids begin with "fk", counted from 1. Throws PlotError, FileError.
+// Writes figures/NAME.svg with NAME.gp and NAME.csv into `folder`; one picture per plot. The k-th
+// picture's ids begin with "fk", counted from 1. Throws PlotError, FileError.
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const std::filesystem::path& folder,
                                const PlotOptions& options);
 

@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-// ---- the page
+// ---- Page
 
 json table_json(const Table& table) {
     json columns = json::array(), rows = json::array();
@@ -46,7 +46,7 @@ json table_json(const Table& table) {
     return {{"caption", table.caption}, {"columns", columns}, {"rows", rows}, {"folded", table.folded}};
 }
 
-// Sentences of a section, a paragraph each.
+// Sentences of a section, one paragraph each.
 json paragraphs(const Section& section) {
     json list = json::array();
     std::istringstream lines(render("text/" + section.id, section.words, Escape::nothing));
@@ -57,7 +57,7 @@ json paragraphs(const Section& section) {
     return list;
 }
 
-// A scene, its sections, and what its files and ids are called.
+// A scene with its sections and its prefix for files and ids.
 struct ScenePart {
     Field scene;
     std::string id;
@@ -149,7 +149,7 @@ struct Page {
     }
 };
 
-// Several scenes at a glance: how far each is off, and whether that passes.
+// Summary of several scenes: deviation and verdict of each.
 Table summary(const std::list<ScenePart>& parts) {
     Table table{.caption =
                     "At a glance: the largest deviations of the linear recursion as published, and whether "
@@ -161,6 +161,7 @@ Table summary(const std::list<ScenePart>& parts) {
                             {"angle, at equal load or drive"},
                             {"angle, at equal travel"},
                             {"wheel rate"},
+                            {"force, moment or rate, of its extent"},
                             {"cheapest method within the tolerance", true}}};
     for (const auto& part : parts) {
         std::vector<std::string> row{part.scene["name"].text()};
@@ -177,6 +178,11 @@ Table summary(const std::list<ScenePart>& parts) {
         const double off = rate ? (*rate)["off"].number() : NAN;
         row.push_back(!rate ? "–"
                             : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
+        double other = -1;
+        for (const char* key : {"other", "other_across"})
+            if (const auto worst = judgement ? judgement->find(key) : std::nullopt)
+                other = std::max(other, (*worst)["share"].number());
+        row.push_back(other < 0 ? "–" : percent(other));
         const auto trade = part.scene.find("trade");
         const auto chosen = trade ? trade->find("recommendation") : std::nullopt;
         row.push_back(chosen ? configuration(*chosen) : "–");
@@ -199,7 +205,7 @@ json provenance(const Field& result) {
     return table_json(table);
 }
 
-// Faults that were put into a copy of the code, and the alarm that rang first.
+// Seeded faults (mutation tests), and the first failing check of each.
 json alarms(const Field& result) {
     const auto found = result.find("alarms");
     if (!found) return nullptr;
@@ -247,7 +253,7 @@ std::string numbers_csv(const json& result, const std::string& file) {
                 const auto values = truth.channel(channel.name);
                 const auto load = branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
                 if (values.empty() || !load) continue;
-                // The references agree to far better; a deviation carries the rounding of its many steps.
+                // The references agree far better; a deviation contains the rounding of many steps.
                 const double range = (*load)["range"].number(), fine = 1e-6, coarse = 1e-6 + 1e-6 * range;
                 row(scene, branch, channel, "equilibrium at the end", values.back(), fine);
                 row(scene, branch, channel, by_parameter + ": deviation at the end", (*load)["end"].number(),
@@ -265,7 +271,8 @@ std::string numbers_csv(const json& result, const std::string& file) {
 
 namespace {
 
-// Also what no section reads: it goes into the report's own result.json. (Ends of lines are escaped there.)
+// Checks also fields without a section, since they are copied to the report's own result.json. (It
+// escapes line ends.)
 void expect_plain(const Field& field) {
     const auto check = [&](std::string text) {
         std::ranges::replace_if(
@@ -308,7 +315,7 @@ namespace {
 // A report before its figures are drawn.
 struct Draft {
     Page page{};
-    std::list<ScenePart> parts{};  // plots point into them
+    std::list<ScenePart> parts{};  // pointers in `plots` refer to these
     std::vector<Plot> plots{};
 };
 
@@ -322,13 +329,13 @@ Draft draft(const Field& root) {
     return made;
 }
 
-// Its pages and tables, the figures in it; and the answer of each scene.
+// Pages and tables with their figures, and the answer of each scene.
 struct Texts {
     std::vector<NamedContent> files{};
     std::vector<Answer> answers{};
 };
 
-// `sections` as Page::scene has them.
+// `sections` as in Page::scene.
 Answer answer(const Field& scene, const json& sections) {
     const Field verdict = scene["verdict"];
     Answer made{.name = scene["name"].text(),

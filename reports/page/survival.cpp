@@ -10,7 +10,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// How a sign is tinted: what a class of the style sheet is called.
+// Style-sheet class of a sign.
 const char* tint(char sign) {
     switch (sign) {
         case '!': return "honest";
@@ -22,7 +22,7 @@ const char* tint(char sign) {
     }
 }
 
-// Signs side by side, those of one tint together.
+// Adjacent signs of the same class, grouped.
 json runs(const Field& field, std::size_t solvers) {
     const std::string signs = field.text();
     if (signs.size() != solvers || signs.find_first_not_of("0123456789!~?X.") != signs.npos)
@@ -35,7 +35,7 @@ json runs(const Field& field, std::size_t solvers) {
     return {{"signs", signs}, {"runs", list}};
 }
 
-// What other arithmetic costs: of each scene, under each of them, the digits that each group of solvers loses.
+// Digits lost to other arithmetic, by scene, arithmetic and solver group.
 json arithmetic(const Field& part) {
     std::string groups;
     for (const auto& group : part["groups"].texts()) groups += (groups.empty() ? "" : ", ") + group;

@@ -1,4 +1,4 @@
-// The survival map of `elastocheck stress` as a part of the page.
+// Survival map of `elastocheck stress` as a part of the page.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace elastocheck::reports {
 
-// What the templates survival.mustache say it with; null where the document has none. Throws ResultError where a sign is
-// none of compare::sign.
+// Data of the templates survival.mustache; null if the document has none. Throws ResultError for a
+// sign that is not one of compare::sign.
 nlohmann::ordered_json survival(const Field& result);
 
 }  // namespace elastocheck::reports

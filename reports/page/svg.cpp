@@ -21,7 +21,7 @@ namespace {
 
 using pugi::xml_node;
 
-// "rgb(196,  66,  15)" or "#C4420F" of the palette.
+// Palette index of "rgb(196,  66,  15)" or "#C4420F".
 std::optional<std::size_t> colour_of(const char* text) {
     unsigned r = 0, g = 0, b = 0;
     if (std::sscanf(text, "rgb(%u,%u,%u)", &r, &g, &b) != 3 &&
@@ -61,7 +61,7 @@ void for_each(xml_node node, F&& f) {
 
 bool is(const xml_node& node, const char* name) { return std::strcmp(node.name(), name) == 0; }
 
-// The symbols that are drawn, and those they are made of.
+// Keeps the drawn symbols and those they refer to.
 void keep_used_symbols(xml_node svg) {
     for (bool again = true; again;) {
         std::set<std::string> used;
@@ -78,14 +78,14 @@ void keep_used_symbols(xml_node svg) {
     }
 }
 
-// Numbers to a tenth of a pixel, single spaces.
+// Rounds numbers to a tenth of a pixel, and collapses spaces.
 std::string coarser(std::string_view text) {
     std::string result;
     for (std::size_t k = 0; k < text.size();) {
         const std::size_t end = std::min(text.find_first_not_of("0123456789.", k), text.size());
         const std::string_view word = text.substr(k, end - k);
         if (word.find('.') != word.npos) {
-            double value = 0;  // a point whatever the locale: gnuplot writes one
+            double value = 0;  // decimal point in any locale, as written by gnuplot
             std::from_chars(word.data(), word.data() + word.size(), value);
             std::string number = fmt::format("{:.1f}", value);
             if (number.ends_with(".0")) number.resize(number.size() - 2);
@@ -109,15 +109,15 @@ bool same_attributes(const xml_node& a, const xml_node& b) {
     return !x && !y;
 }
 
-// What nearly every group says again; said once, by the root.
+// Attributes repeated by nearly every group; they move to the root.
 constexpr std::pair<const char*, const char*> usual[] = {{"fill", "none"},
                                                          {"stroke", "currentColor"},
                                                          {"stroke-linecap", "round"},
                                                          {"stroke-linejoin", "round"},
                                                          {"font-size", "11.00"}};
 
-// gnuplot opens a group for nearly every stroke; neighbours
-// that look alike become one. Many figures go into one page.
+// Merges neighbouring groups of equal attributes: gnuplot opens a group for nearly every stroke,
+// and a page has many figures.
 void shrink(xml_node root) {
     std::set<std::string> used;
     for_each(root, [&](xml_node node) { used.insert(node.attribute("xlink:href").value()); });
@@ -135,7 +135,7 @@ void shrink(xml_node root) {
         if (!is(node, "g") || !is(before, "g") || !same_attributes(node, before) ||
             node.attribute("transform"))
             return;
-        // for_each is on its way to the next sibling: gather into the later one
+        // for_each proceeds to the next sibling, so the later one is kept
         while (const xml_node child = before.last_child()) node.prepend_move(child);
         before.parent().remove_child(before);
     });
@@ -160,7 +160,7 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
     });
     keep_used_symbols(root);
     for_each(root, [](xml_node node) {
-        // the canvas it would paint if it were told a background
+        // canvas for a background colour, which is not set
         if (is(node, "rect") && std::strcmp(node.attribute("fill").value(), "none") == 0)
             node.parent().remove_child(node);
     });

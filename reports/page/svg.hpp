@@ -1,4 +1,4 @@
-// gnuplot's SVG -> one that reads in dark and light, alone or in a page, with or without eyes.
+// Converts gnuplot's SVG for light and dark pages, stand-alone or inline, with alternative text.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace elastocheck::reports {
 
-// Safe for the colour-blind, each with a twin for dark paper.
-// Order: page.hpp, Colour. Scripts use the light ones.
+// Colour-blind-safe palette with variants for dark background, in the order of Colour in page.hpp.
+// Scripts use the light variants.
 struct Tint {
     std::string_view light, dark;  // "#rrggbb"
 };
@@ -26,13 +26,13 @@ inline constexpr std::array<Tint, 10> palette{{
 }};
 
 struct Illustration {
-    std::string alone;    // a file of its own, with a style sheet and paper of its own
-    std::string inlined;  // to stand in a page that styles .e-s0 ... .e-k9 and .e-paper
+    std::string alone;    // a file with its own style sheet and background
+    std::string inlined;  // for a page that styles .e-s0 ... .e-k9 and .e-paper
 };
 
-// Removes what gnuplot leaves unused, turns palette colours into classes (e-s stroke, e-f fill, e-k both
-// through currentColor), prefixes every id with `id`, and gives it a name and a description. Throws
-// PlotError when `svg` is no whole SVG.
+// Removes unused parts, turns palette colours into classes (e-s stroke, e-f fill, e-k both through
+// currentColor), prefixes every id with `id`, and adds title and description. Throws PlotError when
+// `svg` is not a complete SVG.
 Illustration illustrate(const std::string& svg, const std::string& id, const std::string& title,
                         const std::string& description);
 

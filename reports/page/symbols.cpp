@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// The frame of a line: its length, and points given along it and across it.
+// Local frame of a line: its length, and points by coordinates along and across it.
 struct Frame {
     Spot from;
     double length, ux, uy;
@@ -65,7 +65,7 @@ Strokes damper(Spot a, Spot b) {
 
 Strokes barrel(Spot at, Spot along, double half_length) {
     constexpr double half = 4;
-    const double seen = std::hypot(along.x, along.y);  // of a length of 1
+    const double seen = std::hypot(along.x, along.y);  // of a unit length
     if (seen * half_length < half) return {ring(at, half + 1), ring(at, 1)};
     const Frame line(at, {at.x + along.x, at.y + along.y});
     const double l = seen * half_length;

@@ -1,4 +1,4 @@
-// The signs of a drawing board as strokes on paper [px].
+// Symbols of technical drawings as strokes on paper [px].
 #pragma once
 
 #include <vector>
@@ -11,14 +11,15 @@ using Stroke = std::vector<Spot>;
 using Strokes = std::vector<Stroke>;
 
 Stroke ring(Spot at, double radius);
-Strokes coil(Spot a, Spot b);    // a helix seen from its side; from its end a ring
+Strokes coil(Spot a, Spot b);    // coil spring in side view; a ring in end view
 Strokes damper(Spot a, Spot b);  // a tube from a, a rod to b, the piston between
 Strokes barrel(Spot at, Spot along,
-               double half_length);  // a sleeve about its axis `along` (foreshortened, up to 1)
+               // a sleeve along its axis `along` (foreshortened, length up to 1)
+               double half_length);
 Strokes cross(Spot at, double radius);
 Strokes diamond(Spot at, double radius);
 Strokes square(Spot at, double half_side);
-Strokes hatching(Spot at);  // the ground, under what stands on it
+Strokes hatching(Spot at);  // ground symbol
 Strokes arrow(Spot from, Spot to, bool both_ways = false);
 
 }  // namespace elastocheck::reports

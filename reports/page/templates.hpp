@@ -1,5 +1,5 @@
-// Templates hold the markup, C++ holds none. They are Mustache, live in reports/page/templates/ and are part
-// of the program.
+// Mustache templates with all markup of a report, from reports/page/templates/, compiled into the
+// program.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,11 +8,11 @@
 
 namespace elastocheck::reports {
 
-// What {{value}} does to special characters; {{{value}}} leaves them.
+// Escaping of {{value}}; {{{value}}} is not escaped.
 enum class Escape { html, markdown, gnuplot, nothing };
 
-// Fills reports/page/templates/NAME.mustache. Other templates are partials under their names,
-// {{>html/table}}. Throws std::logic_error when there is no such template or it is broken.
+// Renders reports/page/templates/NAME.mustache. Other templates are available as partials,
+// {{>html/table}}. Throws std::logic_error for a missing or invalid template.
 std::string render(std::string_view name, const nlohmann::ordered_json& data, Escape escape);
 
 }  // namespace elastocheck::reports

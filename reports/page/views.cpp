@@ -29,7 +29,8 @@ Place unit(const Place& v) {
     return length > 0 ? Place{v[0] / length, v[1] / length, v[2] / length} : v;
 }
 
-// The plane of a view: up is up, and from above forward is down the page, as below a front view on a drawing board.
+// Projection plane of a view: up is up; in the top view forward points down the page, as below a
+// front view in a technical drawing.
 struct Plane {
     Place right, up;
 
@@ -41,7 +42,8 @@ struct Plane {
     Spot operator()(const Place& p) const { return {dot(right, p), dot(up, p)}; }
 };
 
-// Both edges of a tyre, from the wheel's centre to its patch; how wide it is nobody says, it is drawn 0.6 of its radius.
+// Both edges of a tyre, from the wheel's centre to its patch; its width is unknown and drawn as 0.6
+// of the radius.
 std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Wheel& wheel) {
     const Place centre = s.points[wheel.centre].at, patch = s.points[wheel.patch].at,
                 e = unit(wheel.spin_axis);
@@ -64,7 +66,7 @@ std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Whee
     return edges;
 }
 
-// Outline of points on paper (Andrew's monotone chain).
+// Convex hull of points on paper (Andrew's monotone chain, 1979).
 Stroke hull(Stroke points) {
     std::ranges::sort(points, {}, [](const Spot& p) { return std::pair{p.x, p.y}; });
     Stroke round;
@@ -85,10 +87,10 @@ Stroke hull(Stroke points) {
     return round;
 }
 
-// Strokes on paper, gathered by how they look, in the order in which they cover each other.
+// Strokes on paper by style, in drawing order.
 struct Board {
     Plane plane;
-    double x = 0, y = 0;  // of the plane at the paper's corner [mm]
+    double x = 0, y = 0;  // plane coordinates of the paper's corner [mm]
     double scale = 1;     // [px/mm]
     std::vector<Series> series{};
     std::vector<Word> words{};
@@ -112,7 +114,7 @@ struct Board {
     void strokes(const Strokes& all, Series::Style style, Colour colour, bool in_the_way = true) {
         for (const auto& one : all) stroke(one, style, colour, in_the_way);
     }
-    // From its left end, centred in height.
+    // Text from its left end, vertically centred.
     Box word(Spot at, const std::string& text, Colour colour) {
         words.push_back({x + at.x / scale, y + at.y / scale, text, colour});
         const Box box{at.x, at.y - line_height / 2, at.x + text_width(text, letter), at.y + line_height / 2};
@@ -145,7 +147,7 @@ void draw_symbol(Board& board, const Suspension::Symbol& symbol) {
     } else if (symbol.kind == "plane") {
         board.strokes(diamond(at, 5), Style::line, blue);
     } else if (symbol.kind == "drive" && std::hypot(direction.x, direction.y) > 0.15) {
-        // beside the point, so that the arrow does not lie on what it moves
+        // beside the point, so that the arrow does not cover it
         const double length = std::hypot(direction.x, direction.y), nx = -direction.y / length,
                      ny = direction.x / length;
         const double off = ny < 0 ? -13 : 13;
@@ -157,7 +159,7 @@ void draw_symbol(Board& board, const Suspension::Symbol& symbol) {
     board.paper.taken.push_back({at.x - 5, at.y - 5, at.x + 5, at.y + 5});
 }
 
-// What the signs mean, of those that stand on the paper: in lines from the lower edge up.
+// Legend of the symbols in use, in lines from the lower edge up.
 struct Entry {
     std::string text;
     std::function<void(Board&, Spot)> sign;
@@ -223,7 +225,8 @@ struct Seat {
     double x;
     int line;
 };
-// Where the entries go on lines of this width; the lines are as many as the last one's, and one more.
+// Positions of the entries on lines of this width; the number of lines is the last entry's line
+// plus one.
 std::vector<Seat> seats(const std::vector<Entry>& list, double width) {
     std::vector<Seat> result;
     double x = 6;
@@ -249,7 +252,7 @@ void draw_legend(Board& board, const std::vector<Entry>& list, double width) {
     board.paper.taken.push_back({0, 0, width, strip * lines + 2});
 }
 
-// Directions of the vehicle and a length, in the lower corners.
+// Vehicle axes and a scale bar, in the lower corners.
 void draw_axes(Board& board, double bottom, double width) {
     using Style = Series::Style;
     constexpr double length = 24;
@@ -267,8 +270,8 @@ void draw_axes(Board& board, double bottom, double width) {
         const double far = length + 7;
         board.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
     }
-    double bar =
-        std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));  // [mm]: 1, 2 or 5, a third at most
+    // [mm]: 1, 2 or 5, at most a third of the width
+    double bar = std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));
     for (const double longer : {5.0, 2.0})
         if (longer * bar * board.scale <= 0.3 * width) {
             bar *= longer;
@@ -310,7 +313,7 @@ void draw_suspension(Board& board, const Suspension& s) {
                 board.stroke({board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])},
                              Style::thin, colour);
     }
-    Stroke standing;  // one hatching for points that lie on each other
+    Stroke standing;  // one hatching for coincident points
     for (const auto& p : s.points) {
         const Spot at = board.on(p.at);
         if (p.body != "ground" || std::ranges::any_of(standing, [&](const Spot& other) {
@@ -340,7 +343,7 @@ void draw_suspension(Board& board, const Suspension& s) {
         board.stroke(ring(board.on(s.points[wheel.patch].at), 2), Style::line, slate);
 }
 
-// Names of the hardpoints, one for those of several bodies that share a place.
+// Names of the hardpoints, one for a place shared by several bodies.
 void draw_names(Board& board, const Suspension& s) {
     std::vector<std::string> names;
     std::vector<Label> labels;

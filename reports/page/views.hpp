@@ -1,4 +1,4 @@
-// A suspension, seen from the front, the side, above and between: what a reader recognises before any number.
+// Views of a suspension: front, side, top and axonometric.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ using Place = std::array<double, 3>;  // x forward, y left, z up [mm]
 struct Suspension {
     struct Spotted {
         std::string name, body;
-        bool hardpoint = false;  // else named after what is attached there
+        bool hardpoint = false;  // else named after the joint or element there
         Place at{};
     };
     struct Link {
@@ -31,7 +31,7 @@ struct Suspension {
         std::size_t centre = 0, patch = 0;
         Place spin_axis{};
     };
-    struct Moved {  // another position of it
+    struct Moved {  // another position of the suspension
         std::string title;
         std::vector<Place> points{};
         std::vector<std::vector<Place>> wheels{};  // rims
@@ -51,17 +51,18 @@ struct View {
 inline constexpr View front_view{"view-front", "Front view", "from the front", {1, 0, 0}};
 inline constexpr View side_view{"view-side", "Side view", "from the left", {0, 1, 0}};
 inline constexpr View top_view{"view-top", "Top view", "from above", {0, 0, 1}};
-// From the front, above, and the middle of the vehicle, so that the wheel does not hide what holds it: `right` for a
-// suspension of the right side alone.
+// View from the front, above, and the vehicle centre, so that the wheel does not hide its
+// suspension; `right` for a suspension of the right side only.
 View axonometric_view(bool right);
 
-// Without a size the height is as the views of one width and one scale ask. Words that find no place are left out.
+// Without a size, the height follows from the views at one width and one scale. Words without a
+// free place are omitted.
 struct Frame {
     int width = 0, height = 0;  // [px]
     bool legend = false;
 };
 Frame large_frame(const Suspension& suspension);  // one view; an axle is wider
-Frame small_frame(const Suspension& suspension);  // of three
+Frame small_frame(const Suspension& suspension);  // for three views side by side
 std::vector<Figure> draw_views(const Suspension& suspension, const std::vector<View>& views,
                                const Frame& frame);
 

@@ -9,6 +9,7 @@
 #include "compare/readings.hpp"
 #include "reports/page/numbers.hpp"
 #include "reports/tables/comparison_tables.hpp"
+#include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
@@ -26,17 +27,7 @@ std::string spaced(std::string name) {
 }
 
 std::string tolerance_of(const CandidateJudgement& j) {
-    std::string text;
-    const std::pair<double, const char*> asked[] = {{j.tolerance.mm, "mm"},
-                                                    {j.tolerance.deg, "deg"},
-                                                    {j.tolerance.newton, "N"},
-                                                    {j.tolerance.newton_metre, "N·m"}};
-    std::vector<std::string> parts;
-    for (const auto& [value, unit] : asked)
-        if (std::isfinite(value)) parts.push_back(setting(value, unit));
-    for (std::size_t k = 0; k < parts.size(); ++k)
-        text += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
-    return text + (j.asked ? "" : " (the default)");
+    return words(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
 }
 
 std::string worst_of(const CandidateJudgement& j, const compare::Comparison& comparison) {
@@ -47,13 +38,15 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
         const std::string by =
             branch.abscissa < 0 ? "" : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
         const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
-        const bool hardly = w.max > w.tolerance && w.max < 1.1 * w.tolerance;  // seen to
+        const bool hardly = w.max > w.limit && w.max < 1.1 * w.limit;  // shown with more digits
         const std::string size = std::isnan(w.max) ? "a number that is none"
                                  : w.max < 1e-9    ? "nothing"
                                  : hardly          ? fmt::format("{:.6g} {}", w.max, symbol(w.unit))
                                                    : quantity(w.max, symbol(w.unit));
         text += fmt::format(
-            "{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size, spaced(w.channel), w.branch,
+            "{}{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size,
+            w.extent > 0 ? fmt::format(", {} of its extent", percent(w.max / w.extent)) : "",
+            spaced(w.channel), w.branch,
             parameter ? compare::parameter_reading(symbol(branch.unit)) : compare::abscissa_reading(by));
     }
     return text;
@@ -93,7 +86,8 @@ void leftover_line(const compare::Leftover& left, std::string& text) {
     if (!left.why_not.empty()) text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
 }
 
-// What the states leave in the equilibrium leg's balance, at most [N], [N·m]; 0 of none, and of what is no number.
+// Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states; NaN is
+// ignored.
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
     for (const auto& left : j.leftovers)
@@ -111,13 +105,15 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     if (j.outside > 0)
         partly += fmt::format(" {} of its points {} where the full solution does not come.", j.outside,
                               j.outside == 1 ? "lies" : "lie");
-    // Forces are judged where they have a tolerance; a state that is none in balance is no solution, asked or not.
-    constexpr double balanced = 1e-2;  // [N], [N·m]: of poses right to the last digit
+    // Forces are judged where they have a tolerance; a state out of balance is reported in any
+    // case.
+    constexpr double balanced = 1e-2;  // [N], [N·m]: imbalance of poses accurate to the last digit
     const auto [force, moment] = imbalance(j);
     const bool in_balance = !(force > balanced) && !(moment > balanced);
     if (!in_balance)
         partly +=
             fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.", force, moment);
+    if (j.others == 0 && j.has_forces) partly += " No force or moment was compared.";
     const std::string hints = j.said.empty() ? "" : fmt::format(" {}.", joined(j.said, 4));
     switch (j.verdict) {
         case Grade::not_judged:
@@ -126,8 +122,9 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "",
                 hints);
         case Grade::pass:
-            if (in_balance &&
-                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max < 1e-9; }))
+            if (in_balance && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
+                    return w.max < (w.extent > 0 ? 1e-6 * w.extent : 1e-9);
+                }))
                 return fmt::format(
                     "Pass: {} is the full solution{}, within the arithmetic; the tolerance is {}.{}", who,
                     j.not_given.empty() ? "" : " where it says something", tolerance_of(j), partly);
@@ -137,7 +134,7 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                                worst_of(j, comparison), partly);
         case Grade::fail:
             if (!j.said.empty() &&
-                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max <= w.tolerance; }))
+                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max <= w.limit; }))
                 return fmt::format("Fail: {} is no solution: {}. The tolerance is {}.{}", who,
                                    joined(j.said, 4), tolerance_of(j), partly);
             return fmt::format("Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}",

@@ -1,4 +1,4 @@
-// What is said of a candidate: on the terminal, and the sentence that is the same everywhere.
+// Judgement of a candidate as terminal text, and the sentence shared by all outputs.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace elastocheck::reports {
 
 std::string sentence(const compare::CandidateJudgement& judgement, const compare::Comparison& comparison);
 
-// What its accuracy costs: one run of its command.
+// Cost of a candidate's accuracy: one run of its command.
 struct CandidateRun {
     int steps = 0;
     double seconds = 0, cpu = 0;  // of the whole program
-    double leg_seconds = 0;       // of the equilibrium leg at as many points, within this process
+    double leg_seconds = 0;       // of the equilibrium leg at the same number of points, in this process
     compare::CandidateJudgement judgement;
 };
 compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,

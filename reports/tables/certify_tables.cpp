@@ -89,7 +89,7 @@ std::string certify_text(const compare::CertifyStudy& study) {
                                                 ? "the limit point: " + way.limit->detail
                                                 : std::string()})
                 if (!what.empty()) fmt::format_to(out, "  {}: {}\n", way.solver, what);
-            // The other solvers' points leave much the same to be held.
+            // The theorems of the other solvers' points hold about the same motions.
             if (!way.tally.theorem.empty() && !said) fmt::format_to(out, "  {}\n", way.tally.theorem);
             said = said || !way.tally.theorem.empty();
         }

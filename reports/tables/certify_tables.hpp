@@ -1,4 +1,4 @@
-// Proofs, as people read them on a terminal and as a part of result.json.
+// Interval proofs as terminal text and as a part of result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,12 +9,13 @@
 
 namespace elastocheck::reports {
 
-extern const std::vector<Shown> certify_columns;  // of compare::certify_table, on the terminal and the page
+// of compare::certify_table, on the terminal and the page
+extern const std::vector<Shown> certify_columns;
 
-// What is claimed of a proved point, and what is not: one paragraph, for text and page alike.
+// Statement and limits of the proofs in one paragraph, for text and page.
 std::string what_is_proved(const compare::CertifyStudy& study);
 
-// "63 of 63 points proved: ..." or what is not.
+// "63 of 63 points proved: ..." or the missing proofs.
 std::string sentence(const compare::CertifyStudy& study);
 
 std::string certify_text(const compare::CertifyStudy& study);

@@ -15,7 +15,7 @@ namespace {
 using compare::Channel;
 using compare::Leg;
 
-// A share of the channel's range; none where the channel does not move.
+// Share of the channel's range; "-" for a constant channel.
 std::string share(double value, double range) {
     if (!(range > 1e-9)) return "-";
     if (value < 1e-9) return "0";
@@ -24,7 +24,7 @@ std::string share(double value, double range) {
     return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
-// A deviation with its sign; below 1e-9 of a mm, deg, N or N·m it is the arithmetic's, not the method's.
+// A deviation with its sign; 0 below 1e-9 of a mm, deg, N or N·m, which is rounding.
 std::string signed_value(double value) {
     return std::abs(value) < 1e-9 ? "0" : fmt::format("{:+.3g}", value);
 }
@@ -34,8 +34,7 @@ std::string value_or_zero(double value) {
                                   : fmt::format("{:.0f}", value);
 }
 
-// The channels worth a line: every main one, and of each joint the force and the moment component that
-// deviates most.
+// Displayed channels: every main one, and the worst force and moment component of each joint.
 std::vector<std::size_t> shown(const compare::Comparison& all, const compare::BranchComparison& branch,
                                const compare::Reading& reading) {
     std::vector<std::size_t> rows;
@@ -98,7 +97,7 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
                        by_abscissa, travel.outside);
 }
 
-// What stands behind a leg in these tables.
+// Solver name of a run in these tables.
 std::string solver_of(const compare::LegRun& run) {
     return run.method.empty() || run.method == "published" ? name(run.leg) : run.method;
 }
@@ -115,7 +114,7 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
         for (const Leg by : compare::legs) {
             if (by == run.leg) continue;
             const auto& r = run.judged[static_cast<std::size_t>(by)];
-            if (run.curve.a.empty()) continue;  // nothing to judge
+            if (run.curve.a.empty()) continue;  // no points to judge
             if (by == Leg::energy && branch.second != Leg::energy) continue;
             fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment, 1e3 * r.length);
         }
@@ -124,13 +123,13 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     }
 }
 
-// What the points say of themselves: where the stiffness will be gone, promises that are not kept.
+// Messages from the error bounds of the points: predicted singular points, exceeded tolerances.
 void accounts(const compare::BranchComparison& branch, std::string& text) {
     for (const auto& run : branch.runs)
         for (const auto& line : run.told) text += fmt::format("  {}: {}\n", solver_of(run), line);
 }
 
-// What interval arithmetic proves of the points at the start, the middle and the ends.
+// Interval proofs of the points at the start, the middle and the ends.
 void proofs(const compare::BranchComparison& branch, std::string& text) {
     std::string line;
     for (const auto& run : branch.runs) {
@@ -142,9 +141,16 @@ void proofs(const compare::BranchComparison& branch, std::string& text) {
         if (t.excluded > 0) line += fmt::format(" ({} provably off by more than 1e-6 mm or deg)", t.excluded);
     }
     if (!line.empty()) text += line + '\n';
+    std::string before;
+    for (const auto& run : branch.runs) {
+        const compare::Tally& t = run.proved;
+        if (t.open == 0 || t.not_proved == before) continue;
+        text += fmt::format("  not proved: {}: {}\n", solver_of(run), t.not_proved);
+        before = t.not_proved;
+    }
 }
 
-// The wheel rates, and with a tyre the ride rates, of the branches that lift a wheel.
+// Wheel rates, and with a tyre ride rates, of the branches that lift a wheel.
 void rates(const std::vector<compare::RateError>& errors, const compare::BranchComparison& branch,
            std::string& text) {
     for (const auto& e : errors) {
@@ -159,14 +165,14 @@ void rates(const std::vector<compare::RateError>& errors, const compare::BranchC
     }
 }
 
-// What stands behind "the recursion" in these tables.
+// Method of "the recursion" in these tables.
 std::string recursion_of(const compare::Comparison& comparison) {
     const std::string method =
         comparison.branches.empty() ? "" : comparison.branches.front().runs.front().method;
     return method.empty() || method == "published" ? "eq. (29)" : fmt::format("the method '{}'", method);
 }
 
-// What stands in for the energy leg, and where.
+// The substitute of the energy leg, and where it is used.
 std::string instead_of_energy(const compare::Comparison& comparison) {
     bool none = false, large = false;
     for (const auto& branch : comparison.branches)
@@ -176,7 +182,7 @@ std::string instead_of_energy(const compare::Comparison& comparison) {
                        none && large ? " or " : "", large ? "the scene is too large for it" : "");
 }
 
-// Who judges where the energy leg is not asked for states of its own, and why it is not.
+// The judging legs where the energy leg computes no states, and the reason.
 std::string not_asked(const compare::BranchComparison& branch) {
     const std::string who = fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
     if (!energy_bears_witness(branch))
@@ -233,7 +239,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
             const auto rounded = [](double value) { return std::round(100 * value) / 100 + 0.0; };
             const double from = rounded(reference.values.front()[c]),
                          to = rounded(reference.values.back()[c]);
-            if (from != to)  // it hardly moves: no range worth saying
+            if (from != to)  // almost constant: no range
                 fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name, from, to,
                                symbol(comparison.channels[c].unit));
         }

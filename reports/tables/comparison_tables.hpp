@@ -1,4 +1,4 @@
-// The comparison as people read it on a terminal.
+// Comparison of the legs as terminal text.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace elastocheck::reports {
 
-// Its largest with its sign, where, its root mean square and its share of the range: 36 wide.
+// Largest deviation with sign, its place, root mean square and share of the range: 36 characters
+// wide.
 std::string deviation_cells(const compare::Deviation& deviation);
 
 std::string tables(const Model& model, const compare::Comparison& comparison);

@@ -11,7 +11,7 @@ namespace {
 
 std::string numbers(const std::vector<double>& values) {
     std::string cells;
-    for (const double value : values)  // what is undefined is an empty cell
+    for (const double value : values)  // an undefined value is an empty cell
         cells += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
     return cells;
 }

@@ -1,4 +1,5 @@
-// The curves of one leg as CSV, a column a channel: what `elastocheck solve` writes, row by row; 17 significant digits.
+// Curves of one leg as CSV for `elastocheck solve`, row by row, one column per channel; 17
+// significant digits.
 #pragma once
 
 #include <string>
@@ -13,7 +14,7 @@ std::string curves_header(const std::vector<compare::Channel>& channels);
 std::string curves_row(const std::string& branch, compare::Leg leg, compare::Unit unit,
                        const compare::Row& row);
 
-// The derivatives beside them: of the series, way by way; `a` in SI.
+// Derivatives of the series in a separate file, by branch side; `a` in SI.
 std::string rates_header(const std::vector<compare::Channel>& channels);
 std::string rates_row(const std::string& way, compare::Unit unit, double a,
                       const std::vector<double>& slopes);

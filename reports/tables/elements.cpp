@@ -16,11 +16,11 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr std::array components{"x", "y", "z", "rx", "ry", "rz"};
 
-// A deformation and its rate as people read them.
+// Display units of a deformation and its rate.
 struct Scale {
-    double length;  // [m] or [rad] in one
+    double length;  // [m] or [rad] per unit
     const char* length_name;
-    double rate;  // [N/m] or [N·m/rad] in one
+    double rate;  // [N/m] or [N·m/rad] per unit
     const char* rate_name;
 };
 constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angles{degree, "deg", 1 / degree, "N·m/deg"};
@@ -37,7 +37,7 @@ std::string range_words(const Curve& curve, const Scale& s) {
                        curve.known_outside ? "straight beyond" : "not known beyond");
 }
 
-// A spring without force on one side: it touches from a clearance on, counted from its free length.
+// A spring without force on one side makes contact at a clearance, measured from its free length.
 std::string spring_words(const ScalarLaw& law) {
     return std::visit(
         overloaded{
@@ -45,7 +45,7 @@ std::string spring_words(const ScalarLaw& law) {
             [](const Curve& u) {
                 const bool open_short = is_free(u.pieces.front()), open_long = is_free(u.pieces.back());
                 if (open_short == open_long) return "axial spring, " + range_words(u, lengths);
-                // Where the free side ends.
+                // End of the force-free side.
                 std::size_t n = 0;
                 while (n < u.knots.size() && is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
                     ++n;
@@ -60,7 +60,7 @@ std::string spring_words(const ScalarLaw& law) {
         law);
 }
 
-// The components that a law resists, and its curves among them.
+// Components with stiffness, and those with curves.
 struct Resisted {
     std::vector<std::size_t> all, curves;
 };
@@ -117,7 +117,7 @@ std::string formulation_words(const Formulation& f) {
     return text;
 }
 
-// The formulations of bushings as written, before compile() turned them round.
+// Formulations of bushings as in the scene, before compile() exchanged markers.
 using Written = std::unordered_map<std::string, Formulation>;
 Written written_formulations(const Scene& scene) {
     Written written;
@@ -151,7 +151,7 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
     return text;
 }
 
-// "antiroll" and 3 of "antiroll.3"; 0 where there is no number.
+// "antiroll" and 3 for "antiroll.3"; 0 without a number.
 std::pair<std::string, int> stem(const std::string& name) {
     const auto dot = name.rfind('.');
     int number = 0;

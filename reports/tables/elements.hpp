@@ -1,4 +1,4 @@
-// The elastic elements of a model in words: what they are, between which bodies, and what differs from the usual.
+// Description of the elastic elements of a model: kind, connected bodies, non-default properties.
 #pragma once
 
 #include <string>
@@ -15,9 +15,10 @@ struct ElementLine {
     std::string what;     // "axial spring, 28 N/mm"
 };
 
-// A line an element, one for a chain of beams. Words follow from what an element is: a curve without force at one end
-// is a stop, a bushing that resists θ_z alone a torsion spring, one that stands only where it is driven a tyre, one
-// with its frame in the middle a beam. Formulations are told as the scene has them.
+// One line per element, one for a chain of beams. The kind follows from the properties: a curve
+// without force at one end is a stop, a bushing with stiffness in θ_z only a torsion spring, one
+// that is active only where driven a tyre, one with its frame in the middle a beam. Formulations
+// are those of the scene.
 std::vector<ElementLine> elements(const Scene& scene, const Model& model);
 
 }  // namespace elastocheck::reports

@@ -1,4 +1,4 @@
-// All equilibria at one value of a branch's parameter, as people and programs read them.
+// Multiple equilibria at one parameter value as terminal text, table and JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,14 +9,15 @@
 
 namespace elastocheck::reports {
 
-// Raised when a field changes its meaning or vanishes; new fields may appear without.
+// Incremented when a field changes its meaning or is removed; new fields do not increment it.
 inline constexpr const char* equilibria_schema = "elastocheck/equilibria/1";
 
 compare::Table equilibria_table(const compare::AllEquilibria& all);
 
 std::string equilibria_text(const compare::AllEquilibria& all);
 
-// {"branch", "at", "unit", "outcome", "detail", "proved", "starts", "other_way_round", "equilibria": table, "poses"}
+// {"branch", "at", "unit", "outcome", "detail", "proved", "starts", "other_way_round",
+// "equilibria": table, "poses"}
 nlohmann::ordered_json equilibria_json(const Model& model, const compare::AllEquilibria& all);
 
 }  // namespace elastocheck::reports

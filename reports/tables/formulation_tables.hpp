@@ -1,4 +1,4 @@
-// How much the outputs depend on the formulation of the bushings, for a terminal.
+// Spread of the outputs over bushing formulations as terminal text.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace elastocheck::reports {
 
-// Of the same scene's comparison.
+// `comparison` is of the same scene.
 std::string formulation_text(const compare::FormulationStudy& study, const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

@@ -30,7 +30,7 @@ std::string constraint_name(const ConstraintKind& kind) {
                       kind);
 }
 
-// What each joint is made of.
+// Constraints of each joint.
 std::vector<std::string> compositions(const Model& model) {
     std::vector<std::string> made_of(model.joints.size());
     for (const auto& c : model.constraints) {
@@ -40,10 +40,11 @@ std::vector<std::string> compositions(const Model& model) {
     return made_of;
 }
 
-// A scene that a person wrote is shown whole; of one that a program wrote the beginning of every list.
+// Limit of listed entries: hand-written scenes are shown completely, of generated ones the
+// beginning of every list.
 constexpr std::size_t most_shown = 40;
 
-// "body" of "body 'arm'".
+// "body" for "body 'arm'".
 std::string kind_of(const Omission& omission) { return omission.what.substr(0, omission.what.find(" '")); }
 
 std::string words(const Size& size) {
@@ -66,7 +67,7 @@ std::string trim_words(const compare::TrimRecord& trim) {
     return text;
 }
 
-// What solving a step takes: the matrix with the border that holds what is idle or redundant, and its factors.
+// Cost of a step: the matrix with the border of idle modes and redundant rows, and its factors.
 std::string cost_words(const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
     const recursive::Elimination& order = system.lu.order;
@@ -91,7 +92,7 @@ std::string inspection(const Inspected& inspected) {
         fmt::vformat_to(std::back_inserter(text), format, fmt::make_format_args(args...));
         text += '\n';
     };
-    // The beginning of a list, and how much of it is left.
+    // The beginning of a list, and the number of the other entries.
     const auto shown = [&](std::size_t size) {
         return inspected.verbose || size <= most_shown ? size : most_shown;
     };

@@ -1,4 +1,4 @@
-// `elastocheck inspect`: how a scene was understood, before anything is solved.
+// `elastocheck inspect`: the scene as read and compiled, before anything is solved.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ namespace elastocheck::reports {
 
 struct Inspected {
     const Scene& scene;  // trimmed
-    const Model& model;  // as it is solved
+    const Model& model;  // as solved
     const std::optional<compare::TrimRecord>& trim;
     const recursive::Diagnosis diagnosis;  // of `model`
-    bool verbose = false;                  // long lists whole; what solving a step takes
+    bool verbose = false;                  // complete lists, and the cost of a step
 };
 
 std::string inspection(const Inspected& inspected);

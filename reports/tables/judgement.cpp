@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "reports/page/numbers.hpp"
+#include "reports/page/sections/common.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -16,7 +17,8 @@ using compare::Assessment;
 using compare::Grade;
 using compare::Worst;
 
-constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are the arithmetic's
+constexpr double nothing = 1e-9;        // [mm], [deg]: smaller deviations are rounding
+constexpr double nothing_of_it = 1e-6;  // share of an extent: likewise
 
 std::string spaced(std::string name) {
     std::ranges::replace(name, '_', ' ');
@@ -28,7 +30,7 @@ std::string subject(const Assessment& j) {
     return fmt::format("the recursion by method ‘{}’", j.method);
 }
 
-// `limit`: what it was to be within, so that what breaks it by little is seen to.
+// `limit`: the tolerance; a small excess is shown with enough digits.
 std::string size(const Worst& worst, double limit) {
     if (std::isnan(worst.max)) return "a number that is none";
     if (worst.max > limit && worst.max < 1.1 * limit)
@@ -39,27 +41,38 @@ std::string size(const Worst& worst, double limit) {
 }
 
 std::string asked(const Assessment& j) {
-    std::string text;
-    if (std::isfinite(j.tolerance.mm)) text += setting(j.tolerance.mm, "mm");
-    if (std::isfinite(j.tolerance.deg))
-        text += (text.empty() ? "" : " and ") + setting(j.tolerance.deg, "deg");
-    return text + (j.asked ? "" : " (the default)");
+    return words(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
 }
 
-// "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)", by whichever reading is worse.
+// "6.9 N, 7 % of its extent (rod.drive force, branch len)"
+std::string other_of(const Assessment& j) {
+    const auto taken = [](const std::optional<Worst>& worst) {
+        return worst ? worst->max / (std::isfinite(worst->limit) ? worst->limit : worst->extent) : -1;
+    };
+    const bool crosswise =
+        !std::isnan(taken(j.other)) && !(taken(j.other_across) <= (1 + 1e-6) * taken(j.other));
+    const auto& worst = crosswise ? j.other_across : j.other;
+    if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max))) return "";
+    return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
+                       percent(worst->max / worst->extent), spaced(worst->channel), worst->branch,
+                       crosswise ? ", at equal position" : "");
+}
+
+// "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)", by the worse
+// reading.
 std::string worst_of(const Assessment& j) {
-    std::string text;
+    std::vector<std::string> parts;
     for (const auto& [at, across, limit] : {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
                                             std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
         const bool crosswise =
             *across && (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
         const auto& worst = crosswise ? *across : *at;
-        if (worst)
-            text +=
-                fmt::format("{}{} ({}, branch {}{})", text.empty() ? "" : " and ", size(*worst, limit),
-                            spaced(worst->channel), worst->branch, crosswise ? ", at equal position" : "");
+        if (!worst || (worst->max < nothing && worst->max <= limit)) continue;
+        parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit), spaced(worst->channel),
+                                    worst->branch, crosswise ? ", at equal position" : ""));
     }
-    return text;
+    if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));
+    return parts.empty() ? "nothing" : enumerated(parts);
 }
 
 std::string rate_of(const Assessment& j) {
@@ -69,10 +82,12 @@ std::string rate_of(const Assessment& j) {
                        off < 0 ? "soft" : "stiff");
 }
 
-bool exact(const Assessment& j) {
-    const auto none = [](const std::optional<Worst>& worst) { return !worst || worst->max < nothing; };
-    return none(j.position) && none(j.angle) && none(j.position_across) && none(j.angle_across) &&
-           !(j.wheel_rate && !(compare::as_position(*j.wheel_rate) < nothing));
+// "; 84 outputs compared, 60 of them forces, moments and rates"
+std::string compared(const Assessment& j) {
+    const std::string others = j.others == 0
+                                   ? ", no force, moment or rate among them"
+                                   : fmt::format(", {} of them forces, moments and rates", j.others);
+    return fmt::format("{} {} compared{}", j.outputs, j.outputs == 1 ? "output" : "outputs", others);
 }
 
 json worst_json(const std::optional<Worst>& worst) {
@@ -80,10 +95,31 @@ json worst_json(const std::optional<Worst>& worst) {
     return {{"channel", worst->channel},
             {"branch", worst->branch},
             {"unit", symbol(worst->unit)},
-            {"max", worst->max}};
+            {"max", worst->max},
+            {"share", worst->extent > 0 ? json(worst->max / worst->extent) : json(nullptr)}};
 }
 
 }  // namespace
+
+std::string words(const compare::Tolerance& tolerance, bool others) {
+    std::vector<std::string> parts;
+    const auto add = [&](double value, const char* unit) {
+        if (std::isfinite(value)) parts.push_back(setting(value, unit));
+    };
+    add(tolerance.mm, "mm");
+    add(tolerance.deg, "deg");
+    add(tolerance.newton, "N");
+    add(tolerance.newton_metre, "N·m");
+    if (others && std::isfinite(tolerance.share)) {
+        const bool force = std::isfinite(tolerance.newton), moment = std::isfinite(tolerance.newton_metre);
+        parts.push_back(fmt::format("{} of the extent of {}", setting(100 * tolerance.share, "%"),
+                                    force && moment ? "rates"
+                                    : force         ? "moments and rates"
+                                    : moment        ? "forces and rates"
+                                                    : "forces, moments and rates"));
+    }
+    return enumerated(parts);
+}
 
 std::string sentence(const Assessment& j) {
     switch (j.verdict) {
@@ -94,11 +130,12 @@ std::string sentence(const Assessment& j) {
                                j.reasons.empty() ? "nothing was compared" : j.reasons.front(), more);
         }
         case Grade::pass:
-            if (exact(j))
-                return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}.",
-                                   subject(j), asked(j));
-            return fmt::format("Pass: {} is within {} of the full solution everywhere, off by at most {}{}.",
-                               subject(j), asked(j), worst_of(j), rate_of(j));
+            if (j.exact)
+                return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}; {}.",
+                                   subject(j), asked(j), compared(j));
+            return fmt::format(
+                "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.", subject(j),
+                asked(j), worst_of(j), rate_of(j), compared(j));
         case Grade::fail:
             return fmt::format("Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",
                                subject(j), worst_of(j), rate_of(j), asked(j));
@@ -115,12 +152,22 @@ json judgement_json(const Assessment& j) {
     return {{"verdict", compare::name(j.verdict)},
             {"sentence", sentence(j)},
             {"method", j.method},
-            {"tolerance", {{"mm", j.tolerance.mm}, {"deg", j.tolerance.deg}, {"asked", j.asked}}},
+            {"tolerance",
+             {{"mm", j.tolerance.mm},
+              {"deg", j.tolerance.deg},
+              {"N", j.tolerance.newton},
+              {"Nm", j.tolerance.newton_metre},
+              {"share", j.tolerance.share},
+              {"asked", j.asked}}},
             {"position", worst_json(j.position)},
             {"angle", worst_json(j.angle)},
             {"position_across", worst_json(j.position_across)},
             {"angle_across", worst_json(j.angle_across)},
+            {"other", worst_json(j.other)},
+            {"other_across", worst_json(j.other_across)},
             {"wheel_rate", rate},
+            {"outputs", j.outputs},
+            {"others", j.others},
             {"reasons", j.reasons}};
 }
 

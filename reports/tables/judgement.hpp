@@ -1,4 +1,4 @@
-// Pass or fail in one sentence, the same on the terminal, on the page and in result.json.
+// Verdict in one sentence, the same on the terminal, on the page and in result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,13 +10,20 @@ namespace elastocheck::reports {
 
 std::string sentence(const compare::Assessment& judgement);
 
+// The tolerance as text: "0.01 mm, 0.001 deg and 1 % of the extent of forces, moments and rates";
+// the last part only if `others`, outputs that are neither positions nor angles, are judged.
+std::string words(const compare::Tolerance& tolerance, bool others);
+
 //   verdict         "pass", "fail", "not judged"
 //   sentence        as above
 //   method          of the recursion
-//   tolerance       mm, deg, and whether it was asked for or is the default
-//   position, angle and position_across, angle_across (at equal abscissa): channel, branch, unit, max
+//   tolerance       mm, deg, N, Nm, share, and whether it was given or is the default
+//   position, angle, other and, at equal abscissa, position_across, angle_across, other_across:
+//                   channel, branch, unit, max; of `other` (the force, moment or rate with the
+//                   largest share of its limit) also the share of the output's extent
+//   outputs, others number of judged outputs; of these, neither positions nor angles
 //   wheel_rate      branch, wheel, to, unit, off
-//   reasons         why not judged
+//   reasons         reasons for "not judged"
 nlohmann::ordered_json judgement_json(const compare::Assessment& judgement);
 
 }  // namespace elastocheck::reports

@@ -34,7 +34,7 @@ std::string order_text(const compare::Table& orders) {
                            number(levels, 0, "references apart"),
                            number(levels, 0, "references' angles apart"));
         all += text(levels, order_columns);
-        // A straight branch has none.
+        // A linear branch has no singularity.
         const std::size_t last = levels.rows.size() - 1;
         if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
             fmt::format_to(out,

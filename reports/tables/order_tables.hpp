@@ -1,4 +1,4 @@
-// The series over its order, as people read it on a terminal.
+// Study of the series over its order as terminal text.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace elastocheck::reports {
 
-extern const std::vector<Shown> order_columns;  // of compare::order_table, on the terminal and the page
+// of compare::order_table, on the terminal and the page
+extern const std::vector<Shown> order_columns;
 
 std::string order_text(const compare::Table& orders);
 

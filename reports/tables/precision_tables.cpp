@@ -26,7 +26,7 @@ std::string precision_text(const compare::PrecisionStudy& study) {
     const auto levels = precision_table(study);
     const auto arithmetics = distinct(levels, "arithmetic");
     auto wide = spread(levels, "arithmetic", {"outcome", "constraint error", "error", "angle error"});
-    // An outcome is worth a column only where it is another.
+    // An outcome column is shown only where an outcome is not `converged`.
     for (auto& row : wide.rows)
         for (auto& cell : row)
             if (cell == compare::Cell(std::string(name(Outcome::converged)))) cell = std::string();

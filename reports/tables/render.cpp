@@ -40,7 +40,7 @@ std::string written(double value, Digits digits) {
     return {};
 }
 
-// Characters, not bytes: what a name may hold is one column wide, mostly.
+// Characters, not bytes: most characters allowed in names are one column wide.
 std::size_t width(std::string_view text) {
     return static_cast<std::size_t>(
         std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

@@ -12,7 +12,7 @@ namespace {
 using compare::Cell;
 using compare::Table;
 
-// NaN is equal to itself here: what is not there is the same in both.
+// NaN equals NaN here: both are missing.
 bool same(const Cell& a, const Cell& b) {
     const auto *x = std::get_if<double>(&a), *y = std::get_if<double>(&b);
     return x != nullptr && y != nullptr ? *x == *y || (*x != *x && *y != *y) : a == b;

@@ -25,7 +25,7 @@ compare::Column words(std::string name, std::string description = {}) {
     return {std::move(name), {}, std::move(description), true};
 }
 
-// Infinite says nothing, as does NaN.
+// NaN for an infinite or missing value.
 double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
 std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
@@ -35,7 +35,7 @@ std::string signs(const Survival& survival, const std::string& scene, const std:
     return all;
 }
 
-// Rows of the map: scenes under sweeps, and the variants of those that are extreme by their making.
+// Rows of the map: scenes by sweep, and the variants of extreme scenes.
 struct Rows {
     std::vector<std::string> scenes, sweeps;
     std::vector<std::pair<std::string, std::string>> extremes;  // scene, variant
@@ -69,7 +69,7 @@ std::string worst_right_of(const compare::LostDigits& lost) {
                : fmt::format("{:.1f}: {}", lost.worst_right->lost, where(*lost.worst_right));
 }
 
-// A row a scene, a column an arithmetic, in it one number a group of solvers; empty where nobody was asked.
+// One row per scene, one column per arithmetic, one number per solver group; empty without solvers.
 std::string lost_text(const compare::LostDigits& lost) {
     if (lost.rows.empty()) return {};
     constexpr std::size_t number = 5;

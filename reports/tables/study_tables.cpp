@@ -37,7 +37,7 @@ const std::vector<Shown> gap_columns{{"output"},
 
 namespace {
 
-// The levels side by side: one row for each of `keys`, a column for each number of steps.
+// Levels side by side: one row per combination of `keys`, one column per step count.
 std::string over_steps(const compare::Table& levels, std::vector<std::string> keys,
                        const std::string& value) {
     std::vector<Shown> shown;
@@ -58,7 +58,8 @@ std::string study_text(const Model& model, const compare::Study& study,
                        const std::vector<compare::BranchAttribution>& attribution) {
     std::string all = fmt::format(
         "{}\nvalue - truth = step error (to the method's own limit) + formulation gap (own limit - "
-        "reference) + reference uncertainty\n",
+        "reference) + reference uncertainty\nStudied are positions and angles; forces, moments and rates are "
+        "compared by `elastocheck compare`.\n",
         model.name);
     const auto out = std::back_inserter(all);
     const auto outputs = study_table(study), steps = step_table(study),

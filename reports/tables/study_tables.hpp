@@ -1,4 +1,4 @@
-// What stands around the tables of a convergence study and a gap attribution on a terminal and in result.json.
+// Convergence study and gap attribution as terminal text and in result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@
 
 namespace elastocheck::reports {
 
-extern const std::vector<Shown> study_columns;  // of study_table, for people
+extern const std::vector<Shown> study_columns;  // displayed columns of study_table
 extern const std::vector<Shown> gap_columns;    // of gap_table
 
 std::string study_text(const Model& model, const compare::Study& study,

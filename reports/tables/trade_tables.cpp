@@ -17,17 +17,23 @@ std::string size(const Accuracy& accuracy, bool angles) {
                   : fmt::format("{:.2e} mm", accuracy.mm);
 }
 
+std::string forces(double share) {
+    return fmt::format("{:.2g} % of the extent of forces and moments", 100 * share);
+}
+
 std::string asked(const compare::Tolerance& tolerance) {
     std::string text;
-    if (std::isfinite(tolerance.mm)) text += fmt::format("{:g} mm", tolerance.mm);
-    if (std::isfinite(tolerance.deg))
-        text += fmt::format("{}{:g} deg", text.empty() ? "" : ", ", tolerance.deg);
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+    if (std::isfinite(tolerance.mm)) add(fmt::format("{:g} mm", tolerance.mm));
+    if (std::isfinite(tolerance.deg)) add(fmt::format("{:g} deg", tolerance.deg));
+    if (std::isfinite(tolerance.share)) add(forces(tolerance.share));
     return text;
 }
 
 json accuracy_json(const Accuracy& accuracy, bool angles) {
     json result = {{"mm", accuracy.mm}};
     result["deg"] = angles ? json(accuracy.deg) : json(nullptr);
+    result["share"] = accuracy.share;
     return result;
 }
 
@@ -46,9 +52,10 @@ void recommendation(const compare::Trade& trade, std::string& text) {
     fmt::format_to(out, "  expected error {:.2e} mm ({:.2e} to {:.2e})", r.expected.mm, r.low.mm, r.high.mm);
     if (trade.angles)
         fmt::format_to(out, ", {:.2e} deg ({:.2e} to {:.2e})", r.expected.deg, r.low.deg, r.high.deg);
-    fmt::format_to(
-        out, "; band {}\n  confirmed at other points against a fresh reference: {}; {} numbers compared\n",
-        r.band_from, size(r.confirmed, trade.angles), r.confirmed_numbers);
+    fmt::format_to(out, ", {}; band {}\n", forces(r.expected.share), r.band_from);
+    fmt::format_to(out,
+                   "  confirmed at other points against a fresh reference: {}, {}; {} numbers compared\n",
+                   size(r.confirmed, trade.angles), forces(r.confirmed.share), r.confirmed_numbers);
 }
 
 }  // namespace
@@ -105,7 +112,8 @@ json trade_json(const compare::Trade& trade) {
                   {"confirmed_error", accuracy_json(r.confirmed, trade.angles)},
                   {"confirmed_numbers", r.confirmed_numbers}};
     }
-    return {{"tolerance", {{"mm", trade.tolerance.mm}, {"deg", trade.tolerance.deg}}},
+    return {{"tolerance",
+             {{"mm", trade.tolerance.mm}, {"deg", trade.tolerance.deg}, {"share", trade.tolerance.share}}},
             {"output_points", trade.points_per_branch},
             {"rounds", trade.rounds},
             {"reference_uncertainty", accuracy_json(trade.uncertainty, trade.angles)},

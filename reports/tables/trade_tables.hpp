@@ -1,4 +1,4 @@
-// The price of accuracy, as people read it on a terminal and as a part of result.json.
+// Work-precision comparison as terminal text and as a part of result.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,12 +10,14 @@
 
 namespace elastocheck::reports {
 
-extern const std::vector<Shown> trade_columns;  // of compare::trade_table, on the terminal and the page
+// of compare::trade_table, on the terminal and the page
+extern const std::vector<Shown> trade_columns;
 
 std::string trade_text(const Model& model, const compare::Trade& trade);
 
-// {tolerance, output_points, rounds, reference_uncertainty, time_noise, points, recommendation, not_confirmed,
-// inconclusive}: `points` is compare::trade_table, `position` in the recommendation a row of it.
+// {tolerance, output_points, rounds, reference_uncertainty, time_noise, points, recommendation,
+// not_confirmed, inconclusive}: `points` is compare::trade_table, `position` in the recommendation
+// is a row of it.
 nlohmann::ordered_json trade_json(const compare::Trade& trade);
 
 }  // namespace elastocheck::reports

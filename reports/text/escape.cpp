@@ -9,7 +9,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// One character of UTF-8, or a byte that is none.
+// One UTF-8 character, or an invalid byte.
 struct Character {
     std::string_view bytes;
     char32_t code = 0;
@@ -22,7 +22,8 @@ struct Character {
         return code == 0x061C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
                (code >= 0x2066 && code <= 0x2069);
     }
-    // To a spreadsheet, at the beginning of a cell; the last four are the full-width forms.
+    // Starts a spreadsheet formula at the beginning of a cell; the last four are the full-width
+    // forms.
     bool begins_formula() const {
         return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D || code == 0xFF0B ||
                code == 0xFF0D || code == 0xFF20;
@@ -47,7 +48,7 @@ Character first_of(std::string_view text) {
     return {text.substr(0, length), code, true};
 }
 
-// `put` sees every character and says what stands for it.
+// Replaces every character by the result of `put`.
 template <class Put>
 std::string translated(std::string_view text, Put&& put) {
     std::string result;
@@ -67,7 +68,7 @@ bool is_number(std::string_view text) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
-constexpr std::string_view stand_in = "\uFFFD";  // for what no page can show
+constexpr std::string_view stand_in = "\uFFFD";  // for characters that cannot be displayed
 
 }  // namespace
 
@@ -109,7 +110,7 @@ std::string for_html(std::string_view text) {
 
 std::string for_markdown(std::string_view text) {
     const std::string_view whole = text;
-    // Where a line begins: "- x", "+ x", "1. x" would be lists, "---" and "===" lines.
+    // At the start of a line "- x", "+ x", "1. x" would be lists, "---" and "===" rules.
     const std::size_t digits = std::min(whole.find_first_not_of("0123456789"), whole.size());
     const auto ends = [&](std::size_t at) {
         return at >= whole.size() || whole[at] == ' ' || whole[at] == '\t';
@@ -137,7 +138,8 @@ std::string for_gnuplot(std::string_view text) {
 }
 
 std::string for_csv(std::string_view text) {
-    bool quoted = false, begins = !is_number(text);  // a cell: also behind what some take for the end of one
+    // `begins`: start of a cell, also after a semicolon, which some programs use as separator
+    bool quoted = false, begins = !is_number(text);
     std::string field = translated(text, [&](const Character& c) -> std::string {
         if (!c.plain()) return " ";
         quoted = quoted || c.code == ',' || c.code == '"' || c.code == ';';

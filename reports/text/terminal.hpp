@@ -1,4 +1,4 @@
-// What is said to people: the only way to standard output and standard error.
+// Terminal output: the only writer to standard output and standard error.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,12 +7,13 @@
 
 namespace elastocheck::reports {
 
-// Whoever read standard output has read enough and closed it (`| head`): nothing is wrong, and nothing more to be done.
+// The reader closed standard output (`| head`): not an error, and no more output is needed.
 struct NobodyReads {};
 
-// Writes lines of text, each for_terminal(). Throws FileError where they cannot be written, NobodyReads.
+// Writes lines of text, each through for_terminal(). Throws FileError where they cannot be written,
+// NobodyReads.
 void print(std::string_view lines);
-void complain(std::string_view lines);  // to standard error; where that is closed there is nobody to tell
+void complain(std::string_view lines);  // to standard error; ignored where that is closed
 
 template <class First, class... Rest>
 void print(fmt::format_string<First, Rest...> format, First&& first, Rest&&... rest) {
@@ -23,10 +24,10 @@ void complain(fmt::format_string<First, Rest...> format, First&& first, Rest&&..
     complain(std::string_view(fmt::format(format, std::forward<First>(first), std::forward<Rest>(rest)...)));
 }
 
-// One line that is written over, where standard error is a terminal.
+// One line that is overwritten by the next, where standard error is a terminal.
 void progress(std::string_view what);
 
-// Everything printed is out, or one of these is thrown: a full disk shows only here.
+// Flushes all output, or throws one of these: a full disk is detected only here.
 void finish_printing();
 
 }  // namespace elastocheck::reports

@@ -1,5 +1,5 @@
-// The same scenes with other arithmetic underneath: rounded up, down, to zero, with what is denormal taken for zero, every
-// input an ulp off. Whoever still says "converged" is still right. And a number that is none, wherever it stands.
+// Robustness against floating-point arithmetic: rounding modes, flush-to-zero, inputs changed by
+// one ulp, and NaN in every input. A converged result must still be correct.
 #include "compare/arithmetic.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// A bushing alone: all its points are one, and a rounding between them is no length.
+// A single bushing: all its points coincide, and a rounding difference between them is no length.
 constexpr std::array scene_list{"mcpherson", "pendulum", "arch_driven", "parallel_springs", "single_bushing"};
 constexpr std::array others{Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed};
 
@@ -31,7 +31,7 @@ Scene small(const std::string& name) {
     return scene;
 }
 
-// The scene as it is, and all of the sweep.
+// The unchanged scene, and all variants of the sweep.
 std::vector<Trial> asked(const std::string& name) {
     std::vector<Sweep> both;
     for (const auto& sweep : sweeps())
@@ -44,7 +44,7 @@ std::string told(const StressCell& cell) {
                        name(cell.verdict), cell.why, cell.detail);
 }
 
-// Not folded by the compiler.
+// 1/3 computed at run time.
 double third() {
     const volatile double one = 1, three = 3;
     return one / three;
@@ -68,7 +68,8 @@ TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
         EXPECT_EQ(third(), nearest) << name(how);
         EXPECT_GT(half_of_the_least(), 0) << name(how);
     }
-    // 1/3 lies above its nearest double: down and towards zero are told from each other by -1/3.
+    // 1/3 lies above its nearest double: -1/3 distinguishes rounding down from rounding towards
+    // zero.
     const auto minus_third = [](Arithmetic how) {
         const WithArithmetic in_force(how);
         const volatile double minus = -1, three = 3;
@@ -79,7 +80,8 @@ TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
     EXPECT_EQ(minus_third(Arithmetic::up), minus_third(Arithmetic::towards_zero));
 }
 
-// What is lost is told, not bound, but of who claims to be exact: fewer than the digits that are more than it claims.
+// Lost digits are reported without a bound, except for solvers that claim exactness: at most the
+// digits beyond the claim.
 TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
     for (const auto& scene : scene_list) {
         const Survival survival = stress(asked(scene));
@@ -87,7 +89,7 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
         EXPECT_EQ(lost.variants.size(), exists(Arithmetic::flushed) ? 5u : 4u);
         ASSERT_EQ(lost.rows.size(), 1u);
         for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
-        // Nobody gives up for a rounding.
+        // No solver fails because of rounding.
         for (const auto* cell : lost.gave_up) ADD_FAILURE() << told(*cell);
         for (const auto& cell : survival.cells) {
             if (cell.sweep != other_arithmetic || cell.outcome != Outcome::converged) continue;
@@ -102,7 +104,7 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
     }
 }
 
-// Some digit of some answer differs, or what was asked for was not in force where it was solved.
+// Some digit differs for every solver; otherwise the arithmetic was not active during the solve.
 TEST(Arithmetic, ReachesEverySolver) {
     const Survival survival = stress(asked("mcpherson"));
     for (const auto& solver : survival.solvers) {
@@ -113,7 +115,7 @@ TEST(Arithmetic, ReachesEverySolver) {
     }
 }
 
-// Where five digits are the same, three are lost of eight that are right, and none of three.
+// With five common digits, three of eight correct digits are lost, and none of three.
 TEST(Arithmetic, DigitsAreLostThatWereRightAndDiffer) {
     const Survival survival = stress(asked("pendulum"));
     const auto as_drawn = [&](const StressCell& cell) {
@@ -154,13 +156,15 @@ TEST(Arithmetic, EveryNumberIsAnUlpOffAndNoFurther) {
     EXPECT_GT(down, 50);
 }
 
-// Of all ways of the first branch: the first outcome that is another, and where the last way ends.
+// Over all sides of the first branch: the first outcome that is not converged, and the end of the
+// last side.
 struct Answer {
     Outcome outcome = Outcome::converged;
     std::vector<Pose> poses;
 };
 
-// Each number of the scene in turn, also of its geometry: it does not matter, or somebody says so.
+// Each number of the scene in turn is NaN, also of its geometry: it has no effect, or the outcome
+// reports it.
 TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
     for (const char* name : {"mcpherson", "tyre_on_road"}) {
         const Scene scene = small(name);

@@ -1,4 +1,4 @@
-// An axle written once and mirrored, its rack, and what several drivers do together.
+// Axles: mirrored definition, rack, and several drivers on one branch.
 #include <gtest/gtest.h>
 
 #include "compare/compare.hpp"
@@ -8,7 +8,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// The McPherson strut of models/scenes/chrono_mcpherson.yaml on either side of a rack.
+// The McPherson strut of models/scenes/chrono_mcpherson.yaml on both sides of a rack.
 constexpr const char* axle = R"(
 elastocheck: 1
 name: McPherson axle with a rack

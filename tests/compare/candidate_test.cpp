@@ -1,5 +1,5 @@
-// A candidate is judged as the recursion is, each fault that a person could make is named, and nothing passes by saying
-// nothing.
+// Judgement of external candidates: same criteria as for the recursion, typical faults are named,
+// missing data never passes.
 #include "compare/candidate.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ const Solved& solved() {
     return once;
 }
 
-// What a leg found, as a table of the main outputs and travel.
+// Result of a leg, as a table of the main outputs and travel.
 Candidate table_of(Leg leg) {
     const auto& all = solved().comparison;
     Candidate candidate;
@@ -69,7 +69,7 @@ std::string texts(const CandidateJudgement& judgement) {
     return text;
 }
 
-// Of one column, and of this kind.
+// Explanation of this kind for one column, or null.
 const Explanation* explained(const CandidateJudgement& judgement, const char* name, Kind kind) {
     for (const auto& one : judgement.explanations)
         if (one.kind == kind && judgement.columns[one.column].channel == solved().channel(name)) return &one;
@@ -107,8 +107,8 @@ TEST(Candidate, ThatIsTheRecursionGetsItsNumbersDigitForDigit) {
             EXPECT_EQ(got.range, expected.range);
             EXPECT_EQ(got.compared, expected.compared);
             compared += got.compared;
-            // At equal travel nothing is interpolated here, and something is there; and the last point that both reach is
-            // one of the recursion's here, one of the reference's there, half a step apart.
+            // At equal travel the recursion's reading is interpolated, this one is not. The last
+            // common points differ by half a step: one of the recursion, one of the reference.
             if (judgement.columns[c].channel == solved().channel("toe")) {
                 const double there = ours.equal_abscissa.channels[judgement.columns[c].channel].signed_max;
                 EXPECT_NEAR(theirs.equal_abscissa.columns[c].signed_max, there, 0.05 * std::abs(there));
@@ -224,7 +224,7 @@ TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
 TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
     for (const char* name : {"toe", "wheel_centre_x", "travel"}) {
         Candidate candidate = table_of(Leg::equilibrium);
-        values(candidate, name)[7] = INFINITY;  // as a reader hands over what is said and is no number
+        values(candidate, name)[7] = INFINITY;  // as a reader passes a value that is not a number
         const auto judgement = judged(candidate);
         EXPECT_EQ(judgement.verdict, Grade::not_judged) << name << texts(judgement);
     }
@@ -248,13 +248,14 @@ TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndWhatIsMissingIsSaid) {
     EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
     EXPECT_EQ(judgement.not_given,
               (std::vector<std::string>{"branch 'jounce' from 1500 to 3000 N", "branch 'rebound'"}));
-    part.complete = true;  // who was asked for all of it has failed
+    part.complete = true;  // whole branches were requested, so a missing part is a failure
     judgement = judged(part);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
     EXPECT_EQ(judgement.reasons.size(), 2u) << texts(judgement);
 }
 
-// By travel alone, in one column, between two points that are far apart, beyond the end: what is not there is never right.
+// Missing data never counts as correct: points without loads that end early, a gap in one column,
+// points at the ends alone, a point beyond the end.
 TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
     const Candidate all = table_of(Leg::equilibrium);
     const std::size_t travel = solved().channel("travel");
@@ -299,6 +300,30 @@ TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
     EXPECT_EQ(judged(all).outside, 0);
 }
 
+// With the default tolerance a given force is judged by a share of its extent; a force that is not
+// given does not count as correct.
+TEST(Candidate, WhoseForceIsOffFailsThoughItsPositionsAreRight) {
+    const auto without = judged(table_of(Leg::equilibrium));
+    EXPECT_EQ(without.others, 0);
+    EXPECT_TRUE(without.has_forces);
+    const auto c = solved().channel("tie_rod.force_y");
+    const auto with = [&](double share) {
+        Candidate candidate = table_of(Leg::equilibrium);
+        auto& column = candidate.points.columns.emplace_back(PointColumn{c, false, {}});
+        for (const auto& branch : solved().comparison.branches)
+            for (const auto& row : branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve.values)
+                column.values.push_back(row[c] + share * branch.extents[c]);
+        return judged(candidate);
+    };
+    const auto wrong = with(0.07), right = with(0.005);
+    EXPECT_EQ(wrong.verdict, Grade::fail) << texts(wrong);
+    EXPECT_EQ(wrong.others, 1);
+    ASSERT_EQ(wrong.worst.size(), 3u);
+    EXPECT_EQ(wrong.worst.back().channel, "tie_rod.force_y");
+    EXPECT_NEAR(wrong.worst.back().max / wrong.worst.back().extent, 0.07, 1e-9);
+    EXPECT_EQ(right.verdict, Grade::pass) << texts(right);
+}
+
 TEST(Candidate, InWhichNothingMovesIsNotJudged) {
     Candidate candidate = table_of(Leg::equilibrium);
     const double all_over[] = {1, 2, 3, 4, 5, 6};
@@ -309,12 +334,38 @@ TEST(Candidate, InWhichNothingMovesIsNotJudged) {
     const auto judgement = judged(candidate);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
     EXPECT_NE(texts(judgement).find("nothing moves in it"), std::string::npos) << texts(judgement);
-    // One output alone that stands still is one that is wrong.
+    // A single constant output is a wrong output.
     Candidate one = table_of(Leg::equilibrium);
     std::ranges::fill(values(one, "toe"), values(one, "toe").front());
     const auto still = judged(one);
     EXPECT_EQ(still.verdict, Grade::fail);
     EXPECT_NE(explained(still, "toe", Kind::still), nullptr) << texts(still);
+}
+
+// Points at a = 0 alone agree with the reference, but are no evidence.
+TEST(Candidate, WhosePointsAllLieAtTheBeginningIsNotJudged) {
+    const auto beginning = [](Candidate all) {
+        Candidate one = all;
+        one.points.a.clear(), one.points.branch.clear();
+        for (auto& column : one.points.columns) column.values.clear();
+        for (std::size_t k = 0; k < all.points.a.size(); ++k) {
+            if (all.points.a[k] != 0) continue;
+            one.points.a.push_back(0);
+            one.points.branch.push_back(all.points.branch[k]);
+            for (std::size_t c = 0; c < one.points.columns.size(); ++c)
+                one.points.columns[c].values.push_back(all.points.columns[c].values[k]);
+        }
+        return one;
+    };
+    const Candidate right = beginning(table_of(Leg::equilibrium));
+    ASSERT_FALSE(right.points.a.empty());
+    const auto judgement = judged(right);
+    EXPECT_EQ(judgement.verdict, Grade::not_judged);
+    EXPECT_NE(texts(judgement).find("its points are all where the branches begin"), std::string::npos)
+        << texts(judgement);
+    Candidate wrong = right;
+    for (double& v : values(wrong, "toe")) v += 1;
+    EXPECT_EQ(judged(wrong).verdict, Grade::fail);
 }
 
 TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
@@ -325,7 +376,7 @@ TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
     Candidate empty = table_of(Leg::equilibrium);
     for (auto& column : empty.points.columns) std::ranges::fill(column.values, std::nan(""));
     EXPECT_EQ(judged(empty).verdict, Grade::not_judged);
-    // Numbers for which nobody gave a tolerance.
+    // Numbers without a tolerance.
     EXPECT_EQ(judge_candidate(solved().model, solved().comparison, table_of(Leg::equilibrium),
                               parse_tolerance("1N", Asks::forces_too))
                   .verdict,
@@ -333,7 +384,7 @@ TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
 }
 
 TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
-    // Every third point, and others between them that the recursion never visits; the reference is solved there.
+    // Every third point, and others between the recursion's points; the reference is solved there.
     Candidate candidate;
     candidate.name = "mysolver";
     const auto toe = solved().channel("toe"), travel = solved().channel("travel");
@@ -353,7 +404,7 @@ TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
         EXPECT_EQ(judgement.branches[0].reading(kind).columns[0].compared, 8);
         EXPECT_LE(judgement.branches[0].reading(kind).columns[0].max, 1e-9);
     }
-    candidate.points.a.clear();  // over travel alone
+    candidate.points.a.clear();  // placed by travel only
     candidate.points.abscissa = travel, candidate.points.at = candidate.points.columns[1].values;
     const auto over_travel = judged(candidate);
     EXPECT_EQ(over_travel.verdict, Grade::pass) << texts(over_travel);
@@ -384,7 +435,8 @@ TEST(Candidate, AsAFunctionIsALeg) {
             EXPECT_LE(1e3 * exact.leftovers[b].truth[k].length, bounds.residual_length);
             EXPECT_LE(exact.leftovers[b].by_second[k].force, bounds.residual_force);
         }
-        // The energy leg never asks for reactions: what it says of the recursion it says of a candidate.
+        // The energy leg uses no reactions: its residuals are the same for the recursion and for a
+        // candidate.
         for (std::size_t k = 0; k < off.leftovers[b].truth.size(); ++k) {
             by_energy = std::max(by_energy, off.leftovers[b].by_second[k].force);
             length = std::max(length, off.leftovers[b].truth[k].length);
@@ -403,7 +455,7 @@ TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
     for (const auto& point : path.points) states.push_back({"jounce", point.load, point.poses});
     const auto at_rest = candidate_of(solved().model, all, "mine", states);
     for (auto& pose : states.back().poses)
-        pose.r += Eigen::Vector3d(0, 0, 1e-4);  // all bodies by 0.1 mm: bushings and springs resist
+        pose.r += Eigen::Vector3d(0, 0, 1e-4);  // all bodies by 0.1 mm: bushings and springs deform
     const auto moved = candidate_of(solved().model, all, "mine", states);
     ASSERT_EQ(moved.leftovers.size(), 1u);
     EXPECT_LE(at_rest.leftovers[0].truth.back().force, 1e-6);

@@ -1,4 +1,4 @@
-// What of a path is proved, and what a comparison makes of it.
+// Interval proofs of paths and their use in a comparison.
 #include <gtest/gtest.h>
 
 #include "compare/certify.hpp"
@@ -59,7 +59,7 @@ TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
     EXPECT_FALSE(study.conclusive());
     EXPECT_FALSE(study.excluded());
     EXPECT_EQ(way.tally.not_proved, "open at 120 N: the box is too wide");
-    EXPECT_EQ(way.tally.error.length, 1e-12);  // of the proved alone
+    EXPECT_EQ(way.tally.error.length, 1e-12);  // of the proved points only
 }
 
 TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
@@ -75,7 +75,8 @@ TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
     branch.runs[1].proved.not_proved = "excluded at 3 N";
     const Objections objections = disagreements(model, found.channels, model.branches[0], branch);
     ASSERT_FALSE(objections.empty());
-    EXPECT_NE(objections.worst.front().what.find("provably no equilibrium: excluded at 3 N"),
+    EXPECT_NE(objections.worst.front().what.find(
+                  "provably no equilibrium: excluded at 3 N; the energy leg is right, by proof"),
               std::string::npos)
         << objections.worst.front().what;
 }

@@ -1,4 +1,4 @@
-// Outputs: wheel angles by their definitions, travel, units.
+// Output channels: wheel angles by definition, travel, units.
 #include "compare/channels.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ double value(const Model& model, const Equilibrium& state, const std::string& na
     return 0;
 }
 
-// A wheel on one body at the origin, turned by `turn`.
+// A wheel on one body at the origin, rotated by `turn`.
 std::pair<Model, Equilibrium> wheel(int side, const Eigen::Quaterniond& turn) {
     Model model;
     model.bodies.push_back({"wheel", {}});
@@ -39,8 +39,8 @@ Eigen::Quaterniond about(const Vector3d& axis, double degrees) {
 }
 
 TEST(Channels, ToeIsPositiveWhenTheFrontOfTheWheelTurnsInwards) {
-    // Left wheel: toe-in turns its front to the right, clockwise from above, negative about z. The right
-    // wheel the other way.
+    // Left wheel: toe-in turns its front to the right, clockwise from above, negative about z. The
+    // right wheel the other way.
     for (const auto& [side, turn] : {std::pair{+1, -2.0}, std::pair{-1, +2.0}}) {
         const auto [model, state] = wheel(side, about(Vector3d::UnitZ(), turn));
         EXPECT_NEAR(value(model, state, "toe"), 2, 1e-12);
@@ -49,7 +49,8 @@ TEST(Channels, ToeIsPositiveWhenTheFrontOfTheWheelTurnsInwards) {
 }
 
 TEST(Channels, CamberIsPositiveWhenTheTopLeansOut) {
-    // Left wheel: leaning out (to the left, +y) is a negative turn about x. The right wheel the other way.
+    // Left wheel: leaning out (to the left, +y) is a negative turn about x. The right wheel the
+    // other way.
     for (const auto& [side, turn] : {std::pair{+1, -3.0}, std::pair{-1, +3.0}}) {
         const auto [model, state] = wheel(side, about(Vector3d::UnitX(), turn));
         EXPECT_NEAR(value(model, state, "camber"), 3, 1e-12);
@@ -67,7 +68,8 @@ TEST(Channels, WheelSpinChangesNothing) {
 TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto list = channels(model);
-    // Centre, toe, camber, travel; patch, what it moves across and along; four of the steering axis; spring and damper.
+    // Centre, toe, camber, travel; patch position, track and wheelbase change; four of the steering
+    // axis; spring and damper.
     const std::size_t kinematic = 6 + 5 + 4 + 2;
     EXPECT_EQ(list.size(), kinematic + 6 * model.joints.size());
     EXPECT_EQ(list[0].name, "wheel_centre_x");
@@ -111,15 +113,15 @@ TEST(Travel, CountsFromTheDesignPositionUpwards) {
     model.bodies[0].design.r = Vector3d(1, 2, 2.5);
     EXPECT_NEAR(value(model, state, "travel"), 500, 1e-9);
     EXPECT_NEAR(value(model, design_state(model), "travel"), 0, 0);
-    // What it counts from turns with the design pose too.
+    // The reference direction rotates with the design pose too.
     model.bodies[0].design.p = about(Vector3d::UnitX(), 90);
     EXPECT_NEAR(value(model, state, "travel"), 400, 1e-9);
 }
 
-// ---- The steering axis, on ground; the wheel turns under it. As drawn
+// ---- The steering axis is fixed to ground; the wheel rotates under it. In the design position
 //
-//   u = (-50, -50 side, 500) mm from l = (20, 600 side, 100): it meets the road at l - u/5 = (30, 610 side, 0), in front of the
-//   patch (0, 700 side, 0) by 30 and inboard of it by 90.
+//   u = (-50, -50 side, 500) mm from l = (20, 600 side, 100): intersection with the road at
+//   l - u/5 = (30, 610 side, 0), in front of the patch (0, 700 side, 0) by 30 and inboard by 90.
 struct Steered {
     Model model;
     Equilibrium state;
@@ -142,7 +144,7 @@ struct Steered {
 TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
     for (const int side : {+1, -1}) {
         Steered drawn(side);
-        for (int order = 0; order < 2; ++order) {  // which end is called the upper one does not matter
+        for (int order = 0; order < 2; ++order) {  // exchanging the ends of the axis has no effect
             EXPECT_NEAR(drawn["caster"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
             EXPECT_NEAR(drawn["kingpin_inclination"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
             EXPECT_NEAR(drawn["scrub_radius"], 90, 1e-10);
@@ -153,7 +155,8 @@ TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
     }
 }
 
-// Turned about the vertical through its patch, the wheel takes the directions along and across it along.
+// Rotated about the vertical through its patch, the wheel carries the directions along and across
+// it.
 TEST(SteeringAxis, CountsAlongAndAcrossTheWheelWhereverThatIsTurned) {
     for (const int side : {+1, -1})
         for (const double turn : {-35.0, -3.0, 20.0, 60.0}) {
@@ -166,7 +169,7 @@ TEST(SteeringAxis, CountsAlongAndAcrossTheWheelWhereverThatIsTurned) {
         }
 }
 
-// The road is where the patch is: risen by 50 mm, it meets the axis 5 mm further back and inboard.
+// The road is at the patch: raised by 50 mm, it meets the axis 5 mm further back and inboard.
 TEST(SteeringAxis, MeetsTheRoadAtTheHeightOfThePatch) {
     Steered risen(1);
     risen.state.poses[0].r.z() = 0.05;
@@ -211,7 +214,8 @@ TEST(ContactPatch, MovesOutwardsAndTheWayTheWheelbaseGrows) {
         }
 }
 
-// Two wheels whose axes stand upright j = 1.2 m apart and 0.1 m inboard of the patches, steered about them.
+// Two wheels with vertical axes j = 1.2 m apart and 0.1 m inboard of the patches, steered about
+// them.
 struct TwoSteered {
     Model model;
     Equilibrium state;
@@ -236,7 +240,7 @@ struct TwoSteered {
     double operator[](const std::string& name) const { return value(model, state, name); }
 };
 
-// Round a point on the line of the rear axle, R to the left of the middle: tan δ = l / (R -+ j/2).
+// Circle about a point on the rear-axle line, R to the left of the middle: tan δ = l / (R -+ j/2).
 TEST(Ackermann, IsHundredPercentWhereThePerpendicularsMeetOnTheRearAxle) {
     const auto angle = [](double R, double y) { return std::atan(2.7 / (R - y)) * 180 / std::numbers::pi; };
     for (const double R : {4.0, 10.0, -5.0, -30.0}) {
@@ -289,7 +293,7 @@ TEST(Compression, IsWhatASpringOrADamperIsShorterThanDrawn) {
     EXPECT_EQ(find_channel(list, "rubber.compression"), -1);
 }
 
-// A body that a jack holds, a drive turns and a rod pulls.
+// A body held by a jack, rotated by a drive and pulled by a rod.
 struct Driven {
     Model model;
     Equilibrium state;
@@ -305,8 +309,8 @@ struct Driven {
 };
 
 TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
-    // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j, which is
-    // -y of the ground; and an angle about x.
+    // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j,
+    // which is -y of the ground; and an angle about x.
     const Driven rod(DistanceBetween{Point{0}, Point{1}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
     EXPECT_NEAR(value(rod.model, rod.state, "drive.drive_force"), 5, 1e-12);
     const Driven plane(PointInPlane{Point{0}, Point{1}, {1, {0, 0, 1}}, 0},
@@ -315,7 +319,7 @@ TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
     const Driven angle(DirectionAtAngle{{0, {0, 1, 0}}, {1, {0, 1, 0}}, {1, {0, 0, 1}}, 0},
                        {Vector3d::Zero(), Vector3d(3, 4, 5)});
     EXPECT_NEAR(value(angle.model, angle.state, "drive.drive_moment"), 3, 1e-12);
-    // Where nothing moves the joint its effort is no output; where it does not stand it is zero.
+    // The effort is no output for a joint that nothing moves, and zero for an inactive joint.
     Model nobody = rod.model;
     nobody.branches.clear();
     EXPECT_EQ(find_channel(channels(nobody), "drive.drive_force"), -1);
@@ -339,7 +343,7 @@ TEST(Totals, AddUpTheWrenchesOnOneBodyAboutOnePoint) {
     state.reactions[1].force = {0, 0, -4};  // on ground: +4 on the arm, 2 m behind the front joint
     const std::vector<std::vector<int>> groups{{0, 1}};
     const auto list = totals(model, groups);
-    ASSERT_EQ(list.size(), 6u);  // the ground's share is the arm's, turned round
+    ASSERT_EQ(list.size(), 6u);  // the total on ground is that of the arm, reversed
     EXPECT_EQ(list[2].name, "front+rear.force_z");
     const auto values = evaluate(model, list, state);
     EXPECT_NEAR(values[2], 14, 1e-12);

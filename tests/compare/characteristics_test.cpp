@@ -1,5 +1,5 @@
-// Kinematics and compliance: what is known by hand, by every leg; mirrored, in other units; and that forces say the same
-// as motion.
+// Kinematics and compliance characteristics: closed forms by every leg, mirror image and units, and
+// consistency of forces with motion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ Model model_of(const std::string& text, const std::string& units = "{length: m, 
     return compile(parse_scene("elastocheck: 1\nname: test\nunits: " + units + "\n" + text, "test.yaml"));
 }
 
-// At a = 0 of a branch, the first unless another is named, by one leg.
+// Characteristics at a = 0 of a branch, the first by default, by one leg.
 class Read {
   public:
     Read(const Model& model, Leg leg, const std::string& branch = "")
@@ -67,7 +67,7 @@ class Read {
     std::vector<double> values_;
 };
 
-// ---- One arm about a fixed axis: everything is the velocity field ω × (p - a), by hand.
+// ---- One arm about a fixed axis: closed form by the velocity field ω × (p - a).
 
 struct Arm {
     Vector3d a, b;  // of the axis
@@ -106,7 +106,8 @@ TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
         EXPECT_NEAR(is["track_gradient"], 100 * v_p.y() / dz, 1e-9);
         EXPECT_NEAR(is["recession_gradient"], 100 * -v_c.x() / dz, 1e-9);
         EXPECT_NEAR(is["roll_centre_height"], 1e3 * arm.patch.y() * v_p.y() / v_p.z(), 1e-6);
-        // Seen from the side the axis passes the wheel's plane y = 1.1 where the arm turns about.
+        // In side view the arm turns about the intersection of its axis with the wheel plane
+        // y = 1.1.
         const Vector3d from_side = arm.a + n * (arm.centre.y() - arm.a.y()) / n.y();
         EXPECT_NEAR(is["side_view_swing_arm"], 1e3 * (from_side.x() - arm.centre.x()), 1e-6);
         const Vector3d from_front = arm.a + n * (arm.centre.x() - arm.a.x()) / n.x();
@@ -114,7 +115,7 @@ TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
         EXPECT_NEAR(is["coil.motion_ratio"], ratio, 1e-12);
         // Unloaded: force at the patch over travel of the centre is k (dℓ/dφ)² / (v_p v_c).
         EXPECT_NEAR(is["wheel_rate"], 1e-3 * k * std::pow(arm.v(low).z(), 2) / (v_p.z() * dz), 1e-9);
-        EXPECT_EQ(is["lateral_stiffness"], undefined);  // rigid while the wheel is held
+        EXPECT_EQ(is["lateral_stiffness"], undefined);  // rigid with the wheel held
         EXPECT_NEAR(is["lateral_force_steer"], 0, 1e-12);
     }
 }
@@ -130,8 +131,8 @@ TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromThe
     }
 }
 
-// On an oblique slide: both wheels go back by a quarter of what they rise and across by a tenth, and neither goes without
-// the other.
+// On an oblique slide both wheels move together: back by a quarter and across by a tenth of their
+// rise.
 TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
     const Model model = model_of(R"(
 points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4]}
@@ -152,7 +153,8 @@ wheels:
             EXPECT_NEAR(is[wheel + "track_gradient"], wheel == "left." ? 10 : -10, 1e-9);
             EXPECT_NEAR(is[wheel + "bump_steer"], 0, 1e-12);
             EXPECT_EQ(is[wheel + "roll_steer"], undefined);
-            // Half of the spring's 50 N/mm and what an oblique way makes of it: each patch takes 1 N.
+            // Half of the spring's 50 N/mm with the effect of the oblique slide: each patch takes 1
+            // N.
             EXPECT_NEAR(is[wheel + "wheel_rate"], 25, 1e-9);
             EXPECT_EQ(is[wheel + "wheel_rate_in_roll"], undefined);
         }
@@ -161,7 +163,8 @@ wheels:
     }
 }
 
-// About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each figure is per its own metre.
+// About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each value
+// is per metre of its own wheel's travel.
 TEST(Characteristics, OfAnAxleThatMovesAsOneEachWheelHasItsOwnTravel) {
     const Model model = model_of(R"(
 points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4],
@@ -185,7 +188,8 @@ wheels:
     }
 }
 
-// The patch goes back by (0.1 + 0.3)/0.5 of what it rises, the centre by 0.1/0.5: the pivot is ahead and above.
+// Per unit of rise the patch moves back by (0.1 + 0.3)/0.5, the centre by 0.1/0.5: the pivot is
+// ahead and above.
 TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto with = [&](const char* axle) {
@@ -197,12 +201,13 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Read rear(with("rear"), Leg::equilibrium), front(with("front"), Leg::equilibrium);
     EXPECT_NEAR(rear["anti_lift"], 100 * 0.4 * 0.8 * 5, 1e-9);
     EXPECT_NEAR(rear["anti_squat"], 100 * 0.2 * 5, 1e-9);
-    // A leading pivot dives at the front.
+    // A leading pivot gives negative anti-dive at the front.
     EXPECT_NEAR(front["anti_dive"], -100 * 0.4 * 0.8 * 5, 1e-9);
     EXPECT_NEAR(front["anti_lift"], -100 * 0.2 * 5, 1e-9);
 }
 
-// What nothing resists has no rate; what could not be told is no number, and never passes for the former.
+// An unresisted motion has an undefined rate; a failed solve gives NaN, and the two are never
+// confused.
 TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const Model model = model_of(arm_scene(arm));
@@ -219,7 +224,7 @@ TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
     EXPECT_EQ(value(), undefined);
 }
 
-// ---- Two arms in the plane across: the wheel turns about where their lines meet.
+// ---- Two arms in the transverse plane: the wheel rotates about the intersection of their lines.
 
 std::string wishbones(const std::string& upper_inner, const std::string& upper_outer,
                       const std::string& lower_inner, const std::string& lower_outer) {
@@ -239,8 +244,8 @@ std::string wishbones(const std::string& upper_inner, const std::string& upper_o
 }
 
 TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFront) {
-    // Both fall by 0.1 over 0.4 towards the wheel: its points go inwards by a quarter of what they rise... and outwards
-    // where they rise towards the wheel.
+    // Both arms fall by 0.1 over 0.4 towards the wheel: its points move inwards by a quarter of the
+    // rise; with rising arms outwards.
     for (const double fall : {0.0, 0.1, -0.1}) {
         const Model model = model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall),
                                                "[0, 0.3, 0.15]", fmt::format("[0, 0.7, {}]", 0.15 - fall)));
@@ -270,13 +275,14 @@ TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
 
 // ---- Steering.
 
-// A carrier on two balls, held to the ground: it turns about the line through them, as the rack pushes its arm. The line
-// passes the wheel centre, whose height the steering then keeps.
+// A carrier on two balls, held to the ground: it rotates about the line through them when the rack
+// pushes its arm. The line passes the wheel centre, whose height steering then keeps.
 TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
     struct Line {
-        double caster, inclination, inboard;  // slopes: dx/dz, dy/dz to the top; of the wheel centre [m]
+        // slopes: dx/dz, dy/dz to the top; of the wheel centre [m]
+        double caster, inclination, inboard;
     };
-    // Upright, it may stand beside the wheel centre, whose height is kept as well.
+    // A vertical line may lie beside the wheel centre, whose height is constant as well.
     for (const auto& [caster, inclination, inboard] : {Line{0.1, 0.2, 0}, Line{0, 0, 0.08}})
         for (const int side : {1, -1}) {
             const auto point = [&](double x, double y, double z) {
@@ -303,13 +309,15 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
                 EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
                 EXPECT_NEAR(is["kingpin_inclination_steered"], deg * std::atan(inclination), 1e-8);
                 EXPECT_NEAR(is["mechanical_trail_steered"], 1e3 * 0.3 * caster, 1e-7);
-                // 0.3 below the wheel centre the axis has come out by 0.3 · 0.2: beyond the patch.
+                // 0.3 below the wheel centre the axis is further out by 0.3 · 0.2: beyond the
+                // patch.
                 EXPECT_NEAR(is["scrub_radius_steered"], 1e3 * (inboard - 0.3 * inclination), 1e-7);
             }
         }
 }
 
-// About a vertical kingpin patch and axis keep their distance across and along the wheel at every angle.
+// About a vertical kingpin the distance of patch and axis across and along the wheel is the same at
+// every angle.
 TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSteered) {
     for (const int side : {1, -1})
         for (const double steered : {0.0, 0.9, -0.4}) {
@@ -343,7 +351,7 @@ TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSt
 
 // ---- Compliance.
 
-// One body on one bushing: what a wrench at a point at r from it does is r and K by hand.
+// One body on one bushing: closed form of the response to a wrench at a point at r, from r and K.
 TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     const Model model = model_of(
         "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
@@ -357,7 +365,7 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
         m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
         return m;
     };
-    Matrix6 A = Matrix6::Identity();  // the wrench about the bushing of one at the patch
+    Matrix6 A = Matrix6::Identity();  // the wrench about the bushing of a unit wrench at the patch
     A.bottomLeftCorner<3, 3>() = tilde(lever);
     const Vector6 flexible = (Vector6() << 1 / 2e6, 1 / 5e6, 1 / 4e6, 1 / 9e3, 1 / 7e3, 1 / 8e3).finished();
     const Matrix6 expected = A.transpose() * flexible.asDiagonal() * A;
@@ -371,13 +379,13 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
         EXPECT_LE(reciprocity(model, C), 1e-13);
         EXPECT_NEAR(is["wheel_rate"],
                     1e-3 / compliance(model, WheelPoint::centre, is.state, is.answers)(2, 2), 1e-6);
-        // With the wheel's height held: the compliance less what the jack takes.
+        // With the wheel's height held: the compliance minus the part of the jack.
         Matrix6 at_centre = compliance(model, WheelPoint::centre, is.state, is.answers);
         const Vector6 z = at_centre.col(2);
         at_centre -= z * z.transpose() / z[2];
         EXPECT_NEAR(is["longitudinal_stiffness_at_centre"], 1e-3 / at_centre(0, 0), 1e-6);
-        // The patch is below the centre, so that the jack takes the same of it. Inwards and to the back are -y and -x,
-        // towards toe-in of a left wheel is -z.
+        // The patch is below the centre, so the jack has the same effect. Inwards is -y, backwards
+        // -x, and towards toe-in of a left wheel -z.
         Matrix6 held = C;
         held -= C.col(2) * C.row(2) / C(2, 2);
         EXPECT_NEAR(is["lateral_force_steer"], 1e3 * deg * held(5, 1), 1e-9);
@@ -389,7 +397,8 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     }
 }
 
-// A jack and a tyre are the dead force that they exert: the wheel answers as under that force in the same place.
+// A jack and a tyre act as the dead force they exert: the response equals that under this force at
+// the same place.
 TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto rates_at_end = [&](const Model& model, const std::string& force) {
@@ -437,9 +446,9 @@ TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
     }
 }
 
-// ---- On the suspensions that come with the house.
+// ---- Built-in suspensions.
 
-// Trimmed where it asks for that.
+// Trimmed where the scene requests it.
 Model standing(const Scene& scene) { return compile(trim(scene).scene); }
 
 TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
@@ -483,9 +492,10 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
                         << name << " " << channel.name;
                 }
             }
-            // Of an axle the left is the right.
+            // Left and right values of an axle are equal.
+            // one rack steers one wheel in and the other out
             if (channel.name.starts_with("left.") && is.values()[c] != undefined &&
-                !channel.name.ends_with("steer_gradient")) {  // one rack turns one in and the other out
+                !channel.name.ends_with("steer_gradient")) {
                 EXPECT_NEAR(is["right." + channel.name.substr(5)], is.values()[c],
                             1e-7 * std::max(1.0, std::abs(is.values()[c])))
                     << name << " " << channel.name;
@@ -494,8 +504,8 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
     }
 }
 
-// Virtual work: as much as the patch goes aside when the wheel rises, the jack gives way when it is pushed aside. The
-// first is a motion, the second a force, read off curves that know nothing of either.
+// Virtual work: the lateral movement of the patch per wheel rise equals the jack force per lateral
+// force. The first is a motion, the second a force, from independent curves.
 TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
     for (const char* name : {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
         Scene scene = support::scene(name);
@@ -509,14 +519,14 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const Read is(model, Leg::equilibrium, "lateral");
         const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
         const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
-        // The jack is under the centre; the patch rises a little more or less where the wheel leans.
+        // The jack acts at the centre; the rise of the patch differs slightly with camber.
         const double rises =
             moved(is.state, is.answers.travel[0], {model.wheels[0].body, model.wheels[0].contact_local}).z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }
 
-// What the curves show between two points is what the rates say at the one between them.
+// Rates equal the slopes of the curves, by central differences.
 TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
     Scene scene = support::scene("double_wishbone");
     const double step = 1e-4;
@@ -535,7 +545,7 @@ TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
     EXPECT_NEAR(is["recession_gradient"], -1e2 * slope("wheel_centre_x"), 1e-4);
 }
 
-// The published matrix knows nothing of the force in the spring: its wheel rate is that of the unloaded one.
+// The published matrix contains no spring force: its wheel rate is that of the unloaded suspension.
 TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const Model unloaded = model_of(arm_scene(arm));

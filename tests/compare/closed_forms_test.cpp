@@ -1,4 +1,4 @@
-// What is known by hand or from the books, from the text of a scene through every leg and the series.
+// Closed-form and textbook solutions, from the text of a scene through every leg and the series.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,14 +20,14 @@ namespace {
 using namespace support;  // the leaf: E, G, L, width, thick, EI
 using std::numbers::pi;
 
-constexpr double no_curve =
-    1e-8;  // [mm] [deg] that the references are apart where no curve's knot is crossed
-constexpr double expansions = 1e-9;  // [mm] [deg] that the series is from the equilibrium leg
+constexpr double no_curve = 1e-8;    // [mm] [deg] distance of the references without a knot of a curve
+constexpr double expansions = 1e-9;  // [mm] [deg] distance of the series from the equilibrium leg
 
-// A scene in metres, radians and newtons, its branches walked by the series and both references, which agree.
+// A scene in metres, radians and newtons, solved by the series and both references, which must
+// agree.
 class Solved {
   public:
-    // The series is told a truncation error [m]: its own, or less for chains of many bodies.
+    // `told`: tolerance of the series [m]; smaller for chains of many bodies.
     Solved(const std::string& text, const std::string& what, double told = recursive::Series{}.tolerance)
         : model(compile(parse_scene(
               "elastocheck: 1\nname: " + what + "\nunits: {length: m, angle: rad, force: N}\n" + text,
@@ -52,7 +52,7 @@ class Solved {
         }
     }
 
-    // Of a leg along a branch; Leg::recursive is the series. In mm, deg, N, N·m.
+    // Output of a leg along a branch; Leg::recursive is the series. In mm, deg, N, N·m.
     std::vector<double> read(std::string_view branch, std::string_view channel,
                              Leg leg = Leg::equilibrium) const {
         return run(branch, leg).curve.channel(static_cast<std::size_t>(find_channel(all.channels, channel)));
@@ -72,9 +72,10 @@ class Solved {
 
 // ---- Beams.
 
-// Under a moment M at its tip the leaf has the curvature M/EI throughout. A chain of n turns at every segment by
-// θ = M L/(n EI) and stands on a circle as well, smaller by (θ/2)/tan(θ/2) = 1 - θ²/12 - ...: order 2 in n. Whether the
-// moment keeps its direction or follows the tip is one in the plane; the latter has no energy.
+// Under a moment M at its tip the beam has the constant curvature M/EI. A chain of n segments turns
+// at each by θ = M L/(n EI) and lies on a circle as well, smaller by
+// (θ/2)/tan(θ/2) = 1 - θ²/12 - ...: order 2 in n. In the plane a dead moment and a follower moment
+// are equal; the latter has no energy.
 TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
     const double turn = 2 * pi;
     for (const bool follows : {false, true}) {
@@ -104,10 +105,11 @@ TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
     }
 }
 
-// A round rod is as soft across the plane of its circle as in it. A dead moment has no potential for finite rotations:
-// its stiffness is not symmetric, and the part that is has lost its sign before half a turn, though no other
-// equilibrium branches off: the tangent stays regular. The energy leg, which knows minima alone, ends there and says so;
-// the equilibrium leg and the series go round.
+// A round rod has equal bending stiffness in and across the plane of its circle. A dead moment has
+// no potential for finite rotations: its stiffness is unsymmetric, and the symmetric part becomes
+// indefinite before half a turn, although no other equilibrium branches off: the tangent stays
+// regular. The energy leg, which finds only minima, ends there with an outcome; the equilibrium leg
+// and the series continue round.
 TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
     const int n = 8, steps = 16;
     const double diameter = 0.022, EI_rod = E * pi * std::pow(diameter, 4) / 64;
@@ -168,11 +170,12 @@ TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
     EXPECT_LE(errors.back(), 2) << "mm, of a tip that comes 810 mm across";
 }
 
-// ---- Euler's column: the leaf, pressed along its axis.
+// ---- Euler's column: a beam under axial pressure.
 
-// Up to there the straight column is an equilibrium that everybody follows, past it nobody does: the tangent's
-// determinant has changed its sign (series, adaptive), the stiffness has lost its sign (equilibrium leg), the potential
-// its minimum (energy leg, which calls a stiffness lost when it can tell it from zero: a little later).
+// Below Euler's load every method follows the straight column, above it none: the tangent's
+// determinant changes its sign (series, adaptive), the stiffness becomes negative (equilibrium
+// leg), the potential loses its minimum (energy leg, which detects this when the stiffness is
+// negative beyond its uncertainty: slightly later).
 TEST(Column, TangentIsSingularAtEulersLoad) {
     const double euler = pi * pi * EI / (4 * L * L);
     std::vector<double> errors;
@@ -196,7 +199,8 @@ TEST(Column, TangentIsSingularAtEulersLoad) {
                 const auto path =
                     walk(ways_of(model, branch),
                          {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
-                // Within its smallest step the equilibrium leg does not tell dividing from turning.
+                // Within its smallest step the equilibrium leg does not distinguish a bifurcation
+                // from a limit point.
                 const bool ends = path.outcome == Outcome::dividing_point ||
                                   (leg == Leg::equilibrium && path.outcome == Outcome::singular);
                 EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
@@ -216,7 +220,8 @@ TEST(Column, TangentIsSingularAtEulersLoad) {
 constexpr double D = 0.022, EI_rod = E * pi * D * D * D * D / 64, GJ_rod = G * pi * D * D * D * D / 32;
 const std::string steel_rod = fmt::format("E: {}, G: {}, diameter: {}", E, G, D);
 
-// T = G J φ / L: a rod however it is cut, and the torsion spring of that rate. A lever at its end tells the angle.
+// T = G J φ / L: a rod of any number of segments, and the torsion spring of the same rate. A lever
+// at its end shows the angle.
 TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
     const double turn = 2.5;  // [rad]
     const std::string end = fmt::format(
@@ -252,7 +257,7 @@ TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
     }
 }
 
-// w = F L³/(48 E I) for small forces, whatever the number of segments; what is more grows as F³.
+// w = F L³/(48 E I) for small forces, for any number of segments; the remainder grows as F³.
 TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
     const double length = 1.2, b = 0.060, t = 0.012, EI_leaf = E * b * t * t * t / 12;
     const double rate = 48 * EI_leaf / (length * length * length);  // 49 kN/m
@@ -286,8 +291,8 @@ TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
     }
 }
 
-// An anti-roll bar: a rod b long in two bearings, its arms a long, one end held by its link, a force F at the other. Both
-// arms bend like cantilevers, the rod between them twists under F a:
+// An anti-roll bar: a rod b long in two bearings, its arms a long, one end held by its link, a
+// force F at the other. Both arms bend like cantilevers, the rod between them twists under F a:
 //
 //   w = F (2 a³/(3 E I) + a² b/(G J))
 TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
@@ -329,7 +334,8 @@ TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
 
 // ---- Stops.
 
-// A block on a spring of 20 kN/m, with a bump stop that closes when it is 30 mm lower and a rebound stop 50 mm above.
+// A block on a spring of 20 kN/m, with a bump stop at 30 mm below and a rebound stop at 50 mm
+// above.
 struct Block {
     double k = 20e3, c = 0.03, s = 300e3, d = 0.05, r = 120e3;
 
@@ -345,7 +351,7 @@ struct Block {
             "branches: {{push: {{load: push, from: {}, to: {}, steps: 30}}}}\n",
             k, c, s, d, r, -to, to);
     }
-    // How far a force F pushes it down, and what a stop takes of that.
+    // Displacement under a force F, and the force of the stop.
     double down(double F) const {
         return F > k * c ? (F + s * c) / (k + s) : F < -k * d ? (F - r * d) / (k + r) : F / k;
     }
@@ -371,9 +377,10 @@ TEST(Stop, BearsWhatTheHandCalculationSaysInEveryLeg) {
     }
 }
 
-// The step that closes the stop has the stiffness from before. What sums up stiffness times step keeps that: the part of
-// the step behind the knot, times the difference in flexibility, of first order in the step. Whatever starts each step
-// from the true force has it back with the next.
+// The step that closes the stop uses the stiffness before contact. Methods that sum stiffness times
+// step keep that error: the part of the step beyond the knot times the difference in flexibility,
+// of first order in the step. Methods that start each step from the true force recover it in the
+// next step.
 TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
     const Block block;
     const double to = 3100;
@@ -385,7 +392,8 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
                 run(model, model.branches[0], Leg::recursive, {.method = method, .steps = steps});
             ASSERT_EQ(done.outcome, Outcome::converged) << method.name << ": " << done.detail;
             const double step = 2 * to / steps;
-            const auto kept = [&](double contact, double stop) {  // the load at contact, the stop's rate
+            // the load at contact, the stop's rate
+            const auto kept = [&](double contact, double stop) {
                 const double behind = std::ceil(contact / step) * step - contact;
                 return behind * (1 / block.k - 1 / (block.k + stop));
             };
@@ -401,9 +409,10 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
         }
 }
 
-// ---- A curve and a stop on an arm that is turned by hand.
+// ---- A curve and a stop on an arm with a prescribed angle.
 
-// Fritsch and Butland's interpolant told as Hermite's: through the table, with slopes m.
+// Monotone interpolation (Fritsch & Butland 1984) in Hermite form: through the table, with slopes
+// m.
 struct Interpolated {
     std::vector<double> x, f, m;
 
@@ -414,9 +423,10 @@ struct Interpolated {
         const auto rise = [&](std::size_t k) { return (f[k + 1] - f[k]) / h(k); };
         for (std::size_t k = 1; k < last; ++k) {
             const double v = 2 * h(k) + h(k - 1), w = h(k) + 2 * h(k - 1);
-            m[k] = (v + w) / (v / rise(k - 1) + w / rise(k));  // all rise here
+            m[k] = (v + w) / (v / rise(k - 1) + w / rise(k));  // all increasing here
         }
-        const auto end = [](double h_0, double h_1, double d_0, double d_1) {  // three points, not below zero
+        // three-point formula, not below zero
+        const auto end = [](double h_0, double h_1, double d_0, double d_1) {
             return std::max(0.0, ((2 * h_0 + h_1) * d_0 - h_0 * d_1) / (h_0 + h_1));
         };
         m[0] = end(h(0), h(1), rise(0), rise(1));
@@ -431,7 +441,7 @@ struct Interpolated {
         return s * s * ((1 + 2 * t) * f[k] + h * t * m[k]) +
                t * t * ((1 + 2 * s) * f[k + 1] - h * s * m[k + 1]);
     }
-    // ∫₀ f, by Simpson's rule from row to row, which is exact for cubics.
+    // ∫₀ f by Simpson's rule from row to row, which is exact for cubics.
     double energy(double at) const {
         const double low = std::min(0.0, at), high = std::max(0.0, at);
         std::vector<double> ends{low};
@@ -447,7 +457,7 @@ struct Interpolated {
     }
 };
 
-// An arm of 0.3 m about y, on a spring with a curve and a bump stop between it and a point above.
+// An arm of 0.3 m about y, on a spring with a curve and a bump stop, attached to a point above.
 struct Arm {
     Interpolated curve{{-0.06, -0.03, 0, 0.02, 0.05, 0.08}, {-2600, -900, 0, 700, 2400, 6000}};
     double R = 0.3, x = 0.25, z = 0.35, clearance = 0.025, rate = 400e3;
@@ -473,7 +483,7 @@ struct Arm {
     double slope(double alpha) const {
         return R * (x * std::sin(alpha) + z * std::cos(alpha)) / length(alpha);
     }
-    // What holds it there, and what is stored.
+    // Holding moment and stored energy.
     double moment(double alpha) const {
         const double e = longer(alpha);
         return (curve.force(e) + rate * std::min(0.0, e + clearance)) * slope(alpha);
@@ -482,9 +492,9 @@ struct Arm {
         const double e = longer(alpha);
         return curve.energy(e) + rate * std::pow(std::min(0.0, e + clearance), 2) / 2;
     }
-    // Where the spring is longer by e.
+    // Angle at which the spring is longer by e.
     double angle(double e) const {
-        double low = -0.8, high = 0.8;  // ℓ rises throughout
+        double low = -0.8, high = 0.8;  // ℓ increases monotonically
         for (int i = 0; i < 60; ++i) {
             const double middle = (low + high) / 2;
             (longer(middle) < e ? low : high) = middle;
@@ -515,7 +525,7 @@ TEST(Curve, StoresTheWorkOfTheMomentThatTurnsIt) {
     const auto drive = static_cast<std::size_t>(find_channel(all, "hinge.drive_moment"));
     for (const auto& way : ways_of(model, model.branches[0])) {
         const double to = way.branch.to;
-        std::vector<double> ends{0, to};  // between them nothing has a knot
+        std::vector<double> ends{0, to};  // no knot in between
         for (const double knot : {-0.03, -0.06, 0.02, 0.05, 0.08, -arm.clearance})
             if (const double alpha = arm.angle(knot); alpha * to > 0 && std::abs(alpha) < std::abs(to))
                 ends.push_back(alpha);

@@ -1,4 +1,4 @@
-// Three legs side by side: the numbers that must be reached, and when a comparison is not one.
+// Comparison of the three legs: required accuracy, and the conditions of an inconclusive result.
 #include "compare/compare.hpp"
 
 #include <fmt/format.h>
@@ -24,12 +24,13 @@ const Comparison& mcpherson() {
     return comparison;
 }
 
-// What has no value somewhere on the branch, an endless arm, is not compared there.
+// Channels without a value somewhere on the branch, such as an infinite swing arm, are not compared
+// there.
 bool is_undefined(const Comparison& all, const BranchComparison& branch, std::size_t c) {
     return all.channels[c].may_be_undefined() && !branch.determined[c];
 }
 
-// By which a rate of the equilibrium leg may be missed; nothing for what is no rate.
+// Allowed error of a rate of the equilibrium leg; 0 for other channels.
 double share_of_rate(const Comparison& all, const BranchComparison& branch, std::size_t c) {
     if (!std::holds_alternative<Characteristic>(all.channels[c].reads)) return 0;
     double largest = 1e-3;
@@ -64,13 +65,13 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
 }
 
 TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
-    // At 1 N nothing has turned yet, and where nothing is preloaded
-    // eq. (24) is the tangent of the true equations.
+    // At 1 N rotations are negligible, and without preload eq. (24) is the tangent of the true
+    // equations.
     for (const auto& name : support::small_scene_names()) {
         if (name == "chrono_mcpherson_preload") continue;
         Scene scene = support::scene(name);
-        // The tangent is off by the order of the rotation: 1 N turns the pendulum by 7e-4 rad and is 0.5 % of
-        // what the shallow arch can bear, so for these two it is not small.
+        // The tangent's error is of the order of the rotation: 1 N turns the pendulum by 7e-4 rad
+        // and is 0.5 % of the shallow arch's limit load, so for these two it is not small.
         const double load = name == "two_spring_arch" || name == "pendulum" ? 0.01 : 1;
         for (auto& branch : scene.branches) {
             const bool force = branch.unit == ParameterUnit::newton;
@@ -78,7 +79,7 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
             branch.to = std::copysign(force ? load : 1e-5, branch.to);  // [N], or [m] and [rad]
             branch.steps = 1;
         }
-        // What is held at the start has a stiffness that eq. (24) leaves out, as a preload has.
+        // Loads held from the start add a stiffness that eq. (24) leaves out, like a preload.
         std::erase_if(scene.branches, [](const Branch& branch) {
             return std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; });
         });
@@ -99,8 +100,8 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
 }
 
 TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
-    // What is stored at the design position has a stiffness, which eq. (24) leaves out: the wheel rate is off
-    // from the start.
+    // Preload adds a geometric stiffness that eq. (24) leaves out: the wheel rate is wrong from the
+    // start.
     Scene scene = support::scene("chrono_mcpherson_preload");
     for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
     const Model model = compile(scene);
@@ -119,7 +120,8 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
 }
 
 TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
-    // What is known of the published method: percents at equal load, a small part of it at equal travel.
+    // Known errors of the published method: per cents at equal load, a small part of that at equal
+    // travel.
     for (const auto& branch : mcpherson().branches) {
         const auto& load = branch.deviation.equal_parameter.channels;
         const auto& travel = branch.deviation.equal_abscissa.channels;
@@ -150,7 +152,7 @@ TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
     }
 }
 
-// ---- When it is not a comparison
+// ---- Inconclusive comparisons
 
 TEST(Compare, ALegThatDoesNotConvergeMakesItInconclusive) {
     Scene scene = support::scene("two_spring_arch");
@@ -170,7 +172,7 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     ASSERT_FALSE(comparison.conclusive());
     EXPECT_NE(comparison.branches[0].inconclusive.texts().at(0).find("disagree on tip_"), std::string::npos);
     options = {};
-    options.agreement.residual_length = 0;  // nor closes joints to it where they are many
+    options.agreement.residual_length = 0;  // nor do they close many joints to the last bit
     options.recursion.steps = 10;
     EXPECT_FALSE(compare(compile(support::scene("chrono_mcpherson")), options).conclusive());
     options = {};
@@ -180,7 +182,7 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
 
 TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
     Options options;
-    options.agreement.residual_force = -1;  // nobody holds to the last bit
+    options.agreement.residual_force = -1;  // no residual is below zero
     const auto branch = compare(compile(support::scene("pinned_bar")), options).branches.front();
     const auto reasons = branch.inconclusive.texts();
     ASSERT_EQ(reasons.size(), 2u);
@@ -215,7 +217,7 @@ TEST(Compare, NothingComparedIsNotConclusive) {
 }
 
 TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs) {
-    // The bar's hinge twice; what holds a second bar beside it stays determined.
+    // The bar's hinge duplicated; the joints of a second bar stay determined.
     Scene scene = support::scene("pinned_bar");
     const auto bodies = scene.bodies.size();
     scene.joints.push_back(scene.joints.front());
@@ -261,7 +263,7 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
         }
     }
     EXPECT_EQ(totals_seen, 6 * static_cast<int>(comparison.branches.size()));
-    // Together they carry what the single hinge carries.
+    // Together they carry the reaction of the single hinge.
     const auto single = compare(compile(other));
     const int all = find_channel(comparison.channels, pin + "+again.force_z"),
               one = find_channel(single.channels, pin + ".force_z");
@@ -280,10 +282,10 @@ TEST(Compare, ProgressIsToldBeforeEachLeg) {
                                               "push: equilibrium leg", "push: energy leg", "push: proofs"}));
 }
 
-// ---- Exact answers are conclusive, wrong ones are not
+// ---- Exact results are conclusive, wrong ones are not
 
-// An arm on a revolute at the origin, its end 0.5 m out held by a bushing of this stiffness and loaded
-// upwards.
+// An arm on a revolute at the origin, with its end at 0.5 m on a bushing of this stiffness under an
+// upward load.
 Scene one_arm(double k, double load) {
     Scene scene;
     scene.name = "one arm";
@@ -301,7 +303,7 @@ Scene one_arm(double k, double load) {
 }
 
 TEST(Judgement, AReactionThatVanishesIsComparedWithWhatActs) {
-    // The bushing takes the load where it acts: the pin carries nothing but rounding.
+    // The bushing carries the load at its point of action: the pin force is only rounding.
     for (const double load : {1e-2, 1e3, 5e4}) {
         const auto comparison = compare(compile(one_arm(1e5, load)));
         for (const auto& reason : comparison.branches[0].inconclusive.texts())
@@ -321,20 +323,20 @@ TEST(Judgement, AMountIsJudgedByWhatTheLastDigitOfAPositionIsWorth) {
 TEST(Judgement, BoundsAreSharesOfWhatActs) {
     const Model model = compile(one_arm(1e5, 1000));
     const auto bounds = compare(model).branches[0].bounds;
-    EXPECT_NEAR(bounds.scale.force, 1000, 20);  // the load, and the mount's force which bears it
+    EXPECT_NEAR(bounds.scale.force, 1000, 20);  // the load, and the mount's force that balances it
     EXPECT_NEAR(bounds.scale.length, 0.5, 1e-12);
     EXPECT_NEAR(bounds.force, 1e-7 * bounds.scale.force, 1e-3 * bounds.force);
     EXPECT_DOUBLE_EQ(bounds.length, 1e-6);  // of a metre at least
     EXPECT_NE(describe(bounds).find("0.5 m"), std::string::npos) << describe(bounds);
-    // Ten times the load, ten times the bound.
+    // Ten times the load gives ten times the bound.
     EXPECT_NEAR(compare(compile(one_arm(1e5, 1e4))).branches[0].bounds.force / bounds.force, 10, 0.5);
-    // The last digit of half a metre, on a mount of 1e11 N/m, is worth more than any share of the load.
+    // The last digit of half a metre on a mount of 1e11 N/m exceeds any share of the load.
     const auto stiff = compare(compile(one_arm(1e11, 1000))).branches[0].bounds;
     EXPECT_GE(stiff.residual_force, 0.5 * 1e11 * std::numeric_limits<double>::epsilon());
 }
 
 TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
-    // The references' own numbers, one of them moved by ten times its bound.
+    // The references' own numbers, one of them changed by ten times its bound.
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto comparison = compare(model);
     for (const auto& branch : comparison.branches)
@@ -387,7 +389,7 @@ TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
 }
 
 TEST(Judgement, ALegThatIsWrongByTenBoundsIsFound) {
-    // The energy leg is given a spring that is stiffer by a few parts in 1e6.
+    // The energy leg solves a spring that is stiffer by 1e-6.
     const Scene right = support::scene("pinned_bar");
     Scene wrong = right;
     const auto stiffer = overloaded{[](AxialSpring& e) { std::get<LinearRate>(e.law).k *= 1 + 1e-6; },
@@ -415,7 +417,7 @@ TEST(Judgement, ManyComplaintsBecomeTheWorstThreeAndACount) {
     EXPECT_TRUE(Objections{}.empty() && Objections{}.texts().empty());
 }
 
-// ---- Branches that say nothing
+// ---- Branches without information
 
 TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     Scene scene = one_arm(1e5, 1000);
@@ -427,7 +429,7 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     const auto why = comparison.branches[0].inconclusive.texts();
     ASSERT_FALSE(why.empty());
     EXPECT_EQ(why[0], "nothing drives branch 'up': load 'pull': its body is left out (branch 'up')");
-    // Nor is it one for the gate, though every number is as it was.
+    // The gate must not pass it either, though every number is unchanged.
     Baseline baseline;
     baseline.accepted = measure(compile(scene), comparison);
     baseline.reason = "all zeros";
@@ -439,18 +441,18 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
 
 TEST(Judgement, ABranchOnWhichNoOutputMovesIsNoPass) {
     Scene scene = one_arm(1e5, 1000);
-    // Into the pin: it takes all.
+    // The load acts on the pin, which carries all of it.
     std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}}, {1, 0, 0}};
     const auto comparison = compare(compile(scene));
     EXPECT_FALSE(comparison.conclusive());
     const auto why = comparison.branches[0].inconclusive.texts();
     ASSERT_FALSE(why.empty());
     EXPECT_NE(why[0].find("no asked-for output moves on branch 'up'"), std::string::npos) << why[0];
-    // A stiff mount that moves by 1e-5 mm moves.
+    // A stiff mount that moves by 1e-5 mm counts as moving.
     EXPECT_TRUE(compare(compile(one_arm(1e11, 1000))).conclusive());
 }
 
-// ---- Two ways
+// ---- Two-sided branches
 
 TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
     Scene both = support::scene("chrono_mcpherson");
@@ -497,7 +499,7 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     EXPECT_LT(found.curve.a.front(), -150);
     EXPECT_GT(found.curve.a.front(), -212);
     EXPECT_EQ(found.curve.a[found.curve.start], 0);
-    // Nor is it lost behind a way that succeeds.
+    // The failure of one side is not hidden by the success of the other.
     std::swap(scene.branches[0].from, scene.branches[0].to);
     const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
     EXPECT_EQ(second.outcome, Outcome::limit_point);
@@ -521,10 +523,10 @@ TEST(Ways, AnyChannelCanBeTheAbscissa) {
     EXPECT_THROW((void)compare(model, options), std::invalid_argument);
 }
 
-// ---- Where a branch begins
+// ---- Start of a branch
 
 TEST(Settled, SaysHowFarTheSceneSinksFromItsDrawing) {
-    // The arm of the test above with half its load held from the start: 5 mm, by hand.
+    // The arm of the test above with half its load held from the start: 5 mm by closed form.
     Scene scene = one_arm(1e5, 10);
     scene.branches[0].drivers[0].start = 500;
     const Model model = compile(scene);

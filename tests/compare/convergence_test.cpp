@@ -1,5 +1,5 @@
-// Orders, limits and bands: exact laws, published examples,
-// and every sequence that must not be given an order.
+// Step-size convergence: orders, limits and error bands of exact laws, published examples, and
+// sequences that must not get an order.
 #include "compare/convergence.hpp"
 
 #include <gtest/gtest.h>
@@ -141,9 +141,10 @@ TEST(Convergence, ScaleSignAndOffsetOfTheValuesDoNotMatter) {
 
 // ---- published examples ----
 
-// Celik, Ghia, Roache, Freitas, Coleman, Raad: Procedure for Estimation and Reporting of Uncertainty Due to
-// Discretization in CFD Applications, J. Fluids Eng. 130 (2008) 078001, Table 1, first two columns.
-// Two-dimensional grids: steps = sqrt(cells). Tolerance: half a unit of the last printed digit.
+// Celik, Ghia, Roache, Freitas, Coleman, Raad: Procedure for Estimation and Reporting of
+// Uncertainty Due to Discretization in CFD Applications, J. Fluids Eng. 130 (2008) 078001, Table 1,
+// first two columns. Two-dimensional grids: steps = sqrt(cells). Tolerance: half a unit of the last
+// printed digit.
 struct Published {
     double cells[3], phi[3];             // finest first
     double p, phi_ext, e_a, e_ext, gci;  // e_a, e_ext, GCI in per cent; NaN: not compared
@@ -186,13 +187,14 @@ TEST(Convergence, PublishedGridStudiesAreReproduced) {
             EXPECT_NEAR(100 * c.finest_error / c.limit, example.e_ext, 0.05);
         }
         EXPECT_NEAR(100 * 1.25 * c.finest_error / finest, example.gci, 0.05);
-        EXPECT_NEAR(c.band, 3 * c.finest_error, 1e-12);  // three levels and no formal order: not 1.25
+        // three levels and no formal order: not 1.25
+        EXPECT_NEAR(c.band, 3 * c.finest_error, 1e-12);
     }
 }
 
 TEST(Convergence, ThePublishedOscillatingStudyGetsNoOrder) {
     const auto levels = levels_of(oscillating);
-    const double p = fixed_point(levels);  // which the published procedure does give one
+    const double p = fixed_point(levels);  // for which the published procedure gives an order
     EXPECT_NEAR(p, oscillating.p, 0.005);
     const double factor = std::pow(2.0, p);
     EXPECT_NEAR((factor * 6.0042 - 5.9624) / (factor - 1), oscillating.phi_ext, 0.00005);
@@ -232,8 +234,8 @@ TEST(Convergence, TheOrderKeepsItsSignWhereThePublishedFormulaLosesIt) {
 // ---- pollution and noise ----
 
 TEST(Convergence, HigherOrderTermsStayWithinTheBand) {
-    // value = 1 + h^p + D h^(p+q) from D = 0.1 to 1000 of either sign: beyond the asymptotic range, through a
-    // turn, and where the levels show the higher term only.
+    // value = 1 + h^p + D h^(p+q) from D = 0.1 to 1000 of either sign: beyond the asymptotic range,
+    // through a turn, and where the levels show the higher term only.
     double worst = 0, worst_formal = 0;
     int formal = 0, compared = 0;
     for (const double p : {1.0, 2.0, 3.0})
@@ -310,7 +312,7 @@ TEST(Convergence, NoiseOfKnownSizeIsCoveredByTheStandardErrorAndTheBand) {
 }
 
 TEST(Convergence, MoreLevelsOfPureNoiseAreTakenForConvergenceMoreRarely) {
-    // No floor is stated, so chance is all there is: three random numbers are monotone one time in three.
+    // No floor is given: three random numbers are monotone one time in three by chance.
     std::mt19937 random(99);
     std::normal_distribution<double> noise(0, 1);
     const auto taken = [&](int count) {
@@ -334,8 +336,8 @@ TEST(Convergence, MoreLevelsOfPureNoiseAreTakenForConvergenceMoreRarely) {
 }
 
 TEST(Convergence, ScatterAboutTheLawReachesOrderAndLimitAsPerturbedValuesDo) {
-    // A poor fit, whose scatter decides the band. Standard errors are σ |J| with J the sensitivity to every
-    // value, so that of the limit is the order's times |J_limit| / |J_order|.
+    // A poor fit, whose scatter determines the band. Standard errors are σ |J| with J the
+    // sensitivity to every value, so that of the limit is the order's times |J_limit| / |J_order|.
     const auto levels = sequence({10, 40, 160, 640}, [](double h) { return 1 + h + 66 * h * h; });
     const auto c = step_convergence(levels, nan, exact);
     ASSERT_EQ(c.count, 4);
@@ -365,7 +367,8 @@ TEST(Convergence, TheSafetyFactorIsSmallOnlyForTheFormalOrderOnFourLevels) {
     EXPECT_TRUE(step_convergence(three, 1, exact).as_formal);
     EXPECT_FALSE(step_convergence(four, 2, exact).as_formal);
     EXPECT_FALSE(step_convergence(four, nan, exact).as_formal);
-    // A higher order than the formal one may hide it: the band is wider than three times the step error.
+    // A higher order than the formal one may hide it: the band is wider than three times the step
+    // error.
     EXPECT_GT(factor(step_convergence(four, 0.5, exact)), 3.5);
 }
 
@@ -523,7 +526,7 @@ TEST(Convergence, WithinTheReferencesUncertaintyNothingIsClaimed) {
     EXPECT_EQ(c.band, 1e-3);
     for (const double reference : {0.0, 1e-4, nan})
         EXPECT_EQ(step_convergence(levels, 1, {0, reference}).behaviour, Behaviour::converging) << reference;
-    // Oscillation, divergence and growth below it mean nothing either.
+    // Oscillation, divergence and growth below the floor are not significant either.
     expect_no_order(step_convergence(doubling({1, 1.0001, 1, 1.0003}), 1, {0, 1e-3}),
                     Behaviour::reference_floor);
 }
@@ -642,7 +645,7 @@ TEST(OrderOf, ErrorsAtTheFloorAreNotUsed) {
     EXPECT_NEAR(fit.order, 2, 1e-12);
     EXPECT_EQ(fit.first, 0);
     EXPECT_EQ(fit.count, 4);
-    errors[1].value = 0;  // a passage through zero: only what is finer counts
+    errors[1].value = 0;  // a zero crossing: only finer levels count
     const auto later = order_of(errors, 1e-8);
     EXPECT_EQ(later.first, 2);
     EXPECT_EQ(later.count, 2);

@@ -1,4 +1,4 @@
-// What deforms the elements, as compare/ reads it; where curves end.
+// Deformations of elements as computed by compare/, and ends of curves.
 #include "compare/deformation.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Law = elastocheck::Curve;
 
 constexpr double third = 1.0 / 3;
 
-// f = 1000 x + 2e5 x³ between -0.02 and 0.03, straight beyond, told in two pieces.
+// f = 1000 x + 2e5 x³ between -0.02 and 0.03, linear beyond, given in two pieces.
 Law cubic(bool known_outside = true) {
     const auto f = [](double x) { return 1000 * x + 2e5 * x * x * x; };
     const auto slope = [](double x) { return 1000 + 6e5 * x * x; };
@@ -47,7 +47,7 @@ struct Pair {
     Bushing bushing;
     Equilibrium state;
 };
-// A bushing from ground to a body that has moved and turned.
+// A bushing from ground to a displaced and rotated body.
 Pair turned(const Quaterniond& B, const Vector3d& d) {
     Pair pair;
     pair.bushing.j.body = 0;
@@ -65,7 +65,7 @@ TEST(Deformation, AnglesAreThoseOfTheirNames) {
     const Vector3d theta(0.4, -0.3, 0.2);
     auto [other, turn] = turned(Quaterniond(AngleAxisd(theta.norm(), theta.normalized())), {0, 0, 0});
     EXPECT_LE((deformation(other, turn).tail<3>() - theta).norm(), 1e-15);
-    // About one axis alone all three are the same.
+    // About one axis all three angle conventions agree.
     for (int axis = 0; axis < 3; ++axis) {
         auto [single, at] = turned(Quaterniond(AngleAxisd(0.7, Vector3d::Unit(axis))), {0, 0, 0});
         for (const auto angles : {Angles::rotation_vector, Angles::cardan, Angles::projected}) {
@@ -92,7 +92,7 @@ TEST(Deformation, IsCountedFromWhereNothingIsDeformed) {
     EXPECT_LE((deformation(bushing, state) - Vector6::Unit(0) * 1e-3 + bushing.undeformed).norm(), 1e-16);
 }
 
-// The paper's strut whose spring says nothing beyond 60 mm either way.
+// The paper's strut whose spring curve ends at 60 mm on both sides.
 Scene short_table(bool known_outside) {
     Scene scene = support::scene("chrono_mcpherson");
     for (auto& branch : scene.branches) branch.steps = 30;
@@ -115,7 +115,7 @@ TEST(OutsideTable, ACurveThatGoesOnIsTheRateItIs) {
             at_equal_parameter(straight.branches[b].runs[1].curve, curved.branches[b].runs[1].curve);
         for (std::size_t c = 0; c < 5; ++c)
             EXPECT_LE(apart.channels[c].max, 1e-8) << straight.channels[c].name;
-        // Bounds follow from the largest stiffness and force, whatever law says them.
+        // Bounds depend on the largest stiffness and force, for any law.
         EXPECT_NEAR(curved.branches[b].bounds.force, straight.branches[b].bounds.force,
                     1e-9 * straight.branches[b].bounds.force);
     }

@@ -1,4 +1,4 @@
-// Deviations, and that no alarm can be switched off by a NaN, an empty curve or a wrong abscissa.
+// Deviations between curves: NaN, empty curves and wrong abscissas never pass.
 #include "compare/deviation.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
     EXPECT_EQ(reading.channels[1].compared, 37);
 }
 
-// An end that both are driven to: which of them rounds down is chance, and must not decide what is compared.
+// An end to which both curves are driven: rounding must not decide whether it is compared.
 TEST(Deviation, TheEndThatBothReachToTheirRoundingIsCompared) {
     const auto shape = [](double x) { return x * x; };
     const Curve a = made(1, shape), b = made(1 - 1e-15, shape);
@@ -122,7 +122,7 @@ TEST(Deviation, TwoWayCurvesAreComparedAroundTheirStartHoweverFarTheyGot) {
         curve->start = 20;
         for (double& x : curve->a) x -= 5;
     }
-    // b broke off on the near side: its first seven points are missing.
+    // b ended early on the near side: its first seven points are missing.
     b.a.erase(b.a.begin(), b.a.begin() + 7);
     b.values.erase(b.values.begin(), b.values.begin() + 7);
     b.start -= 7;
@@ -132,14 +132,14 @@ TEST(Deviation, TwoWayCurvesAreComparedAroundTheirStartHoweverFarTheyGot) {
     EXPECT_EQ(reading.channels[1].compared, 34);
     EXPECT_DOUBLE_EQ(reading.channels[1].max, 0.5);
     EXPECT_DOUBLE_EQ(reading.channels[1].at, a.a[7]);
-    EXPECT_TRUE(std::isnan(distance(outputs, a, b).mm));  // not one and the same branch
+    EXPECT_TRUE(std::isnan(distance(outputs, a, b).mm));  // not the same branch
     EXPECT_EQ(profile_at_equal_parameter(outputs, a, b).apart.size(), 34u);
 }
 
 TEST(Deviation, ProfilesAreTheWorstMainChannelPointByPoint) {
     const Curve a = made(1, [](double x) { return x; });
     Curve b = a;
-    b.values[3][0] += 9;  // travel is no main channel
+    b.values[3][0] += 9;  // travel is not a main channel
     b.values[5][1] -= 0.25;
     const auto load = profile_at_equal_parameter(outputs, a, b);
     EXPECT_EQ(load.apart[3].mm, 0);

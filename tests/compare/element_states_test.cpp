@@ -1,5 +1,5 @@
-// In the states of the legs: what elements bear balances with loads and joints on every body, and is told at the ends of the
-// branches.
+// Element forces in the states of the legs balance loads and joints on every body, and are reported
+// at the ends of the branches.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// ---- Balance. For every body and each of its six virtual displacements, the work of the loads and of the joints is what the
-// elements take up, Σ force · δ(deformation): forces and deformations as they are told, in mm and deg, the δ by differences.
+// ---- Balance by virtual work: for every body and each of its six virtual displacements, the work
+// of loads and joints equals Σ force · δ(deformation) of the elements: forces and deformations as
+// reported, in mm and deg, δ by differences.
 
 Pose shifted(const Pose& pose, int k, double h) {
     const Vector3d v = h * Vector3d::Unit(k % 3);
@@ -56,7 +57,7 @@ void add(std::vector<Vector6>& on, const Equilibrium& state, const LoadKind& loa
                load);
 }
 
-// What loads and joints do to each body, about its origin.
+// Wrenches of loads and joints on each body, about its origin.
 std::vector<Vector6> acting(const Model& model, const Branch& branch, const Equilibrium& state) {
     std::vector<Vector6> on(model.bodies.size(), Vector6::Zero());
     for (const auto& load : model.static_loads) add(on, state, load.kind, 1);
@@ -77,7 +78,7 @@ std::vector<Vector6> acting(const Model& model, const Branch& branch, const Equi
     return on;
 }
 
-// The largest of what is left over, over the largest of what acts, at least 1 N: forces, and moments by 1 m.
+// Largest imbalance, over the largest acting force, at least 1 N: forces, and moments by 1 m.
 double out_of_balance(const Model& model, const Branch& branch, const Equilibrium& state) {
     const auto all = element_channels(model);
     const auto values = evaluate(model, branch, all, state);
@@ -95,7 +96,7 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
             for (std::size_t c = 0; c < all.size(); ++c) {
                 const auto* of = std::get_if<OfElement>(&all[c].reads);
                 if (of == nullptr || of->component < 6 || std::isnan(values[c])) continue;
-                std::size_t d = c;  // what is deformed along the same axis
+                std::size_t d = c;  // the deformation along the same axis
                 while (std::get<OfElement>(all[d].reads).component != of->component - 6) --d;
                 const double taken_up = values[c] * (there[d] - here[d]) / in_unit(all[d].unit) / (2 * h);
                 sum -= taken_up;
@@ -106,7 +107,7 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
     return left / size;
 }
 
-// Forces without an energy do other work than this.
+// Excludes forces without an energy, which are not work-conjugate to the reported deformations.
 std::vector<std::string> scenes_of_energies() {
     auto names = support::scene_names();
     std::erase_if(names, [](const std::string& name) {
@@ -139,7 +140,7 @@ TEST_P(Balance, ForcesOfElementsLoadsAndJointsAddUpToNothingOnEveryBody) {
 INSTANTIATE_TEST_SUITE_P(Elements, Balance, testing::ValuesIn(scenes_of_energies()),
                          [](const auto& scene) { return scene.param; });
 
-// ---- At the ends of the branches.
+// ---- Values at the ends of the branches.
 
 TEST(ElementValues, StandAtBothEndsOfEveryBranchWithWhatTheRecursionIsOff) {
     const Model model = compile(support::scene("tyre_on_road"));
@@ -160,7 +161,7 @@ TEST(ElementValues, StandAtBothEndsOfEveryBranchWithWhatTheRecursionIsOff) {
         EXPECT_NEAR(of("road", h, "tyre.force").value, 3892.4 + 200 * (h - z), 1e-6);
         EXPECT_NEAR(of("road", h, "tyre.deflection").value, (3892.4 + 200 * (h - z)) / 200, 1e-8);
         EXPECT_EQ(of("road", h, "tyre.force").element, "tyre");
-        EXPECT_LE(std::abs(of("road", h, "suspension.force").off), 1e-6);  // all is straight here
+        EXPECT_LE(std::abs(of("road", h, "suspension.force").off), 1e-6);  // linear here
     }
     EXPECT_TRUE(std::ranges::none_of(list, [](const auto& v) {
         return v.branch == "wheel" && v.element == "tyre";
@@ -169,7 +170,7 @@ TEST(ElementValues, StandAtBothEndsOfEveryBranchWithWhatTheRecursionIsOff) {
     EXPECT_EQ(force_table(list).rows.size(), list.size());
 }
 
-// The recursion's share of a value is its error over the value's size.
+// The relative error is the recursion's error over the magnitude of the value.
 TEST(ElementValues, TellTheRecursionsErrorInTheUnitAndAsAShare) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Options options;
@@ -177,7 +178,7 @@ TEST(ElementValues, TellTheRecursionsErrorInTheUnitAndAsAShare) {
     const Comparison comparison = compare(model, options);
     const auto list = element_values(model, comparison);
     const auto all = element_channels(model);
-    ASSERT_EQ(list.size(), 2 * all.size());  // two branches that go one way each
+    ASSERT_EQ(list.size(), 2 * all.size());  // two one-sided branches
     double largest = 0;
     for (const auto& v : list) {
         const auto b = static_cast<std::size_t>(v.branch == "rebound");

@@ -1,4 +1,4 @@
-// What elements and links bear: closed forms, signs, names.
+// Element outputs: closed forms, signs, names.
 #include "compare/elements.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ double value(const Model& model, const Branch& branch, const Equilibrium& state,
 
 // ---- Closed forms
 
-// A body at the origin, which has gone to `pose`, with one element to ground.
+// A body at the origin, moved to `pose`, with one element to ground.
 struct One {
     Model model;
     Branch branch;
@@ -49,12 +49,12 @@ TEST(ElementOutputs, OfASpringAndAStopArePositiveInCompression) {
     One spring({"coil", coil}, {Vector3d(0, 0, 0.03), Eigen::Quaterniond::Identity()});
     EXPECT_NEAR(spring["coil.deflection"], 80, 1e-10);
     EXPECT_NEAR(spring["coil.force"], 1600, 1e-9);
-    // A branch that makes the spring longer by 10 mm per unit at 3 units, from 5 mm on.
+    // A branch that lengthens the spring by 10 mm per unit, at 3 units, starting from 5 mm.
     spring.branch.drivers = {{FreeLength{0}, 0.005, 0.01}};
     EXPECT_NEAR(spring["coil.deflection"], 115, 1e-10);
     EXPECT_NEAR(spring["coil.force"], 2300, 1e-9);
 
-    // Acts from 20 mm of compression on, of 0.5 m drawn.
+    // Acts from 20 mm of compression on, at a design length of 0.5 m.
     const elastocheck::Curve closing{{-0.02}, {{0, 1e5, 0, 0}, {0, 0, 0, 0}}};
     const One stop({"coil.bump_stop", AxialSpring{coil.i, coil.j, closing, 0.5}, false, WrittenAs::stop},
                    {Vector3d(0, 0, 0.03), Eigen::Quaterniond::Identity()});
@@ -104,7 +104,7 @@ TEST(ElementOutputs, OfATorsionSpringAndATyreAreOneAngleAndOneHeight) {
     EXPECT_NEAR(torsion["bar.moment"], 40 * std::numbers::pi / 6 + 7, 1e-12);
     EXPECT_EQ(element_channels(torsion.model).size(), 2u);
 
-    // Under 3 kN at the design height; the wheel 10 mm lower, the road 5 mm per unit higher at 3 units.
+    // 3 kN at the design height; the wheel 10 mm lower, the road 5 mm per unit higher at 3 units.
     K.setZero();
     K(2, 2) = 200e3;
     Bushing flat{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, LinearStiffness{K}};
@@ -129,8 +129,8 @@ TEST(ElementOutputs, OfALinkIsItsAxialForcePositiveInTension) {
     EXPECT_NEAR(value(model, {}, state, "rod.axial_force"), -50, 1e-12);
 }
 
-// As a Formulation says: the same bushing with its frame on j is, on i, the one with its bodies changed over and all signs
-// turned. The user reads what he wrote.
+// By the definition of Formulation, a bushing with its frame on j equals one on i with exchanged
+// bodies and reversed signs. Outputs are in the axes of the scene file.
 TEST(ElementOutputs, OfABushingFramedOnItsSecondBodyAreInTheAxesItWasWrittenIn) {
     Matrix6 K = Matrix6::Zero();
     K.diagonal() << 1e6, 2e6, 3e6, 100, 200, 300;

@@ -1,4 +1,5 @@
-// The families of any size (tests/benchmark/families.hpp), by every leg and method against what is known of them.
+// Scalable scene families (tests/benchmark/families.hpp): every leg and method against closed
+// forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,14 +20,16 @@ using families::Hinge;
 using families::Kind;
 using support::PlanarChain;
 
-constexpr double references = 1e-8;  // [mm] that a reference is from the closed form, or from the other
-constexpr double expansions = 1e-9;  // [mm] that the series is from the equilibrium leg
+// [mm] distance of a reference from the closed form, or from the other reference
+constexpr double references = 1e-8;
+constexpr double expansions = 1e-9;  // [mm] distance of the series from the equilibrium leg
 
 std::string named(const Family& f) {
     return fmt::format("{} of {} on {}s", name(f.kind), f.bodies, name(f.hinge));
 }
 
-// A family, its branch, and what a leg makes of that. Leg::recursive is the series, told 1e-13 m.
+// A family with its branch and the results of a leg. Leg::recursive is the series, tolerance 1e-13
+// m.
 struct Walked {
     Family family;
     Scene scene;
@@ -51,10 +54,10 @@ struct Walked {
     }
 };
 
-// The larger one; NaN stays.
+// The larger one; NaN propagates.
 double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 
-// Of all bodies' origins, over the branch.
+// Largest distance of all bodies' origins over the branch.
 double furthest_apart_mm(const EquilibriumPath& a, const EquilibriumPath& b) {
     double most = a.points.size() == b.points.size() && !a.points.empty() ? 0 : NAN;
     for (std::size_t k = 0; k < std::min(a.points.size(), b.points.size()); ++k)
@@ -63,9 +66,9 @@ double furthest_apart_mm(const EquilibriumPath& a, const EquilibriumPath& b) {
     return most;
 }
 
-// ---- Closed forms: where every body is under the load F.
+// ---- Closed forms: positions of all bodies under the load F.
 
-// Chain, tree, grid: one after the other along x, they stand as the links of one chain do.
+// Chain, tree, grid: the bodies in a row along x have the positions of one chain's links.
 Eigen::Vector3d on_chain(const Family& f, const PlanarChain::Shape& shape, int links,
                          const Eigen::Vector3d& drawn) {
     const auto link = static_cast<std::size_t>(std::lround(drawn.x() * links / families::length));
@@ -73,9 +76,9 @@ Eigen::Vector3d on_chain(const Family& f, const PlanarChain::Shape& shape, int l
     return {static_cast<double>(shape.x.at(link)), drawn.y(), static_cast<double>(shape.z.at(link))};
 }
 
-// The axle: the housing rises by u and nothing else, as its links mirror each other. Each has V = F/n across its end, and
-// H along, as that stays above its place: with ℓ its length, c what all ends together give for a force and K_R the
-// bending stiffness at either end,
+// The axle: the housing only rises by u, as its links are mirror images. Each link has V = F/n
+// across its end, and H along, since its end stays above its place. With ℓ its length, c the total
+// compliance of its ends under a force and K_R the bending stiffness at either end,
 //
 //   ℓ cos φ + c H = ℓ     ℓ sin φ + c V = u     ℓ (V cos φ - H sin φ) = 2 K_R φ
 struct Lifted {
@@ -154,7 +157,7 @@ TEST(Families, StandThereWithFourTimesTheBodies) {
     }
 }
 
-// ---- Where a load is not shared alike, and where there are beams, the legs are held against each other.
+// ---- Unequal load sharing and beams: the legs are compared with each other.
 
 Walked pushed_at_a_corner() {
     const Family grid{Kind::grid, 15};
@@ -188,7 +191,8 @@ TEST(Families, OfBeamsStandWithFourTimesTheBodiesWhereEquilibriumLegAndSeriesSay
 
 // ---- Beams under small loads.
 
-// The probe's rise per load, from a load of one thousandth either way: what is of even order cancels.
+// Rise of the probe per load, by central differences with a thousandth of the load: even orders
+// cancel.
 double flexibility(const Family& family, Leg leg) {
     Scene scene = parse_scene(families::scene(family), named(family));
     const double F = scene.branches[0].to / 1000;
@@ -201,16 +205,18 @@ double flexibility(const Family& family, Leg leg) {
     return rise / (2 * F);
 }
 
-// Leaf k is a cantilever of a_k from the seat, with X_k on its tip from the leaf above (X_0 = F/2 from the eye) and X_k+1
-// back from the one below, at that one's tip. A force P at a bends a leaf by P s²(3a - s)/(6EI) at s ≤ a, and by
-// P a²(3s - a)/(6EI) beyond; a pad gives X_k/k. So for every pad
+// Leaf k is a cantilever of a_k from the seat, with X_k on its tip from the leaf above (X_0 = F/2
+// from the eye) and X_k+1 from the one below, at that one's tip. A force P at a bends a leaf by P
+// s²(3a - s)/(6EI) at s ≤ a, and by P a²(3s - a)/(6EI) beyond; a pad is compressed by X_k/k. So for
+// every pad
 //
-//   w_k-1(a_k) - w_k(a_k) = X_k/k     w_k(s) = X_k s²(3a_k - s)/(6EI) - X_k+1 a²(3s - a)/(6EI), a = a_k+1
+//   w_k-1(a_k) - w_k(a_k) = X_k/k
+//   w_k(s) = X_k s²(3a_k - s)/(6EI) - X_k+1 a²(3s - a)/(6EI),   a = a_k+1
 double leaf_flexibility(const families::Leaves& pack) {
     const double EI = families::E * pack.width * std::pow(pack.thick, 3) / 12;
     const int m = pack.count;
     const auto tip = [&](int k) { return std::pow(pack.half_of(k), 3) / (3 * EI); };
-    const auto far = [&](int k) {  // at the tip of k, from a force at that of k+1, and the other way round
+    const auto far = [&](int k) {  // at the tip of k, from a force at that of k+1, and vice versa
         const double a = pack.half_of(k + 1);
         return a * a * (3 * pack.half_of(k) - a) / (6 * EI);
     };
@@ -236,11 +242,13 @@ TEST(LeafSpring, SharesASmallLoadAmongItsLeavesAsBeamsDo) {
     }
 }
 
-// A grillage: w, φ_x, φ_y at every crossing; bending about the one and torsion about the other axis in between.
+// Grillage: w, φ_x, φ_y at every crossing; bending about one axis and torsion about the other in
+// between.
 double frame_flexibility(const families::Frame& frame) {
     const int c = frame.cross_members;
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(6 * c, 6 * c);
-    // Of length l from node i to j. Its slope is sign · (degree of freedom `slope`), it is twisted by `twist`.
+    // Beam of length l from node i to j. Its slope is sign · (degree of freedom `slope`), its
+    // torsion `twist`.
     const auto add = [&](int i, int j, double l, const families::Tube& tube, int slope, double sign,
                          int twist) {
         const double inner = tube.diameter - 2 * tube.wall,
@@ -283,8 +291,9 @@ TEST(LadderFrame, GivesWayToASmallLoadAsAGrillageDoes) {
 
 // ---- Methods.
 
-// To the truth where they have an order; what has none converges to a limit of its own with order 1, and is off there,
-// unless nothing that is stored has a lever that turns: torsion springs about axes that stay.
+// Methods with a declared order converge to the truth. A method without one converges to its own
+// limit with order 1, which has a gap, unless no stored force has a rotating lever: torsion springs
+// about fixed axes.
 TEST(Families, MethodsHaveTheOrderTheyDeclare) {
     std::vector<Family> all = of_fifteen;
     all.push_back({Kind::leaf_spring, 15});
@@ -292,8 +301,7 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
     for (const Family& family : all) {
         const Walked w(family);
         const bool nothing_turns = family.hinge == Hinge::revolute && family.kind != Kind::axle;
-        const bool beams =
-            !has_hinges(family.kind);  // all but inextensible: what is of higher order is large
+        const bool beams = !has_hinges(family.kind);  // nearly inextensible: large higher-order terms
         const Eigen::Vector3d truth = w.end(w.by(Leg::equilibrium).points.back());
         for (const auto& method : recursive::methods) {
             if (!has_steps(method)) continue;

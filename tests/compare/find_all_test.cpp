@@ -1,4 +1,5 @@
-// Every equilibrium at one load: those that are known in closed form are found, proved, told apart, and said what they are.
+// Multiple equilibria at one load: closed-form cases are found, proved, distinguished and
+// described.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 using reference::certificate::Answer;
 
-// Two springs that meet flat at an apex: V(z) = 2 · ½ k (ℓ(z) - ℓ₀)² - f z, ℓ² = w² + z².
+// Two springs meeting at a flat apex: V(z) = 2 · ½ k (ℓ(z) - ℓ₀)² - f z, ℓ² = w² + z².
 constexpr double w = 0.3, h = 0.08, k = 100e3;
 
 std::string arch(const std::string& to) {
@@ -41,7 +42,7 @@ double force(double z) {
     return 2 * k * (length - drawn) * z / length;
 }
 
-// The heights at which the arch bears the load, by bisection between its extremes.
+// Equilibrium heights of the arch under the load, by bisection between its extremes.
 std::vector<double> heights(double load) {
     std::vector<double> roots;
     constexpr int pieces = 4000;
@@ -74,7 +75,7 @@ TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedForm
         for (const auto& one : all.list) {
             EXPECT_EQ(one.proof.answer, Answer::proved) << one.proof.detail;
             found.push_back(one.state.poses[0].r.z());
-            // It is stable where the force rises with the height.
+            // Stable where the force increases with the height.
             const double z = found.back(), e = 1e-6;
             EXPECT_EQ(one.stable, force(z + e) > force(z - e)) << z;
             EXPECT_EQ(one.stable, one.proof.stable) << z;
@@ -91,6 +92,55 @@ TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedForm
     }
 }
 
+// Near the limit point the unstable equilibrium is 0.7 mm from the stable one.
+TEST(FindAll, CloseToTheLimitPointTheUnstableOneIsFoundBesideTheStableOne) {
+    const auto all = all_of(arch("-200"), -211.5);
+    const auto expected = heights(-211.5);
+    ASSERT_EQ(expected.size(), 3u);
+    ASSERT_EQ(all.list.size(), 3u);
+    EXPECT_TRUE(all.proved);
+    std::vector<double> found;
+    for (const auto& one : all.list) found.push_back(one.state.poses[0].r.z());
+    std::ranges::sort(found);
+    for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(found[n], expected[n], 1e-8);
+}
+
+// The arch snaps onto a stop that is so stiff that Newton's method with deflation does not
+// converge.
+TEST(FindAll, TheOneThatAStopHoldsIsFound) {
+    const auto all = all_of(R"(elastocheck: 1
+name: arch
+units: {length: m, angle: rad, force: N}
+points: {a: [0, 0, 0.0315], l: [-0.2225, 0, 0], r: [0.2225, 0, 0], low: [0, 0, -1]}
+bodies: {m: {origin: a}}
+joints: {g: {type: translational, bodies: [m, ground], at: a, axis: z}}
+springs:
+  sl: {bodies: [m, ground], from: a, to: l, rate: 15083.8, preload: 0}
+  sr: {bodies: [m, ground], from: a, to: r, rate: 15083.8}
+stops: {st: {bodies: [m, ground], from: a, to: low, bump: {clearance: 0.0454, rate: 208621.6}}}
+loads: {f: {on: m, at: a, force: [0, 0, -1]}}
+branches: {d: {load: f, to: 7.19537114428654, steps: 10}}
+probes: {tip: {on: m, at: a}}
+)",
+                            2.528);
+    EXPECT_TRUE(all.proved);
+    const auto held = std::ranges::find_if(all.list, [](const FoundEquilibrium& one) {
+        return std::abs(one.state.poses[0].r.z() + 0.0139) < 1e-4;
+    });
+    ASSERT_NE(held, all.list.end());
+    EXPECT_TRUE(held->stable);
+    EXPECT_EQ(std::ranges::count_if(all.list, [](const auto& one) { return !one.stable; }), 1);
+}
+
+TEST(FindAll, AModelThatIsTooLargeIsNotSearched) {
+    Model large = compile(parse_scene(arch("-200"), "scene.yaml"));
+    large.bodies.resize(101, large.bodies[0]);
+    const auto all = find_all(large, large.branches.front(), -120);
+    EXPECT_EQ(all.outcome, Outcome::too_large);
+    EXPECT_EQ(all.detail, "101 bodies, equilibria are searched for up to 100");
+    EXPECT_FALSE(all.proved);
+}
+
 TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
     const auto all = all_of(arch("-1500"), -1500);
     EXPECT_NE(all.outcome, Outcome::converged);
@@ -102,7 +152,8 @@ TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
     EXPECT_NE(all.list[0].meaning.find("from where the branch ends"), std::string::npos);
 }
 
-// Flat, its springs pressed: no branch begins, and what is found is where it is, not "0 mm away".
+// Flat arch with compressed springs: no branch starts, and distances are from the design position,
+// not "0 mm away".
 TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
     std::string flat = arch("-100");
     flat.replace(flat.find("[0, 0, 80]"), 10, "[0, 0, 0]");
@@ -118,7 +169,7 @@ TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
     }
 }
 
-// A rod upright on a torsion spring: it buckles at 100 N.
+// Vertical rod on a torsion spring: it buckles at 100 N.
 const std::string column = R"(elastocheck: 1
 name: column
 units: {length: m, angle: rad, force: N}
@@ -150,7 +201,7 @@ TEST(FindAll, AStraightColumnPastItsBucklingLoadHasABentOneOnEitherSide) {
     EXPECT_NEAR(x[0], -theta, 1e-8);
     EXPECT_NEAR(x[1], 0, 1e-8);
     EXPECT_NEAR(x[2], theta, 1e-8);
-    // Those are turned by 59 deg; what may not turn so far has the straight one alone.
+    // These are rotated by 59 deg; a smaller limit leaves only the straight one.
     const Model model = compile(parse_scene(column, "scene.yaml"));
     const auto upright = find_all(model, model.branches.front(), f, {.turn = 0.9});
     EXPECT_EQ(upright.list.size(), 1u);
@@ -177,13 +228,13 @@ TEST(FindAll, LegsOnTwoBranchesAreSaidToBeAndNotToDeviate) {
               fmt::format("the energy leg is on another equilibrium than the equilibrium leg at -120 N, each "
                           "proved: body 'a' is {:.3g} mm away",
                           1e3 * all.list.back().length));
-    // What is no equilibrium is no other branch.
+    // A state that is no equilibrium is not another branch.
     energy.landmarks.back->poses[0].r.z() += 1e-4;
     EXPECT_NE(said()[0].find("the reference legs disagree on"), std::string::npos) << said()[0];
 }
 
 TEST(FindAll, ASlideOnItsHeadIsNoEquilibriumOfTheArch) {
-    // The constraints of the slide hold there, too: they are counted.
+    // The constraints of the slide hold in the reversed assembly too: these states are counted.
     const auto all = all_of(arch("-200"), -120);
     EXPECT_GT(all.other_way_round, 0);
     for (const auto& one : all.list) EXPECT_LT(one.angle, 1e-6);

@@ -1,4 +1,4 @@
-// What a comparison comes to, and measured points beside it.
+// Key figures of a comparison, and comparison with measured points.
 #include "compare/findings.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(RateErrors, AreSaidPerBranchWithTheirSign) {
         const double fast = runs[0].curve.values.back()[channel("travel")],
                      truth = runs[1].curve.values.back()[channel("travel")];
         EXPECT_NEAR(errors[b].travel, fast - truth, 1e-12);
-        EXPECT_NEAR(errors[b].off, truth / fast - 1, 1e-9);  // it is drawn at rest
+        EXPECT_NEAR(errors[b].off, truth / fast - 1, 1e-9);  // the design position is at rest
     }
 }
 
@@ -64,7 +64,7 @@ TEST(RateErrors, RideRateIsWheelAndTyreInSeries) {
     }
 }
 
-// On the road the tyre's force over the height of the road is measured; it is 1 / (1/k_w + 1/k_t).
+// On the road, tyre force over road height is the ride rate, 1 / (1/k_w + 1/k_t).
 TEST(RateErrors, RideRateOnTheRoadIsThatOfWheelAndTyreInSeries) {
     const Model model = compile(support::scene("tyre_on_road"));
     const auto errors = rate_errors(model, compare(model));
@@ -99,7 +99,7 @@ TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
                   b.drivers.push_back(b.drivers[0]), force(b).f = {0, 1e-3, 0};
               }),
               0u);
-    // What is held beside it does not move, so it is no part of the rate.
+    // A driver that is held does not move, so it is not part of the rate.
     EXPECT_EQ(with([&](Branch& b, Scene&) {
                   b.drivers.push_back(b.drivers[0]);
                   b.drivers[1].rate = 0;
@@ -108,7 +108,7 @@ TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
               1u);
 }
 
-// ---- The worst, and its parts
+// ---- Worst deviation, and its parts
 
 TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
     for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
@@ -137,13 +137,13 @@ TEST(Findings, TheGapIsTheLimitOfTheDeviation) {
     EXPECT_EQ(part->channel, "wheel_centre_z");
     EXPECT_NEAR(part->gap / part->deviation, 1, 0.1);
     EXPECT_EQ(part->role, GapRole::nearly_all);
-    EXPECT_FALSE(gap_part(compared(), s, "tangent"));  // not what was compared
+    EXPECT_FALSE(gap_part(compared(), s, "tangent"));  // not the compared method
     EXPECT_FALSE(gap_part(compared(), {}, "published"));
 }
 
 // ---- Measured points
 
-// Points of the equilibrium leg, off by `off`, at a few places of one branch.
+// Points of the equilibrium leg with an error `off`, at a few places of one branch.
 Points taken(std::size_t branch, double off, bool by_travel, bool named) {
     Points measured;
     const Curve& truth = compared().branches[branch].runs[1].curve;
@@ -183,7 +183,7 @@ TEST(Measured, TheLargestMissKeepsItsSign) {
 
 TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
     Points measured = taken(0, 0, true, true);
-    for (auto& name : measured.branch) name = "rebound";  // which does not reach them
+    for (auto& name : measured.branch) name = "rebound";  // out of range of the points
     const auto found = compare_measured(mcpherson(), compared(), measured);
     EXPECT_EQ(found.compared, 0);
     EXPECT_TRUE(std::isnan(found.readings[0].rows[0].off[1].rms));
@@ -202,7 +202,7 @@ TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
 }
 
 TEST(Measured, AChangeCountsFromTheDesignPosition) {
-    // Also where the scene settles before it walks: 12 mm of travel there are not the zero of a measurement.
+    // Also with a settled start: its 12 mm of travel are not the zero of a measurement.
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);
     scene.branches[0].steps = 30;

@@ -1,4 +1,4 @@
-// What must not matter to any leg: ground frame, body axes, order, side. The outputs themselves are compared.
+// Invariance of all outputs of every leg: ground frame, body axes, order, mirror image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// A leg, and of the recursion a method.
+// A leg, and for the recursion a method.
 struct Stride {
     Leg leg;
     const char* method;
@@ -28,7 +28,7 @@ class EveryLeg : public testing::TestWithParam<Stride> {
   protected:
     double bound() const { return GetParam().leg == Leg::energy ? 1e-7 : 1e-9; }
 
-    // The small scenes that the leg answers.
+    // The small scenes to which the leg applies.
     static std::vector<std::string> scenes() {
         std::vector<std::string> names = support::small_scene_names();
         if (GetParam().leg == Leg::energy)
@@ -43,7 +43,8 @@ class EveryLeg : public testing::TestWithParam<Stride> {
         return run(model, branch, GetParam().leg, how);
     }
 
-    // Every output of `other` at all points of all branches against `sign` times those of `scene`; by name.
+    // Compares every output of `other`, by name, at all points of all branches with `sign` times
+    // that of `scene`.
     void expect_same(const Scene& scene, const Scene& other,
                      const std::function<double(const std::string&)>& sign) {
         const Model a = compile(scene), b = compile(other);
@@ -52,14 +53,14 @@ class EveryLeg : public testing::TestWithParam<Stride> {
             const LegRun run_a = solve(a, a.branches[k]), run_b = solve(b, b.branches[k]);
             ASSERT_EQ(run_a.outcome, Outcome::converged) << run_a.detail;
             ASSERT_EQ(run_b.outcome, Outcome::converged) << run_b.detail;
-            double largest[5] = {};  // of each unit: displacements, angles, forces, moments
+            double largest[5] = {};  // per unit: displacements, angles, forces, moments
             for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                 for (std::size_t c = 0; c < names_a.size(); ++c) {
                     auto& size = largest[static_cast<int>(names_a[c].unit)];
                     size = std::max(size, std::abs(run_a.curve.values[p][c] -
                                                    (names_a[c].kinematic() ? run_a.curve.values[0][c] : 0)));
                 }
-            // A moment about a point far from where the forces act is as exact as force times distance.
+            // A moment about a distant point is as accurate as force times distance.
             largest[3] = std::max(largest[3], largest[2]);
             for (std::size_t c = 0; c < names_a.size(); ++c) {
                 const auto in_b =
@@ -101,8 +102,8 @@ TEST_P(EveryLeg, MirrorsTheOtherSideOfTheVehicle) {
 }
 
 TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
-    // Outputs turn with the frame, so it is turned back:
-    // the displacements and reactions are compared as vectors.
+    // Outputs rotate with the frame: displacements and reactions are rotated back and compared as
+    // vectors.
     const Eigen::Vector3d t(3, -2, 1);
     for (const auto& name : scenes()) {
         const Model a = compile(support::scene(name)),

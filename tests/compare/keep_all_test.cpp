@@ -1,4 +1,4 @@
-// What compile() leaves out or condenses changes no output.
+// Pruning and condensation by compile() change no output.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,13 +16,14 @@
 namespace elastocheck::compare {
 namespace {
 
-// Of an output's size along the branch, or of what the references know of it where it is next to nothing.
+// Relative to an output's size along the branch, or to a minimum size for small outputs.
 double allowed(Unit unit, double size) {
-    const double least = unit == Unit::mm || unit == Unit::deg ? 1 : 1e3;  // [mm], [deg], [N], [N·m]
+    // [mm], [deg], [N], [N·m]
+    const double least = unit == Unit::mm || unit == Unit::deg ? 1 : 1e3;
     return 1e-9 * std::max(size, least);
 }
 
-// Whether the wrenches that the channel reads are there on the branch, and determined.
+// Whether the wrenches that the channel reads are active on the branch, and determined.
 std::vector<bool> determined(const Model& model, const std::vector<Channel>& list, const Branch& branch) {
     const Model standing = on_branch(model, branch);
     const auto known = recursive::diagnose(standing).determined;
@@ -37,12 +38,12 @@ std::vector<bool> determined(const Model& model, const std::vector<Channel>& lis
     return result;
 }
 
-// The joint whose wrench the channel reads.
+// Joint whose wrench the channel reads.
 std::string joint_of(const Model& model, const Channel& channel) {
     return model.joints[static_cast<std::size_t>(channel.joints().front())].name;
 }
 
-// What was left out or condensed, in words, that speaks of the joint: the outputs that went with it, or came.
+// Message of compile() about a joint that was left out or condensed.
 std::string said_of(const Model& model, const std::string& joint) {
     for (const auto& [what, why] : model.left_out)
         if (what == "joint '" + joint + "'" || why.find("joint '" + joint + "'") != std::string::npos)
@@ -52,7 +53,7 @@ std::string said_of(const Model& model, const std::string& joint) {
 
 struct Tally {
     int kinematic = 0, forces = 0;      // numbers compared
-    std::set<std::string> only_in_one;  // joints whose wrenches only one of both has
+    std::set<std::string> only_in_one;  // joints with a wrench in only one of the two models
 };
 
 void expect_same(const std::string& name, const Model& required, const Model& whole, std::size_t branch,
@@ -79,7 +80,8 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
         const int found = find_channel(all, some[c].name);
         if (found < 0) continue;
         const auto other = static_cast<std::size_t>(found);
-        // How redundant joints share a load is no output; a joint that has taken on another's part bears it all.
+        // Load sharing of redundant joints is not compared; a joint that replaces another one
+        // carries the whole load.
         if (!known_less[c] || !known_more[other]) continue;
         double size = 0, apart = 0;
         for (std::size_t k = 0; k < less.curve.a.size(); ++k) {
@@ -97,7 +99,7 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
 
 TEST(KeepAll, EveryOutputOfEverySceneIsTheSameWithNothingLeftOut) {
     Tally tally;
-    std::set<std::string> smaller;  // scenes of which something is left out or condensed
+    std::set<std::string> smaller;  // scenes in which something is left out or condensed
     for (const auto& name : support::scene_names()) {
         Scene scene = trim(support::scene(name)).scene;
         for (auto& branch : scene.branches) branch.steps = 4;
@@ -110,7 +112,7 @@ TEST(KeepAll, EveryOutputOfEverySceneIsTheSameWithNothingLeftOut) {
     }
     EXPECT_GT(tally.kinematic, 1000);
     EXPECT_GT(tally.forces, 1000);
-    // Welded to ground, to each other, said twice; links with a ball at each end.
+    // Welded to ground, welded together, redundant; links with a ball at each end.
     EXPECT_EQ(smaller, (std::set<std::string>{"front_axle", "multi_link"}));
     for (const char* joint : {"subframe", "hub", "trailing_ball", "link_to_arm_left", "drop_link_left"})
         EXPECT_TRUE(tally.only_in_one.contains(joint)) << joint;

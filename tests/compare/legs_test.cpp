@@ -1,5 +1,5 @@
-// How branches are walked: each point handed over as it is found, in the order of the branch, all of them or every
-// so-many-th; and what is left of the points where they are not kept.
+// Continuation of branches: points are passed on when found, in the order of the branch, all or
+// every `every`-th; results without stored points.
 #include "compare/legs.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// To the last bit.
+// Equal to the last bit.
 bool same(const Equilibrium& a, const Equilibrium& b) {
     const auto pose = [](const Pose& x, const Pose& y) { return x.r == y.r && x.p.coeffs() == y.p.coeffs(); };
     const auto wrench = [](const Wrench& x, const Wrench& y) {
@@ -50,7 +50,7 @@ TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
             for (const auto& way : ways_of(model, branch, 6))
                 for (const auto& method : recursive::methods) {
                     const std::string where = scene + ", " + way.name + " by " + std::string(method.name);
-                    // More of the series than it evaluates together.
+                    // More points than the series evaluates at once.
                     const recursive::Options options{
                         .method = method, .steps = recursive::has_steps(method) ? 12 : 150, .record = 0};
                     const auto kept = recursive::solve(way.model, way.branch, options);
@@ -110,7 +110,7 @@ bool same(const Row& row, const Model& model, const Equilibrium& state) {
                               [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
 }
 
-// Of the ways as they are walked one by one: the first from its far end to where it leaves a = 0, then the second.
+// The sides one by one: the first from its far end back to a = 0, then the second.
 std::vector<Equilibrium> joined_by_hand(const std::vector<Way>& ways, const Gait& gait) {
     std::vector<Equilibrium> points;
     if (ways.size() == 2) {
@@ -129,7 +129,7 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
             const auto ways = ways_of(model, branch, 5);
             both_ways += ways.size() == 2 ? 1 : 0;
             for (const auto& gait : every_gait()) {
-                // The time of the references is dear, and one way is soon joined.
+                // The references are slow, and one side needs no joining.
                 if ((gait.leg == Leg::energy || gait.leg == Leg::equilibrium) && ways.size() == 1) continue;
                 const std::string where = scene + ", " + branch.name + " by " + name_of(gait);
                 const auto points = joined_by_hand(ways, gait);
@@ -149,7 +149,7 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
     EXPECT_GT(both_ways, 20);
 }
 
-// Positions of the points that are asked for among all: by ways, from a = 0 outwards.
+// Indices of the requested points among all: by sides, from a = 0 outwards.
 std::vector<std::size_t> picked(const std::vector<Way>& ways, int every) {
     std::vector<std::size_t> at;
     const int before = ways.size() == 2 ? ways[0].branch.steps : 0;
@@ -189,7 +189,8 @@ TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
     }
 }
 
-// ... and is what account is given of: a hundred thousand points that nobody asked for took minutes.
+// Error bounds are computed for requested points only; a hundred thousand unrequested points would
+// take minutes.
 TEST(Every, IsWhatAccountIsGivenOf) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
@@ -268,7 +269,7 @@ TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
         return std::pair(rows.size(), std::ranges::count(rows, 0.0, &Row::load));
     };
     EXPECT_EQ(starts(good), std::pair(std::size_t{9}, std::ptrdiff_t{1}));
-    for (const std::size_t bad : {0u, 1u}) {  // nothing is found on it at all
+    for (const std::size_t bad : {0u, 1u}) {  // no point on it is found
         auto ways = good;
         for (auto& body : ways[bad].model.bodies) body.design.r.setConstant(std::nan(""));
         EXPECT_EQ(starts(ways), std::pair(std::size_t{5}, std::ptrdiff_t{1})) << bad;
@@ -289,7 +290,7 @@ TEST(Landmarks, AreTheEndsTheStartAndTheMiddleOfTheWholePath) {
                 EXPECT_TRUE(same(*start, points[run.curve.start])) << scene << " " << branch.name;
                 EXPECT_TRUE(same(*middle, points[points.size() / 2])) << scene << " " << branch.name;
                 EXPECT_TRUE(same(*back, points.back())) << scene << " " << branch.name;
-                // What is judged of all points is judged of each.
+                // Summaries over all points equal those of the single points.
                 const Model standing = ways_of(model, branch, steps).front().model;
                 const Scale whole = scale_of(standing, branch, points);
                 EXPECT_EQ(run.scale.force, whole.force);

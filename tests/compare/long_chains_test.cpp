@@ -1,5 +1,5 @@
-// Hundreds of bodies in a row against what is known of them: of the chain itself, and of the rod and the rope it stands for.
-// The energy leg, dense by nature, has its say on the short ones in closed_forms_test.cpp and families_test.cpp.
+// Chains of hundreds of bodies against discrete and continuous closed forms (rod, rope). The energy
+// leg, which is dense, is tested with short chains in closed_forms_test.cpp and families_test.cpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,8 +36,9 @@ EquilibriumPath walked(const Model& model, const Branch& branch, Leg leg) {
 
 // ---- The elastica.
 
-// The rod that stretches, EI φ'' + F·e'(φ) (1 + F·e(φ)/EA) = 0, x' = (1 + F·e/EA) e, φ(0) = 0, φ'(L) = 0, under F across its
-// root: by Runge and Kutta's method from the end back, and bisection for the slope there.
+// Extensible rod, EI φ'' + F·e'(φ) (1 + F·e(φ)/EA) = 0, x' = (1 + F·e/EA) e, φ(0) = 0, φ'(L) = 0,
+// under F across its root: shooting by a Runge-Kutta method from the end back, with bisection for
+// the slope there.
 struct RodEnd {
     Real x = 0, y = 0;
 };
@@ -94,16 +95,16 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
                 const auto known = chain.under(0, point.load);
                 double off = 0;
                 for (std::size_t i = 0; i < point.poses.size(); ++i) {
-                    // The nodes inside, and the tip, whichever way round they are kept.
+                    // The inner nodes, and the tip, in any order.
                     const auto& r = point.poses[i].r;
                     const auto node =
                         static_cast<std::size_t>(std::lround(model.bodies[i].design.r.x() * n / L)) - 1;
                     const double apart = std::hypot(static_cast<double>(r.x() - known.x.at(node)),
                                                     static_cast<double>(r.y() - known.z.at(node)), r.z());
-                    if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN stays
+                    if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN propagates
                 }
                 EXPECT_LE(1e3 * off, 1e-8) << n << " " << name(leg) << " at " << point.load << " N";
-                if (leg != Leg::equilibrium) continue;  // the other one stands there as well
+                if (leg != Leg::equilibrium) continue;  // the other leg has the same states
                 const RodEnd exact = rod(point.load, 1 / Real(EA));
                 const auto& r = point.poses[tip].r;
                 error = std::max(error, std::hypot(static_cast<double>(r.x() - exact.x),
@@ -120,7 +121,7 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
 
 // ---- Euler's column.
 
-// A rod that is shorter under P buckles where P (1 - P/EA) = π² EI/(4L²): both its length and its lever are less.
+// A rod that shortens under P buckles where P (1 - P/EA) = π² EI/(4L²): length and lever decrease.
 TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
     const double euler = pi * pi * EI / (4 * L * L), limit = 2 * euler / (1 + std::sqrt(1 - 4 * euler / EA));
     std::vector<double> errors;
@@ -135,7 +136,8 @@ TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
                 Branch branch = model.branches[0];
                 branch.to = share * P;
                 const auto path = walked(model, branch, leg);
-                // Within its smallest step the equilibrium leg does not tell dividing from turning.
+                // Within its smallest step the equilibrium leg does not distinguish a bifurcation
+                // from a limit point.
                 const bool ends = path.outcome == Outcome::dividing_point ||
                                   (leg == Leg::equilibrium && path.outcome == Outcome::singular);
                 EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
@@ -150,31 +152,33 @@ TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
 
 // ---- The hanging chain.
 //
-// n links of length h and weight w each, from (0, 0) to an end that is held at the same height, hinged to each other by
-// torsion springs k that are at rest as drawn. With φ_i the angles of the links, e(φ) as ever, H and V what the end is held with,
+// n links of length h and weight w each, from (0, 0) to an end held at the same height, hinged to
+// each other by torsion springs k that are relaxed in the design position. With φ_i the angles of
+// the links, e(φ) as above, H and V the reactions at the end,
 //
-//   Σ ½ k (φ_i - φ_i-1 - κ_i)² + Σ w z_i - H (x_end - span) - V z_end,     x_end, z_end = Σ h e(φ_i)
+//   Σ ½ k (φ_i - φ_i-1 - κ_i)² + Σ w z_i - H (x_end - span) - V z_end,   x_end, z_end = Σ h e(φ_i)
 //
-// is stationary. W_i = w (n - i + ½) hangs on link i, itself by half:
+// is stationary. The weight W_i = w (n - i + ½) hangs on link i, half of it its own:
 //
-//   k (..)_i - k (..)_i+1 + h (W_i - V) cos φ_i + h H sin φ_i = 0     Σ h cos φ_i = span     Σ h sin φ_i = 0
+//   k (..)_i - k (..)_i+1 + h (W_i - V) cos φ_i + h H sin φ_i = 0
+//   Σ h cos φ_i = span     Σ h sin φ_i = 0
 //
-// Without springs tan φ_i = (V - W_i)/H: the discrete catenary, as which the chain is drawn. Newton's method, whose matrix is
-// tridiagonal but for two columns and rows.
+// Without springs tan φ_i = (V - W_i)/H: the discrete catenary, which is the design position.
+// Newton's method, with a matrix that is tridiagonal except for two columns and rows.
 struct Rope {
     int n = 1000;
     Real h = 1.2L / 1000, w = 0.01L, k = 0;
-    std::vector<Real> kappa;  // of joint i between i-1 and i; the first and the last hang free
+    std::vector<Real> kappa;  // of joint i between i-1 and i; the first and the last link are free
 
     struct Hung {
         std::vector<Real> phi;
         Real H = 0, V = 0;
-        std::vector<Real> x, z;  // where links begin; the last one: the end
+        std::vector<Real> x, z;  // start points of the links; the last entry is the end
     };
 
     Real hanging(int i) const { return w * (n - i - Real(0.5)); }  // W of link i, counted from 0
 
-    // H from the span, by bisection: it is less the more the ends are apart.
+    // H from the span by bisection: it decreases with the distance of the ends.
     Hung catenary(Real span) const {
         Hung at;
         at.V = w * n / 2;
@@ -190,7 +194,7 @@ struct Rope {
         return place(at);
     }
 
-    // From a shape nearby, under a force P downwards at the end of link `middle`.
+    // From a nearby shape, under a downward force P at the end of link `middle`.
     Hung hung(Hung at, Real span, Real P, int middle) const {
         const auto size = static_cast<std::size_t>(n);
         for (int turn = 0; turn < 40; ++turn) {
@@ -329,7 +333,7 @@ TEST(HangingChain, StandsOnTheDiscreteCatenaryAndFollowsItsLoadAndItsEnd) {
                         const auto& r = point.poses[i].r;
                         const double apart = std::hypot(static_cast<double>(r.x() - known.x[i]), r.y(),
                                                         static_cast<double>(r.z() - known.z[i]));
-                        if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN stays
+                        if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN propagates
                     }
                     EXPECT_LE(1e3 * off, 1e-8)
                         << n << " " << branch.name << " " << name(leg) << " at " << point.load;

@@ -1,4 +1,4 @@
-// Where a branch will end, told before it does.
+// Prediction of the end of a branch from the remaining stiffness.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ EquilibriumPath accounted(const Model& model, double to, Leg leg) {
                 {.leg = leg, .recursion = {.method = *recursive::find_method("chord")}, .account = true});
 }
 
-// The square of the stiffness is a line in the load next to the limit only: three points a twentieth of the way apart
-// foresee it to a tenth of what is left.
+// The squared stiffness is linear in the load only near the limit point: three points at a
+// twentieth of the branch predict the limit to a tenth of the remaining distance.
 TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
     const Model model = compile(support::scene("two_spring_arch"));  // the limit is at -211.5166 N
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series})
@@ -64,7 +64,8 @@ TEST(Outlook, IsToldSinceThePointFromWhichOnItIsSaid) {
     EXPECT_FALSE(announced_from(accounted(model, 150, Leg::series).points).has_value());
 }
 
-// Both ways of a branch begin at a = 0: what the first announces is said, though the second has nothing to say.
+// Both sides of a branch start at a = 0: the prediction of the first is reported although the
+// second has none.
 TEST(Outlook, OfABranchIsToldWayByWay) {
     const Model model = compile(support::scene("two_spring_arch"));
     BranchAccount account;
@@ -77,8 +78,8 @@ TEST(Outlook, OfABranchIsToldWayByWay) {
     EXPECT_NE(lines[0].find(", announced from -"), std::string::npos) << lines[0];
 }
 
-// Whoever compares hears it of the equilibrium leg, whatever the recursion is; and of a method that promises, what it
-// promises. Account changes no state and no count.
+// A comparison reports the prediction of the equilibrium leg for any recursion method, and the
+// tolerance check of a method with a tolerance. Error bounds change no state and no count.
 TEST(Outlook, IsToldByWhoeverCompares) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
@@ -102,7 +103,7 @@ TEST(Outlook, IsToldByWhoeverCompares) {
         if (std::string(method) != "series") {
             EXPECT_TRUE(runs[0].told.empty()) << method;
         } else {
-            EXPECT_FALSE(runs[0].told.empty()) << method;  // the series sees it as well
+            EXPECT_FALSE(runs[0].told.empty()) << method;  // the series predicts it too
         }
     }
     const Comparison bushing = compare(compile(support::scene("single_bushing")));

@@ -1,4 +1,4 @@
-// What a state answers to small disturbances: three legs, each by its own tangent.
+// Forward sensitivity of a state to small disturbances: three legs, each by its own tangent.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ Equilibrium state_at(const OneWay& way, double a) {
     return path.points.back();
 }
 
-// Forces and moments on every body, off its origin, and every offset that can be moved. The paper's strut spins as it
-// likes, and is left alone.
+// Forces and moments on every body, off its origin, and every offset that can be moved. The idle
+// spin of the paper's strut is excluded.
 struct Asked {
     Disturbances forces, moments, offsets;
 };
@@ -70,8 +70,8 @@ Asked everything(const Model& model) {
     return all;
 }
 
-// Of the largest entry, or of 1e-6 m per unit (1 kN/mm) where all is held; rotations over half a metre. Infinite where one has
-// no answer.
+// Relative to the largest entry, at least 1e-6 m per unit (1 kN/mm); rotations times half a metre.
+// Infinite for a failed response.
 double apart(const Response& a, const Response& b) {
     if (a.outcome != Outcome::converged || b.outcome != Outcome::converged) return INFINITY;
     if (a.increments.size() != b.increments.size()) return INFINITY;
@@ -132,7 +132,7 @@ TEST(Response, ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWit
     }
 }
 
-// ---- Reciprocity: 6 × 6, how the contact patch moves and turns under wrenches there.
+// ---- Reciprocity: 6 × 6 compliance of the contact patch under wrenches there.
 
 MatrixXd compliance(const OneWay& way, const Equilibrium& state, const Answering& leg) {
     Disturbances wrenches;
@@ -173,10 +173,10 @@ TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
     }
 }
 
-// A dead moment m does no work that depends on the configuration alone: its body's balance ∂(...)/∂π has the part
-// -½ m̃ more than something symmetric, so that K - Kᵀ = -m̃ there and, C being the inverse,
+// The work of a dead moment m depends on the path: its body's balance ∂(...)/∂π has an
+// antisymmetric part -½ m̃, so that K - Kᵀ = -m̃ there and, C being the inverse,
 //
-//   C - Cᵀ = C (Kᵀ - K) Cᵀ = C_π m̃ C_πᵀ,   C_π the answers to moments on that body
+//   C - Cᵀ = C (Kᵀ - K) Cᵀ = C_π m̃ C_πᵀ,   C_π the responses to moments on that body
 TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
     const OneWay way = way_of(support::scene("double_wishbone"), "aligning", 1);
     const Equilibrium state = state_at(way, way.branch.to);
@@ -192,9 +192,9 @@ TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
     }
 }
 
-// ---- What must not matter.
+// ---- Invariance.
 
-// The wheel's wrenches, and what all bodies answer.
+// Wrenches at the wheel, and the responses of all bodies.
 Response at_the_wheel(const OneWay& way, const Equilibrium& state, const Answering& leg,
                       const Quaterniond& R) {
     Disturbances wrenches;

@@ -1,4 +1,5 @@
-// The suspension families of models/scenes/: what a car has to show, and what must not matter.
+// Built-in suspension scenes of models/scenes/: expected behaviour of a car, and invariance
+// transforms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,7 +81,7 @@ TEST_P(Family, IsJudgedAlongEveryBranchAndTheSeriesMeetsTheReferences) {
     }
 }
 
-// Nothing hangs free, nothing is held twice, and what trim asks for is where every branch begins.
+// No idle modes, no redundant joints, and every branch starts at the trim conditions.
 TEST_P(Family, StandsAtTheDesignHeightWithoutIdleModesAndRedundancy) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
@@ -100,8 +101,8 @@ TEST_P(Family, StandsAtTheDesignHeightWithoutIdleModesAndRedundancy) {
     }
 }
 
-// Over the travel of a car toe and camber change by a few degrees, the wheel rate is some 15 to 40 N/mm at the
-// design height and a stop makes it more before the end.
+// Over the travel of a car toe and camber change by a few degrees; the wheel rate is 15 to 40 N/mm
+// at the design height and higher at the stops.
 TEST_P(Family, MovesAsACarDoes) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
@@ -138,7 +139,7 @@ class Told {
     const std::vector<Channel>& list() const { return list_; }
     const std::vector<LegRun>& runs() const { return runs_; }
 
-    // By name on one branch, at one point; c and the two behind it as a vector.
+    // By name on one branch at one point; c and the next two as a vector.
     std::size_t place(const std::string& name) const {
         return static_cast<std::size_t>(find_channel(list_, name));
     }
@@ -152,13 +153,14 @@ class Told {
     std::vector<LegRun> runs_;
 };
 
-// [mm, deg] what round-off leaves at 15 N/mm; [N, N·m] the same of reactions of some 10 kN, by bushings of 1e7 N/m.
-// The cotangents of Ackermann's geometry magnify an angle some thousand times.
+// [mm, deg] round-off at 15 N/mm; [N, N·m] the same for reactions of some 10 kN, with bushings of
+// 1e7 N/m. The cotangents of the Ackermann fraction magnify an angle about a thousand times.
 double bound(const Channel& channel) {
     return channel.unit == Unit::percent ? 1e-4 : channel.kinematic() ? 1e-8 : 1e-5;
 }
 
-// `limit` times the bound; a link that became a distance has as its first end what the order of its joints says.
+// `limit` times the bound; the first end of a link that became a distance depends on the order of
+// its joints.
 void expect_same(const Told& drawn, const Told& told, double limit, const char* how) {
     ASSERT_EQ(told.list().size(), drawn.list().size());
     for (std::size_t c = 0; c < drawn.list().size(); ++c) {
@@ -178,7 +180,7 @@ void expect_same(const Told& drawn, const Told& told, double limit, const char* 
     }
 }
 
-// Positions and reactions are vectors, and turned back.
+// Positions and reactions are vectors and are rotated back.
 void expect_same_turned(const Told& drawn, const Told& moved, const Eigen::Quaterniond& R,
                         const Eigen::Vector3d& t, double limit) {
     for (std::size_t c = 0; c + 2 < drawn.list().size(); ++c) {
@@ -195,7 +197,7 @@ void expect_same_turned(const Told& drawn, const Told& moved, const Eigen::Quate
     }
 }
 
-// The ground frame, the order of its parts, the units it is written in.
+// Ground frame, order of the parts, units.
 TEST_P(Family, DoesNotSeeHowItIsTold) {
     const Scene scene = trimmed(GetParam());
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
@@ -207,7 +209,8 @@ TEST_P(Family, DoesNotSeeHowItIsTold) {
     ASSERT_TRUE(in_mm.record && in_mm.record->reached());
     expect_same(drawn, Told(in_mm.scene), 1, "in mm and kN");
 
-    // The energy leg, on the first two branches. It knows reactions to what its positions leave in the balance.
+    // The energy leg, on the first two branches. Its reactions are as accurate as the imbalance of
+    // its positions.
     const double known = 1e2;
     Scene some = scene;
     some.branches.resize(2);
@@ -223,7 +226,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Family, testing::ValuesIn(support::family_names
 
 struct Sides {
     const char* scene;
-    std::vector<const char*> equal, opposite;  // branches that do the same, and mirror images, to both sides
+    // branches with equal, and with mirrored motion of both sides
+    std::vector<const char*> equal, opposite;
 };
 void PrintTo(const Sides& sides, std::ostream* out) { *out << sides.scene; }
 
@@ -260,8 +264,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
                                                {"opposite", "roll", "lateral", "aligning"}}),
                          [](const auto& sides) { return std::string(sides.param.scene); });
 
-// A track bar is on one side: it pulls the axle sideways as the body moves, by what its arc is from a straight line,
-// which is none at 80 mm of jounce: the bar slopes then as it did at the design height, the other way.
+// A track bar is on one side: it moves the axle sideways by the deviation of its arc from a
+// straight line, which is zero at 80 mm of jounce, where its slope is that of the design height,
+// reversed.
 TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
     const Model model = compile(trimmed("solid_axle"));
     const auto y = walk(model, "travel", Leg::equilibrium, 2)["left.wheel_centre_y"];
@@ -270,7 +275,7 @@ TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
         const double height = bar.z() + (end == 0 ? -0.08 : 0.08);
         const double arc = 1e3 * (std::sqrt(bar.squaredNorm() - height * height) - bar.y());
         EXPECT_NEAR(y[end] - y[1], arc,
-                    0.1 + 0.15 * std::abs(arc));  // the converging lower links hold against it
+                    0.1 + 0.15 * std::abs(arc));  // the converging lower links resist it
     }
 }
 
@@ -295,7 +300,8 @@ TEST(Scenes, TheRightSideIsTheMirrorImageOfTheLeft) {
 
 // ---- Pure kinematics.
 
-class Rigid : public testing::TestWithParam<std::pair<const char*, const char*>> {};  // and with rubber
+// and with rubber
+class Rigid : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
 TEST_P(Rigid, WhereTheMotionIsPrescribedNeitherForcesNorRatesMoveAnything) {
     const auto [rigid, rubber] = GetParam();
@@ -313,7 +319,7 @@ TEST_P(Rigid, WhereTheMotionIsPrescribedNeitherForcesNorRatesMoveAnything) {
     }
 }
 
-// Rubber of s times the rate gives a 1/s of what it gave: the pure kinematics are the limit.
+// Rubber of s times the rate deforms by 1/s: pure kinematics is the limit.
 TEST_P(Rigid, IsTheLimitOfStifferAndStifferRubber) {
     const auto [rigid, rubber] = GetParam();
     const Walk limit = walk(compile(trimmed(rigid)), "travel");
@@ -338,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Rigid,
                                          std::pair{"double_wishbone_rigid", "double_wishbone"}),
                          [](const auto& pair) { return std::string(pair.param.second); });
 
-// ---- Closed forms of elements that nothing else here has. The solutions stand in the heads of the scenes.
+// ---- Closed forms of special elements; the solutions are in the head comments of the scenes.
 
 constexpr Leg all_legs[] = {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series};
 

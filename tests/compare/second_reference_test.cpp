@@ -1,5 +1,6 @@
-// Where no energy exists, or the scene is too large for the energy leg, the equilibrium leg and the series judge each
-// other; in the latter case the energy leg's equations are a witness.
+// Second reference without the energy leg: where no energy exists, or the scene is too large, the
+// equilibrium leg and the series judge each other; for a large scene the energy leg still judges
+// the states.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// The paper's strut pushed by a force that turns with its wheel.
+// The paper's strut under a follower force on its wheel.
 Scene follower() {
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);
@@ -90,7 +91,7 @@ TEST(SecondReference, StudiesTakeItToo) {
     EXPECT_TRUE(known.uncertainty.mm <= 1e-6) << known.uncertainty.mm;
 }
 
-// A cantilever of bushings too long for the energy leg, which judges it all the same.
+// A cantilever of bushings too large for the energy leg to solve, but not to judge.
 const Model& chain() {
     static const Model model = [] {
         constexpr int n = 140;
@@ -162,7 +163,7 @@ TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
     EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count, 1);
 }
 
-// Where there is no energy there is nothing to bear witness of.
+// Without an energy the energy leg judges nothing.
 TEST(SecondReference, WithoutEnergyThereIsNoWitness) {
     const Comparison found = compare(compile(follower()));
     EXPECT_FALSE(energy_bears_witness(found.branches[0]));

@@ -1,4 +1,4 @@
-// What compare makes of a polynomial branch: rates of outputs, loads for travels, the study over orders.
+// Use of a polynomial branch in compare: rates of outputs, loads for travels, study over orders.
 #include <gtest/gtest.h>
 
 #include <cmath>

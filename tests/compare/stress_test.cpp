@@ -1,4 +1,4 @@
-// Right, an honest outcome, or wrong: that the judgement knows which, and that the scenes stand their sweeps.
+// Stress test: verdicts (right, reported failure, wrong), and the sweeps on built-in scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "compare/random_scenes.hpp"
+#include "compare/reactions.hpp"
 #include "compare/retold.hpp"
 #include "compare/stress.hpp"
 #include "models/compile.hpp"
@@ -29,10 +30,11 @@ std::string told(const StressCell& cell) {
 }
 
 TEST(Retold, AScaledSceneMovesAsItsUnitsSay) {
-    // Trusted: lengths by s, forces by φ; each leg must find the same numbers but for their units. Gravity and curves too.
+    // The transform itself: lengths by s, forces by φ; each leg must find the same numbers except
+    // for units. Includes gravity and curves.
     for (const auto& name : {"mcpherson", "pendulum", "follower", "tyre_on_road", "parallel_springs"}) {
         const Scene scene = support::scene(name);
-        const double s = 8, phi = 0.25;  // exact in binary: nothing is rounded
+        const double s = 8, phi = 0.25;  // exact in binary: no rounding
         const Model a = compile(scene), b = compile(scaled(scene, s, phi));
         for (std::size_t k = 0; k < a.branches.size(); ++k) {
             const auto ways_a = ways_of(a, a.branches[k], 4), ways_b = ways_of(b, b.branches[k], 4);
@@ -63,7 +65,8 @@ TEST(Retold, AStiffenedElementBearsTheFactorAtTheSameDeformation) {
 }
 
 TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
-    // Said to be the scene 1 mm further along: whoever answers as before is caught.
+    // Declared to be the scene moved by 1 mm, but unchanged: every unchanged answer must be
+    // detected.
     const Scene scene = small("pendulum");
     const Trial itself{"pendulum", std::string(as_it_is), {"as it is", scene}};
     const Trial lie{"pendulum",
@@ -74,6 +77,44 @@ TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
     for (const auto& cell : survival.cells)
         EXPECT_EQ(cell.verdict == Verdict::wrong, cell.sweep == "moved") << told(cell);
     EXPECT_EQ(sign(survival, "pendulum", "moved", "published"), 'X');
+}
+
+TEST(Reactions, AreOffBeyondTheirBoundAndWhereTheyAreNoNumber) {
+    const Scale acts{.force = 1000, .length = 2, .round_off = 0};
+    const std::string names[] = {"upper", "rod"};
+    const Wrench known[] = {{{100, 0, 0}, {0, 0, 0}}, {{0, 98, 0}, {0, 0, 5}}};
+    const ReactionBound bound = bound_of_reactions(1e-9, acts);
+    EXPECT_EQ(bound.force, 1e-3);
+    EXPECT_EQ(bound.moment, 2e-3);
+    EXPECT_NEAR(bound_of_reactions(1e-6, acts).force, 0.5, 1e-12);
+    const auto off = [&](double force, double moment) {
+        const Wrench found[] = {known[0], {{0, 98 + force, 0}, {moment, 0, 5}}};
+        return reaction_off(names, found, known, bound, acts);
+    };
+    EXPECT_EQ(off(0.9e-3, 1.9e-3), "");
+    EXPECT_NE(off(-6.9, 0).find("joint 'rod' is off by 6.9 N"), std::string::npos) << off(-6.9, 0);
+    EXPECT_NE(off(0, 2.1e-3), "");
+    const double nan = std::nan("");
+    EXPECT_NE(off(nan, 0), "");
+    EXPECT_NE(off(0, nan), "");
+    EXPECT_EQ(reaction_off(names, known, {}, bound, acts), "") << "nothing is known of them";
+    const Scale nothing{.force = 0, .length = 1, .round_off = 0};
+    EXPECT_EQ(reaction_off(names, known, known, bound_of_reactions(1e-9, nothing), nothing), "");
+}
+
+// Reactions of a mechanism that drives a length against springs; the true ones follow from the
+// proof.
+TEST(Stress, ReactionsAreJudgedOfWhoPromisesMoreThanSteps) {
+    const Scene scene = parse_scene(random_scene(1, Family::driven), "random.yaml");
+    const Survival survival = stress(std::vector{Trial{"1", "x", {"as it is", scene}}});
+    for (const auto& cell : survival.cells) {
+        const auto method = recursive::find_method(cell.solver);
+        if (method && has_steps(*method)) {
+            EXPECT_EQ(cell.reactions, 0) << told(cell);
+        } else if (cell.verdict == Verdict::right) {
+            EXPECT_GT(cell.reactions, 0) << told(cell);
+        }
+    }
 }
 
 TEST(Stress, WhoFindsWhatCannotBeIsWrong) {
@@ -95,12 +136,13 @@ TEST(Stress, AnHonestOutcomeIsNotWrong) {
             EXPECT_EQ(cell.verdict, Verdict::honest) << told(cell);
         }
     EXPECT_EQ(sign(survival, "follower", "x", "energy"), '!');
-    EXPECT_EQ(sign(survival, "follower", "x", "equilibrium"), '9');  // by the series beside it
+    EXPECT_EQ(sign(survival, "follower", "x", "equilibrium"), '9');  // by the series
     EXPECT_EQ(sign(survival, "follower", "y", "energy"), '.');
 }
 
 TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
-    // The published recursion of the pendulum is off by so much (its head has the closed form), and says so.
+    // The published recursion of the pendulum has a known error (closed form in the head of the
+    // scene) and reports its digits.
     const Survival survival =
         stress(std::vector{Trial{"pendulum", "x", {"as it is", small("pendulum", 60)}}});
     for (const auto& cell : survival.cells) {
@@ -120,7 +162,8 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
     }
 }
 
-// A bound is of origins and orientations: a place that is far from its body's origin may be off by more than the origin is.
+// A bound applies to origins and orientations: a place far from its body's origin may have a larger
+// error than the origin.
 TEST(Stress, WhatIsClaimedOfABodyIsHeldAgainstItsPlacesWithTheirLevers) {
     const Survival survival =
         stress(std::vector{Trial{"seed 1", "x", {"as it is", parse_scene(random_scene(1), "seed 1")}}});
@@ -133,7 +176,7 @@ TEST(Stress, WhatIsClaimedOfABodyIsHeldAgainstItsPlacesWithTheirLevers) {
     }
 }
 
-// A norm that drops a NaN, a comparison that a NaN passes: none may hide one, in whatever acts.
+// NaN in any acting quantity: no norm may drop it, no comparison may pass it.
 TEST(Stress, ANaNInWhateverActsIsNeverAnEquilibrium) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Scene scene = small("mcpherson", 4);
@@ -163,7 +206,7 @@ TEST(Stress, ANaNInWhateverActsIsNeverAnEquilibrium) {
     for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
 }
 
-// A sample of the whole, which ./dev stress does.
+// A sample of ./dev stress.
 TEST(Stress, SmallScenesSurvive) {
     std::vector<Trial> sample;
     for (const auto& name : {"pendulum", "parallel_springs"})

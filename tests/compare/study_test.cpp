@@ -1,4 +1,5 @@
-// Step error, formulation gap and reference uncertainty are three things, and the gap has named parts.
+// Error decomposition: step error, formulation gap, reference uncertainty, and attribution of the
+// gap.
 #include "compare/study.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,7 @@ double root(F&& f, double low, double high) {
 }
 
 TEST(Study, SeparatesStepErrorFromFormulationGap) {
-    // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both by hand.
+    // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both in closed form.
     const Study s = study(compile(support::scene("pinned_bar")), options());
     const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
                  truth = std::atan(0.5);
@@ -44,7 +45,7 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
     EXPECT_NEAR(z.gap, gap, z.end.band);
     EXPECT_NEAR(z.gap, gap, 1e-3 * std::abs(gap));
     EXPECT_NEAR(z.step_error_end[0] / z.step_error_end[1], 2, 0.1);
-    // At equal travel a bar has nothing left to be wrong about.
+    // At equal travel a bar has no error.
     EXPECT_LE(std::abs(s.branches[0].methods[0].equal_abscissa[0].gap), 1e-6);
 }
 
@@ -78,8 +79,8 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
         EXPECT_NEAR(m.constraint_order.order, 1, 0.05);
-        EXPECT_LT(m.constraint_error.back(), 1e-4);          // [m]: falling with the steps
-        EXPECT_GT(std::abs(m.equal_parameter[2].gap), 1.0);  // [mm]: not falling
+        EXPECT_LT(m.constraint_error.back(), 1e-4);          // [m]: falls with the steps
+        EXPECT_GT(std::abs(m.equal_parameter[2].gap), 1.0);  // [mm]: does not fall
         EXPECT_LE(m.equal_parameter[2].uncertainty, 1e-6);
         EXPECT_GT(m.equal_parameter[2].gap_exponent, 1.2);
     }
@@ -150,8 +151,8 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
 }
 
 TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
-    // The preloaded strut settles before it walks: what is left when everything follows is within its band,
-    // and the whole is the gap that the study finds.
+    // The preloaded strut settles before the branch: the remainder with all terms following is
+    // within its band, and the whole is the gap of the study.
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Study s = study(model, options());
     const auto attribution = attribute_gap(model);

@@ -1,4 +1,4 @@
-// Tables of studies: whole, and with a reason where a number is missing.
+// Tables of studies: complete, and with a reason for every missing number.
 #include "compare/table.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
 }
 
 TEST(Table, WhatIsMissingIsToldInItsRow) {
-    // Travel that does not move: nothing is read at equal abscissa, and the row says so.
+    // Constant travel: no reading at equal abscissa, and the row gives the reason.
     Scene scene = support::scene("pinned_bar");
     scene.branches.resize(1);
     scene.branches[0].steps = 10;

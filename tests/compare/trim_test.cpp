@@ -1,4 +1,4 @@
-// Trim: closed forms, what it leaves at rest, and every way in which it is no answer.
+// Trim: closed forms, equilibrium after the trim, and all ill-posed or unreachable cases.
 #include "compare/trim.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// A block that slides up and down on a spring of 20 N/mm, 0.4 m long as drawn, under 500 N.
+// A block on a vertical slide and a spring of 20 N/mm, 0.4 m long in the design position, under 500
+// N.
 Scene block() {
     return parse_scene(
         "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
@@ -43,7 +44,7 @@ Trim::Adjustment preload(const Scene& scene, const std::string& spring) {
 }
 Trim::Condition height(std::optional<double> value = {}) { return {"top.z", ProbeCoordinate{0, 2}, value}; }
 
-// The paper's strut under the weight of a corner of a car, its spring as drawn.
+// The paper's strut under a corner weight, with its original spring.
 Scene mcpherson() {
     Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
@@ -125,7 +126,7 @@ TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
 }
 
 TEST(Trim, AdjustmentThatMovesNothingIsNamed) {
-    Scene scene = block();  // across the way of the block
+    Scene scene = block();  // perpendicular to the slide of the block
     scene.trim = Trim{{preload(scene, "across")}, {height()}};
     const std::string said = complaint(scene);
     EXPECT_TRUE(contains(said, "'springs.across.preload' has no influence on top.z")) << said;
@@ -151,7 +152,8 @@ TEST(Trim, ConditionThatNothingMovesIsNamed) {
 }
 
 TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {
-    Scene scene = block();  // as drawn it is at rest, whatever the two springs share
+    // at rest in the design position for any load sharing of the two springs
+    Scene scene = block();
     scene.static_loads.clear();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
                       {height(), {"top.z again", ProbeCoordinate{0, 2}, std::nullopt}}};
@@ -160,7 +162,7 @@ TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {
 
 TEST(Trim, WhatCannotBeReachedIsSaidAndChangesNothing) {
     Scene scene = mcpherson();
-    scene.trim->until[0].value = 2;  // [m]: no strut is that long
+    scene.trim->until[0].value = 2;  // [m]: longer than any strut
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record);
     EXPECT_FALSE(found.record->reached());
@@ -169,7 +171,7 @@ TEST(Trim, WhatCannotBeReachedIsSaidAndChangesNothing) {
 }
 
 TEST(Trim, SidesOfASymmetricPairGetTheSame) {
-    // Two blocks that know nothing of each other.
+    // Two independent blocks.
     Scene scene = block();
     scene.elastics.resize(1);
     const Scene one = scene;

@@ -1,17 +1,19 @@
-// Along every branch of every scene: the work that is done on it is the energy that it stores.
+// Energy balance along every branch of every scene: work done equals energy stored.
 //
-// Power is read off forces: of the loads at the velocities of their points, of what moves a joint its effort at the
-// rate of its offset. Energy is read off deformations. No leg computes both: the recursion and the equilibrium leg
-// know no energy, the energy leg no power; whatever force a leg has wrong, or turns into the wrong direction, leaves a gap
+// Power is computed from forces: loads times velocities of their points, driver efforts times rates
+// of their offsets. Energy is computed from deformations. No leg computes both: the recursion and
+// the equilibrium leg use no energy, the energy leg no power. A wrong force, or a force in a wrong
+// direction, of any leg leaves a gap
 //
-//   ∫ P da - (U(end) - U(start)),   P = Σ f·ṗ + Σ m·ω + Σ effort · d(offset)/da + Σ ∂U/∂a of what moves a law.
+//   ∫ P da - (U(end) - U(start)),
+//   P = Σ f·ṗ + Σ m·ω + Σ effort · d(offset)/da + Σ ∂U/∂a of driven laws.
 //
-// Where a bushing's formulation has no energy, what it takes up is the power of its forces. Where the energy leg answers
-// that nothing has one, the other two keep their books.
+// Where a bushing's formulation has no energy, the power of its forces is used instead. Where the
+// energy leg does not apply, the other two legs are tested.
 //
-// The integral goes by Gauss' points, piece by piece of the branch as a power series, so that no curve's knot lies
-// within a piece; a leg's states and efforts are its own, the velocities are the series'. At the same points the legs
-// are compared with each other.
+// The integral uses Gauss points, piece by piece of the branch as a power series, so that no piece
+// contains a knot of a curve; states and efforts are those of the leg, velocities those of the
+// series. At the same points the legs are compared with each other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +45,7 @@ double value(const Driver& driver, double a) { return driver.start + driver.rate
 
 // ---- Stored energy.
 
-// u(x) = ∫₀ˣ f, from knot to knot: two points are exact for a cubic.
+// u(x) = ∫₀ˣ f, from knot to knot: two Gauss points are exact for a cubic.
 double energy(const LinearRate& law, double x) { return law.k * x * x / 2; }
 double energy(const elastocheck::Curve& law, double x) {
     const double low = std::min(0.0, x), high = std::max(0.0, x);
@@ -67,7 +69,7 @@ double energy(const PerAxis& law, const Vector6& x) {
     return u;
 }
 
-// What drivers add to the preload of element k.
+// Driven part of the preload of element k.
 Vector6 driven_preload(const Branch& branch, std::size_t k, double a) {
     Vector6 sum = Vector6::Zero();
     for (const auto& driver : branch.drivers)
@@ -95,7 +97,8 @@ double stored(const Model& model, const Branch& branch, const Equilibrium& state
 // ---- Power.
 
 struct Power {
-    double sum = 0, turned_over = 0;  // Σ, Σ |.| of what each load and driver does [J per unit of a]
+    // Σ, Σ |.| of the power of each load and driver [J per unit of a]
+    double sum = 0, turned_over = 0;
     void add(double p) {
         sum += p;
         turned_over += std::abs(p);
@@ -122,8 +125,9 @@ double power(const LoadKind& load, const Equilibrium& state, const series::Rates
         load);
 }
 
-// What a bushing takes up whose forces are not the slopes of an energy: F' = ∂u/∂e + preload straight along the axes of
-// its frame, the force at its own marker on each body or, with the moment of the offset D, at p_j on both.
+// Power of a bushing whose forces are not the gradient of an energy: F' = ∂u/∂e + preload along the
+// axes of its frame, the force at its own marker on each body or, with the moment of the offset D,
+// at p_j on both.
 double taken_up(const Bushing& e, const Vector6& driven, const Equilibrium& state,
                 const series::Rates& rates) {
     if (e.formulation.conjugate) return std::nan("");  // no scene has one
@@ -183,7 +187,7 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
     return all;
 }
 
-// ---- A way of a branch, at Gauss' points of its pieces.
+// ---- A branch side, at Gauss points of its pieces.
 
 struct Sampled {
     series::Path path;
@@ -240,14 +244,15 @@ struct Apart {
     double mm = 0, deg = 0;
     std::string where_mm, where_deg;
 };
-// Of two legs, on all positions and angles.
+// Distance of two legs over all positions and angles.
 Apart apart(const Way& way, const std::vector<Channel>& channels, const std::vector<Equilibrium>& x,
             const std::vector<Equilibrium>& y) {
     Apart worst;
     for (std::size_t k = 0; k < x.size(); ++k) {
         const auto of_x = evaluate(way.model, channels, x[k]), of_y = evaluate(way.model, channels, y[k]);
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;  // magnified
+            // magnifies errors
+            if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;
             const bool angle = channels[c].unit == Unit::deg;
             const double off = std::abs(of_x[c] - of_y[c]);
             double& most = angle ? worst.deg : worst.mm;

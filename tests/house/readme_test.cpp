@@ -1,6 +1,7 @@
-// What the README shows is there: the program that is built, the references that a workflow checks out.
+// The CI workflow in the documentation refers to what exists; links between the pages of the repository lead to files.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <vector>
@@ -15,30 +16,12 @@ using elastocheck::support::text_of;
 
 const std::string root = ELASTOCHECK_ROOT;
 
-// What stands between fences of a language.
-std::vector<std::string> blocks(const std::string& page, const std::string& language) {
-    const std::string open = "```" + language + "\n";
-    std::vector<std::string> all;
-    for (auto at = page.find(open); at != page.npos; at = page.find(open, at + 1)) {
-        const auto begin = at + open.size();
-        all.push_back(page.substr(begin, page.find("```\n", begin) - begin));
-    }
-    return all;
-}
-
-TEST(Readme, ItsProgramsAreThoseThatAreBuiltAndRun) {
-    const auto programs = blocks(text_of(root + "/README.md"), "cpp");
-    ASSERT_EQ(programs.size(), 2u);
-    EXPECT_EQ(programs[0], text_of(root + "/tests/package/candidate/main.cpp"));
-    EXPECT_EQ(programs[1], text_of(root + "/tests/package/example/main.cpp"));
-}
-
 TEST(Readme, WhatItsWorkflowChecksOutIsThere) {
     const std::string git = "git -c safe.directory='*' -C '" + root + "' ";
     if (says(git + "rev-parse --show-prefix").out != "\n") GTEST_SKIP() << "not a checkout of its own";
     if (says(git + "rev-parse --is-shallow-repository").out != "false\n")
         GTEST_SKIP() << "a checkout without history";
-    const std::string page = text_of(root + "/README.md");
+    const std::string page = text_of(root + "/tests/gate/README.md");
     static const std::regex reference("\\bref: ([^ ,}\n]+)");
     int references = 0;
     for (std::sregex_iterator at(page.begin(), page.end(), reference), end; at != end; ++at, ++references) {
@@ -49,6 +32,55 @@ TEST(Readme, WhatItsWorkflowChecksOutIsThere) {
         EXPECT_TRUE(there) << "ref: " << name;
     }
     EXPECT_GT(references, 0);
+}
+
+// The pages of the repository, each with its folder.
+std::vector<std::filesystem::path> pages() {
+    namespace fs = std::filesystem;
+    std::vector<fs::path> found;
+    for (const char* room : {"models", "recursive", "reference", "compare", "reports", "tests"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(root) / room))
+            if (entry.path().extension() == ".md") found.push_back(entry.path());
+    for (const char* page : {"README.md", "CONTRIBUTING.md"}) found.push_back(fs::path(root) / page);
+    return found;
+}
+
+TEST(Readme, LinksBetweenPagesLeadToFiles) {
+    static const std::regex link("\\]\\(([^):#]+)(#[^)]*)?\\)|src=\"([^\"]+)\"");
+    int links = 0;
+    for (const auto& page : pages()) {
+        const std::string text = text_of(page);
+        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++links) {
+            const std::string target = (*at)[1].matched ? (*at)[1] : (*at)[3];
+            EXPECT_TRUE(std::filesystem::exists(page.parent_path() / target))
+                << page << " links to " << target;
+        }
+    }
+    EXPECT_GT(links, 30);
+}
+
+// A room's page is its map: a header that moved or went is noticed here.
+TEST(Readme, HeadersThatTheRoomsPagesNameExist) {
+    static const std::regex file("`([A-Za-z_/]+\\.[hc]pp)`");
+    int named = 0;
+    for (const char* room : {"models", "recursive", "reference", "compare", "reports"}) {
+        const std::filesystem::path folder = std::filesystem::path(root) / room;
+        const std::string text = text_of(folder / "README.md");
+        std::filesystem::path last = folder;
+        for (std::sregex_iterator at(text.begin(), text.end(), file), end; at != end; ++at, ++named) {
+            const std::string name = (*at)[1];
+            // From the room, from the repository, or beside the file that is named before.
+            bool exists = false;
+            for (const auto& from : {folder, std::filesystem::path(root), last})
+                if (std::filesystem::exists(from / name)) {
+                    exists = true;
+                    last = (from / name).parent_path();
+                    break;
+                }
+            EXPECT_TRUE(exists) << room << "/README.md names " << name;
+        }
+    }
+    EXPECT_GT(named, 100);
 }
 
 }  // namespace

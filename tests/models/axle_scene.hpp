@@ -1,4 +1,4 @@
-// An axle that mirrors itself, with every kind of joint, drives, wheels with names.
+// Fixture: a mirrored axle scene with every kind of joint, drives, and named wheels.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@ namespace elastocheck {
 inline const std::string axle_head =
     "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\n";
 
-// Something of everything, none of it along an axis. The shared body `rack` has its origin off the mirror plane.
+// All kinds of parts, with general directions. The shared body `rack` has its origin off the mirror
+// plane.
 inline const std::string axle_scene = axle_head + R"(mirror: left -> right
 points:
   arm_front_left: [220, 520, -156]

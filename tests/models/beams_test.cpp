@@ -1,4 +1,4 @@
-// Beams of a scene file: the Timoshenko beam, where their nodes are, what goes wrong.
+// Beams of a scene file: Timoshenko stiffness, node positions, and error messages.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double pi = std::numbers::pi;
 
-// A cantilever along x and then along y, its end a body of its own.
+// A cantilever along x and then along y, with a body at its end.
 std::string cantilever(const std::string& beam,
                        const std::string& units = "length: m, angle: rad, force: N") {
     return "elastocheck: 1\nname: cantilever\nunits: {" + units + R"(}
@@ -39,7 +39,8 @@ const Bushing& segment(const Scene& scene, std::size_t k) {
 }
 Matrix6 K_of(const Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
 
-// e = B (Δr_i, Δπ_i, Δr_j, Δπ_j) for small motions:  d = Aᵀ (Δr_j + Δπ_j × s_j - Δr_i - Δπ_i × s_i),  θ = Aᵀ (Δπ_j - Δπ_i).
+// e = B (Δr_i, Δπ_i, Δr_j, Δπ_j) for small motions:
+//   d = Aᵀ (Δr_j + Δπ_j × s_j - Δr_i - Δπ_i × s_i),  θ = Aᵀ (Δπ_j - Δπ_i).
 Eigen::Matrix<double, 6, 12> deformation(const Bushing& b) {
     const auto cross = [](const Vector3d& s) {  // π × s = cross(s) π
         Eigen::Matrix3d m;
@@ -57,7 +58,7 @@ Eigen::Matrix<double, 6, 12> deformation(const Bushing& b) {
     return B;
 }
 
-// The displacement and rotation of body 0, the tip, under a small wrench: ground is left out of K.
+// Displacement and rotation of body 0, the tip, under a small wrench; ground is eliminated from K.
 Vector6 tip_motion(const Scene& scene, const Vector6& wrench) {
     const auto n = static_cast<Eigen::Index>(6 * scene.bodies.size());
     MatrixXd K = MatrixXd::Zero(n, n);
@@ -76,12 +77,12 @@ Vector6 tip_motion(const Scene& scene, const Vector6& wrench) {
     return VectorXd(K.partialPivLu().solve(f)).head<6>();
 }
 
-// Przemieniecki's 12×12, with x along the beam.
+// Przemieniecki's 12×12 beam matrix, with x along the beam.
 TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
     const Scene scene = parse_scene(
         cantilever("through: [root, bend], segments: 1, " + section + ", shear_y: 0.5, shear_z: 0.7, up: z"),
         "b.yaml");
-    Scene moved = scene;  // the tip's origin to its end, as it is not at `bend`
+    Scene moved = scene;  // moves the tip's origin to the end of the beam
     auto b = std::get<Bushing>(moved.elastics.at(0).kind);
     const double L = 3, EA = 10, EI_y = 14, EI_z = 22, GJ = 39, GA_y = 1.5, GA_z = 2.1;
     EXPECT_EQ(b.i.s_local, Vector3d(1.5, 0, 0));
@@ -110,7 +111,8 @@ TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
         << "at " << r << ", " << c;
 }
 
-// Small loads on a cantilever round a corner: bending of both legs, torsion of the first. Exact for any number.
+// Small loads on a cantilever with a corner: bending of both legs, torsion of the first. Exact for
+// any number of segments.
 TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
     const double a = 3, b = 2, EI_y = 14, EI_z = 22, EA = 10, GJ = 39;
     for (const int n : {2, 3, 5, 12, 40}) {
@@ -119,10 +121,11 @@ TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
             "b.yaml");
         ASSERT_EQ(scene.bodies.size(), static_cast<std::size_t>(n));
         ASSERT_EQ(scene.elastics.size(), static_cast<std::size_t>(n));
-        // z across the plane: w = F (a³ + b³)/(3EI_y) + F b² a/(GJ)
+        // F normal to the plane (z): w = F (a³ + b³)/(3EI_y) + F b² a/(GJ)
         const double up = tip_motion(scene, Vector6::Unit(2))[2];
         EXPECT_NEAR(up, (a * a * a + b * b * b) / (3 * EI_y) + b * b * a / GJ, 1e-9) << n;
-        // x in the plane: the second leg bends, the first takes the force and its moment F b
+        // F along x in the plane: the second leg bends, the first carries the force and its moment
+        // F b.
         const double fore = tip_motion(scene, Vector6::Unit(0))[0];
         EXPECT_NEAR(fore, b * b * b / (3 * EI_z) + a / EA + b * b * a / EI_z, 1e-9) << n;
     }
@@ -258,7 +261,7 @@ TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
         EXPECT_LE((place(scene, l.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, r.i)).norm(), 1e-15);
     }
     EXPECT_EQ(body_name(scene, std::get<Bushing>(named(scene, "near_right").kind).i.body), "antiroll.7");
-    for (int k = 1; k <= 9; ++k) {  // the segments are each other's images
+    for (int k = 1; k <= 9; ++k) {  // the segments are mirror images of each other
         const auto& a = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", k)).kind);
         const auto& b = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", 10 - k)).kind);
         EXPECT_LE((place(scene, a.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, b.i)).norm(), 1e-15)
@@ -284,7 +287,7 @@ TEST(BeamMirror, ABeamOfOneSideHasATwinWithBodiesOfItsOwn) {
     }
 }
 
-// ---- Mistakes.
+// ---- Error messages.
 
 TEST(Beam, SaysWhatIsWrong) {
     const std::string sound = cantilever(

@@ -1,4 +1,4 @@
-// A scene with something of everything, for tests that change it.
+// Fixture: a scene with all kinds of parts, for tests that modify it.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a model keeps of a scene, what it leaves out and why.
+// Model reduction: what compile() keeps of a scene, what it removes and the reported reason.
 #include "models/compile.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// ---- Scenes in a few words. Bodies a, b, c, ... stand one metre apart along x; a is the output.
+// ---- Small scenes. Bodies a, b, c, ... are one metre apart along x; a is the output.
 
 Scene bodies(int count) {
     Scene scene;
@@ -88,7 +88,7 @@ void hinge(Scene& scene, const std::string& name, BodyId i, BodyId j) {
     scene.joints.push_back({name, Revolute{p_i, p_j, {i, Vector3d::UnitY()}, {j, Vector3d::UnitY()}}});
 }
 
-// a, b, c, ... one hung on the next, the first on ground.
+// A chain a, b, c, ... of hinged bodies, the first on ground.
 Scene chain(int count) {
     Scene scene = bodies(count);
     hinge(scene, "root", 0, ground);
@@ -113,9 +113,9 @@ const std::string unconnected = "no output is connected to it";
 const std::string follower = "it hangs on one other body and carries no load, no preload and no output";
 const std::string with_its_body = "a body it connects is left out";
 
-// ---- What is left out.
+// ---- Removed parts.
 
-// Two of the shipped scenes are written part by part, as an assembly is; of the others everything is needed.
+// Two of the shipped scenes contain removable parts, as an assembly does; the others contain none.
 TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
     struct Fewer {
         std::size_t bodies = 0, joints = 0;
@@ -207,7 +207,7 @@ TEST(Compile, LeavesOutAFollowerHeldInSeveralWaysByOneBody) {
     EXPECT_EQ(kept(compile(scene)), "a");
 }
 
-// A chain a-b-c-d with something on c that matters: d still goes, c and what leads to it stay.
+// A chain a-b-c-d with a reason to keep c: d is still removed, c and the bodies before it stay.
 struct Reason {
     const char* name;
     void (*give)(Scene&);
@@ -312,9 +312,9 @@ TEST(Compile, IsQuickForThousandsOfBodies) {
     }
 }
 
-// ---- What branches drive.
+// ---- Drivers.
 
-// A jack under a body: its origin stays in a plane of ground.
+// A jack: the body's origin stays in a plane of ground.
 int jack(Scene& scene, const std::string& name, BodyId body, bool only_where_driven = true) {
     scene.joints.push_back({name,
                             InPlane{.i = {body, Vector3d::Zero()},
@@ -436,7 +436,7 @@ TEST(Compile, NamesABranchOfWhichNothingIsLeft) {
     }
 }
 
-// ---- What is kept, is kept whole: in random scenes everything still refers to the bodies it referred to.
+// ---- Random scenes: after reduction all references still point to the same bodies.
 
 struct RandomScene {
     std::mt19937 random;
@@ -448,7 +448,7 @@ struct RandomScene {
 
     JointKind joint(BodyId i, BodyId j) {
         const Direction a = direction(i), b = direction(j);
-        switch (below(12)) {  // no balls, of which links are made
+        switch (below(12)) {  // no spherical joints, which form links
             case 0:
             case 1: return Revolute{point(i), point(j), a, b};
             case 2: return Cylindrical{point(i), point(j), a, b};
@@ -596,8 +596,8 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
         const auto kept_parts =
             model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
         const auto is_branch = [](const Omission& omission) { return omission.what.starts_with("branch"); };
-        const auto branches =
-            std::ranges::count_if(model.left_out, is_branch);  // kept, though with no driver
+        // A branch is kept even without drivers.
+        const auto branches = std::ranges::count_if(model.left_out, is_branch);
         EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.left_out.size());
         for (const Branch& left : model.branches)
             EXPECT_EQ(std::ranges::count(model.left_out, "branch '" + left.name + "'", &Omission::what),
@@ -611,8 +611,8 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
     }
 }
 
-// What the rule says, word for word and without thought for speed: bodies are taken away one at a time as
-// long as one can.
+// Independent implementation of the reduction rule: removes bodies one at a time as long as
+// possible.
 std::string kept_by_the_rule(const Scene& scene) {
     struct Edge {
         BodyId i, j;
@@ -624,7 +624,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     };
     const auto at = [&](const Point& p) -> Vector3d { return origin(scene, p.body) + p.s_local; };
     for (const auto& joint : scene.joints) {
-        bool strained = false;  // the bodies of random scenes are parallel to ground
+        bool strained = false;  // bodies of random scenes are parallel to ground
         if (const auto* d = std::get_if<Distance>(&joint.kind))
             strained = std::abs((at(d->i) - at(d->j)).norm() - d->length) > 1e-9;
         if (const auto* p = std::get_if<InPlane>(&joint.kind))
@@ -634,7 +634,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     for (const auto& elastic : scene.elastics) {
         if (const auto* s = std::get_if<AxialSpring>(&elastic.kind)) {
             if (std::get<LinearRate>(s->law).k > 0)
-                connect(elastic.kind, true);  // no random spring has its free length
+                connect(elastic.kind, true);  // no random spring is at its free length
         } else {
             const auto& b = std::get<Bushing>(elastic.kind);
             if (!b.preload.isZero() || !std::get<LinearStiffness>(b.law).K.isZero())
@@ -690,7 +690,7 @@ TEST(Compile, KeepsWhatTheRuleKeeps) {
         EXPECT_EQ(kept(model), kept_by_the_rule(scene)) << "scene " << n;
         left_out_bodies += scene.bodies.size() - model.bodies.size();
     }
-    EXPECT_GT(left_out_bodies, static_cast<std::size_t>(scenes));  // the sweep reaches both sides
+    EXPECT_GT(left_out_bodies, static_cast<std::size_t>(scenes));  // both outcomes occur
 }
 
 // ---- Reactions.

@@ -1,4 +1,4 @@
-// The constraints as the comments in model.hpp state them, at any poses.
+// Constraint values at any poses, implemented from the comments in model.hpp.
 #pragma once
 
 #include <Eigen/Geometry>

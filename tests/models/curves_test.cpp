@@ -1,4 +1,4 @@
-// Curves: what goes through a table, how the file says so, and what a preload makes of it.
+// Force curves: interpolation of tables, file format, and conversion of preloads.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include "tests/models/laws_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/pipe.hpp"
 
 namespace elastocheck {
 namespace {
@@ -23,7 +24,7 @@ using Points = std::vector<TablePoint>;
 
 // ---- The interpolant.
 
-// Tables of every shape: even and uneven, steep, flat at the ends and inside, of 2 to 12 points.
+// Tables of many shapes: even and uneven, steep, flat at the ends and inside, of 2 to 12 points.
 std::vector<Points> tables() {
     std::mt19937 random(1984);
     std::uniform_real_distribution<double> any(0, 1);
@@ -76,6 +77,27 @@ TEST(Interpolant, HasOneSlopeAtEveryPoint) {
     }
 }
 
+TEST(Polygon, IsStraightBetweenThePointsAndBeyondThem) {
+    for (const Points& points : tables()) {
+        const Curve curve = reader::polygon(points);
+        ASSERT_EQ(curve.knots.size(), points.size());
+        ASSERT_EQ(curve.pieces.size(), points.size() + 1);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            EXPECT_EQ(curve.knots[k], points[k].x);
+            EXPECT_EQ(value(curve.pieces[k + 1], 0), points[k].f);
+            EXPECT_EQ(curve.pieces[k + 1][2], 0);
+            EXPECT_EQ(curve.pieces[k + 1][3], 0);
+            if (k > 0) {
+                EXPECT_NEAR(value(curve.pieces[k], width(curve, k - 1)), points[k].f,
+                            4e-15 * largest_force(points));
+            }
+        }
+        EXPECT_EQ(curve.pieces.front()[0], points.front().f);
+        EXPECT_EQ(curve.pieces.front()[1], curve.pieces[1][1]);
+        EXPECT_EQ(curve.pieces.back()[1], curve.pieces[points.size() - 1][1]);
+    }
+}
+
 // The slope of a cubic is least at an end or where its second derivative is zero.
 TEST(Interpolant, NeverFalls) {
     for (const Points& points : tables()) {
@@ -92,8 +114,8 @@ TEST(Interpolant, NeverFalls) {
     }
 }
 
-// Three points (0, 0), (1, 1), (3, 5): secants 1 and 2. Inside 1/m = (5/9)/1 + (4/9)/2; at the ends (4·1 - 1·2)/3 and
-// (5·2 - 2·1)/3.
+// Three points (0, 0), (1, 1), (3, 5): secants 1 and 2. Inside 1/m = (5/9)/1 + (4/9)/2; at the ends
+// (4·1 - 1·2)/3 and (5·2 - 2·1)/3.
 TEST(Interpolant, HasTheSlopesOfFritschAndButland) {
     const Curve curve = interpolant({{0, 0}, {1, 1}, {3, 5}});
     EXPECT_DOUBLE_EQ(curve.pieces[1][1], 2.0 / 3);
@@ -111,8 +133,8 @@ TEST(Interpolant, IsStraightWhereThePointsAre) {
     for (const double x : {1.0, 1.2, 1.999, 2.5, 3.0}) EXPECT_EQ(force(flat, x), 7);
 }
 
-// The energy of the pieces, term by term, against quadrature of the same interpolant told otherwise: by Hermite's
-// basis h_00, h_10, h_01, h_11 and slopes from the curve at the points.
+// Energy of the pieces, term by term, against quadrature of the same interpolant in Hermite form:
+// basis h_00, h_10, h_01, h_11 and the curve's slopes at the points.
 TEST(Interpolant, HasTheEnergyThatQuadratureFinds) {
     const auto hermite = [](double s, double h, double f_0, double m_0, double f_1, double m_1) {
         return (1 + 2 * s) * (1 - s) * (1 - s) * f_0 + s * (1 - s) * (1 - s) * h * m_0 +
@@ -141,7 +163,7 @@ TEST(Interpolant, HasTheEnergyThatQuadratureFinds) {
 Curve curve_of(const Scene& scene) { return std::get<Curve>(element<AxialSpring>(scene, "coil").law); }
 Curve curve_of(const std::string& curve) { return curve_of(laws(spring_with("curve: {" + curve + "}"))); }
 
-// Where curves are compared: on both sides of all knots and far beyond them [m].
+// Sample positions: on both sides of all knots and far beyond them [m].
 std::vector<double> positions() {
     std::vector<double> all;
     for (int n = -300; n <= 300; ++n) all.push_back(n * 0.5e-3);
@@ -175,6 +197,20 @@ TEST(Curve, OutsideGoesOnWithTheSlopeOfItsEnd) {
     EXPECT_FALSE(curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown").known_outside);
 }
 
+TEST(Curve, InterpolationIsMonotoneUnlessItSaysLinear) {
+    const std::string table = "table: [[-50, -900], [0, 0], [50, 1400]]";
+    const Curve straight = curve_of(table + ", interpolation: linear");
+    for (const double x : {-0.05, -0.02, 0.0, 0.01, 0.04, 0.2})
+        EXPECT_NEAR(force(straight, x), (x < 0 ? 18e3 : 28e3) * x, 1e-9) << x;
+    const Curve smooth = curve_of(table + ", interpolation: monotone");
+    expect_equal(
+        smooth, [&](double x) { return force(curve_of(table), x); }, 0);
+    EXPECT_THROW(curve_of(table + ", interpolation: cubic"), SceneError);
+    const Curve odd =
+        curve_of("table: [[0, 0], [20, 100], [50, 900]], symmetric: true, scale: 2, interpolation: linear");
+    EXPECT_NEAR(force(odd, -0.035), -1000, 1e-9);
+}
+
 TEST(Curve, SymmetricIsOdd) {
     const Curve curve = curve_of(one_sided + ", symmetric: true");
     expect_equal(
@@ -202,7 +238,7 @@ TEST(Curve, ScaleMultipliesTheForceAndOffsetMovesTheTable) {
     }
 }
 
-// Lengths in mm or m, angles in deg or rad, forces in N or kN: one law.
+// The same law with lengths in mm or m, angles in deg or rad, forces in N or kN.
 TEST(Curve, IsTheSameInAnyUnits) {
     const auto in = [](const char* length, double L, const char* angle, double A, const char* f, double F) {
         const auto row = [](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", x, y); };
@@ -240,7 +276,8 @@ TEST(Curve, IsTheSameInAnyUnits) {
         ASSERT_EQ(other.size(), si.size());
         for (std::size_t k = 0; k < si.size(); ++k) {
             ASSERT_EQ(si[k].first, other[k].first);
-            // Coefficients are differences of forces divided by lengths: round-off of the larger ones.
+            // Coefficients are differences of forces divided by lengths: round-off of the larger
+            // ones.
             const double size = si[k].first.find(".c_") == std::string::npos ? std::abs(si[k].second) : 1e8;
             EXPECT_NEAR(si[k].second, other[k].second, 1e-14 * size) << si[k].first;
         }
@@ -282,7 +319,7 @@ TEST(CurveFile, MayBeInAFolderBelow) {
     EXPECT_EQ(force(curve_of(read_scene(folder.path / "scene.yaml")), 0.01), 900);
 }
 
-// Its numbers are not the scene's: it is varied by scale and offset.
+// Numbers of the file are not numbers of the scene; scale and offset vary the table.
 TEST(CurveFile, HasNoNumbersThatCanBeSet) {
     const Beside beside("0,0\n10,900\n");
     const Scene scene = read_scene(beside.folder.path / "scene.yaml");
@@ -323,6 +360,39 @@ TEST(CurveFile, IsRefusedWithItsOwnLine) {
     }
 }
 
+// A pipe is rejected without blocking, and a symbolic link must not lead out of the scene's folder.
+TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
+    const auto refusal = [](const Beside& beside) {
+        try {
+            read_scene(beside.folder.path / "scene.yaml");
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("read");
+    };
+    namespace fs = std::filesystem;
+    const support::Folder elsewhere;
+    elsewhere.write("coil.csv", "0,0\n1,1\n");
+    const Beside beside("0,0\n1,1\n", "coil.csv");
+    const fs::path curve = beside.folder.path / "coil.csv";
+    fs::rename(curve, beside.folder.path / "other.csv");
+    fs::create_symlink("other.csv", curve);
+    EXPECT_EQ(refusal(beside), "read");
+    fs::remove(curve);
+    fs::create_symlink(elsewhere.path / "coil.csv", curve);
+    EXPECT_NE(refusal(beside).find(
+                  ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that leads out of the "
+                  "scene's folder; allowed: a file in it, or in a folder below"),
+              std::string::npos)
+        << refusal(beside);
+    fs::remove(curve);
+    const support::Pipe pipe(curve);
+    ASSERT_TRUE(pipe.is_there());
+    const std::string said = refusal(beside);
+    EXPECT_NE(said.find("'coil.csv': a pipe or a device; a regular file is needed"), std::string::npos)
+        << said;
+}
+
 TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
     std::string rows;
     for (int n = 0; n <= 10000; ++n) rows += fmt::format("{},{}\n", n, n);
@@ -361,7 +431,8 @@ TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
     }
 }
 
-// Whatever happens to the text of a table, the scene has a curve of finite numbers that never falls, or an error says where.
+// Any damage to the text of a table gives a finite non-decreasing curve, or an error with its
+// location.
 TEST(CurveFile, DamagedGivesACurveOrAnError) {
     const std::string sound =
         "# measured\nx [mm], f [N]\n-50,-9500\n-35,-4000\n0,0\n10,900\n20,4000\n50,9500\n";

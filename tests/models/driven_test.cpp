@@ -1,4 +1,4 @@
-// What a branch drives and holds: the joints made for it, signs, units, and what a branch lost.
+// Drivers and held values of a branch: joints created for them, signs, units, and lost drivers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Two bodies, a joint of every kind that can be driven, elements, a wheel. `branches` is the text of one or more.
+// Two bodies, all kinds of driven joints, elements, a wheel. `branches` is the text of one or more
+// branches.
 std::string rig(const std::string& branches, const std::string& units = "length: mm, angle: deg, force: N") {
     return "elastocheck: 1\nname: rig\nunits: {" + units + R"(}
 points: {o: [0, 0, 0], a: [100, 20, 0], b: [0, 200, 50], c: [30, 40, 500], patch: [100, 20, -300]}
@@ -109,7 +110,8 @@ TEST(Driven, WheelsHaveJacksOfTheirOwnNames) {
     EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[1]).name, "right.patch_jack");
 }
 
-// The plane's equation n_j · (p_i - p_j) = offset: i ahead of j along the axis is a positive displacement.
+// Plane constraint n_j · (p_i - p_j) = offset: positive displacement moves i along the axis
+// relative to j.
 TEST(Driven, DisplacementOfASlideIsThatOfItsFirstBodyAlongTheAxis) {
     const Scene scene = parsed(rig("  out: {drive: joints.slide, to: 30, steps: 3}"));
     const Joint& joint = joint_of(scene, scene.branches.at(0).drivers.at(0));
@@ -121,7 +123,8 @@ TEST(Driven, DisplacementOfASlideIsThatOfItsFirstBodyAlongTheAxis) {
     EXPECT_NEAR((drive.normal_j.u_local - Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-16);
 }
 
-// u_i · (cos α y_j - sin α x_j) = 0 holds when body i is turned by α about the axis as written, right-handed.
+// u_i · (cos α y_j - sin α x_j) = 0 holds after rotating body i by α about the axis as written,
+// right-handed.
 TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
     const std::pair<const char*, Vector3d> joints[] = {{"hinge", Vector3d(1, 2, -2) / 3},
                                                        {"tube", {0, 0, -1}}};
@@ -176,7 +179,7 @@ TEST(Driven, ElementsMoveByTheirFreeLengthOrPreload) {
     const auto& b = scene.branches;
     EXPECT_EQ(std::get<FreeLength>(b[0].drivers[0].what).elastic, 0);
     EXPECT_EQ(b[0].to, 0.02);
-    // P = k (ℓ₀ - ℓ): 200 N more are 200 / 40 = 5 mm more of free length.
+    // P = k (ℓ₀ - ℓ): 200 N more require 200 / 40 = 5 mm more free length.
     EXPECT_EQ(b[1].unit, ParameterUnit::newton);
     EXPECT_DOUBLE_EQ(b[1].drivers[0].rate * b[1].to, 0.005);
     EXPECT_EQ(std::get<Preload>(b[2].drivers[0].what).direction, Vector6(Vector6::Unit(1)));
@@ -222,7 +225,7 @@ TEST(Driven, LoadsHaveWeights) {
     EXPECT_EQ(scene.branches[0].unit, ParameterUnit::newton);
 }
 
-// ---- What is refused.
+// ---- Rejected input.
 
 const std::string allowed_here =
     "allowed: bushings.mount.preload.x, bushings.mount.preload.y, bushings.mount.preload.z, "
@@ -327,7 +330,7 @@ TEST(Limits, TooManyPositionsAreRefused) {
     EXPECT_EQ(complaint(chain(10'001, 1)), "rig.yaml:5: bodies: 10001 bodies; a scene has 10000 at most");
 }
 
-// ---- A branch that lost what it moves.
+// ---- Branches whose driven parts are removed by the reduction.
 
 std::string two_parts(const std::string& branches) {
     return R"(elastocheck: 1
@@ -412,17 +415,19 @@ TEST(Ways, OfAOneWayBranchAreOne) {
 TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
     const Scene scene =
         parsed(rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
-                   "  slide: {drive: joints.slide, to: 9, steps: 1}\n"  // behind a jack that is not there
+                   // in parallel with an inactive jack
+                   "  slide: {drive: joints.slide, to: 9, steps: 1}\n"
                    "  both: {drive: joints.slide, to: 9, steps: 1, hold: {travel: 0}}"));
     const Model model = compile(scene);
     ASSERT_EQ(model.joints.size(), 8U);
     for (const Branch& branch : model.branches) {
-        EXPECT_EQ(stands_on(model, branch), branch.name == "both") << branch.name;  // else not all of it does
+        // else some constraints are inactive
+        EXPECT_EQ(stands_on(model, branch), branch.name == "both") << branch.name;
         const Model here = on_branch(model, branch);
         EXPECT_TRUE(stands_on(here, branch)) << branch.name;
         ASSERT_EQ(here.branches.size(), 1U);
         EXPECT_EQ(here.branches[0].name, branch.name);
-        ASSERT_EQ(here.joints.size(), model.joints.size());  // reactions keep their places
+        ASSERT_EQ(here.joints.size(), model.joints.size());  // reactions keep their positions
         const int standing = branch.name == "load" ? 0 : branch.name == "both" ? 2 : 1;
         EXPECT_EQ(constraint_rows(here), constraint_rows(model) - 2 + standing) << branch.name;
         for (std::size_t k = 0; k < here.joints.size(); ++k) {
@@ -452,14 +457,14 @@ TEST(OnBranch, ATwoWayBranchIsNoneThatALegWalks) {
     for (const Branch& way : ways(model.branches[0])) EXPECT_TRUE(stands_on(on_branch(model, way), way));
 }
 
-// ---- The scenes that drive mechanisms: what their heads say meets their own constraints.
+// ---- Shipped mechanism scenes: the closed forms in their heads satisfy their constraints.
 
 Model shipped_on_first_branch(const std::string& name) {
     const Model model = compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml"));
     return on_branch(model, ways(model.branches.at(0)).back());
 }
 
-// The largest constraint of the model at these poses, its driver's joint moved by `value`.
+// Largest constraint value of the model at these poses, with its driven joint at `value`.
 double worst_constraint(const Model& model, const Poses& poses, double value) {
     const auto& motion = std::get<Motion>(model.branches.at(0).drivers.at(0).what);
     const int driven = model.joints.at(static_cast<std::size_t>(motion.joint)).driven;

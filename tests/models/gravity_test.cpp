@@ -1,4 +1,4 @@
-// Gravity: weights as static loads.
+// Gravity as static loads.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Every message about curves, stops, torsion springs, formulations and followers, word for word.
+// Exact error messages for curves, stops, torsion springs, formulations and followers.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -38,13 +38,14 @@ const std::string second = "; give a second one";
 const std::vector<Mistake> mistakes{
     // ---- curves
     {"CurveIsAList", spring_with("curve: [[0, 0], [1, 1]]"),
-     "11: springs.coil.curve: expected a map with the fields table, file, scale, offset, symmetric, outside, "
+     "11: springs.coil.curve: expected a map with the fields table, file, scale, offset, symmetric, "
+     "interpolation, outside, "
      "found a "
      "list of 2"},
     {"UnknownFieldOfCurve", curve("tabel: [[0, 0], [1, 1]]"),
      "11: springs.coil.curve: unknown field 'tabel', did you mean 'table'? allowed: table, file, scale, "
      "offset, "
-     "symmetric, outside"},
+     "symmetric, interpolation, outside"},
     {"CurveWithoutPoints", curve("scale: 2"), "11: springs.coil.curve: no points; allowed: table or file"},
     {"TableAndFile", curve(table + ", file: coil.csv"),
      "11: springs.coil.curve.file: given together with table; " + one_of_two},
@@ -127,7 +128,8 @@ const std::vector<Mistake> mistakes{
     {"StopThatTouchesLater", bump("clearance: 5, curve: {table: [[1, 0], [2, 20]]}"),
      "11: springs.coil.bump_stop.curve: the table of a stop begins with [0, 0], where it touches"},
     {"StopWithOffset", bump("clearance: 5, curve: {table: [[0, 0], [1, 20]], offset: 1}"),
-     "11: springs.coil.bump_stop.curve: unknown field 'offset'; allowed: table, file, scale, outside"},
+     "11: springs.coil.bump_stop.curve: unknown field 'offset'; allowed: table, file, scale, interpolation, "
+     "outside"},
     {"StopTooFar", bump("clearance: 1e20, curve: {table: [[0, 0], [1, 20]]}"),
      "11: springs.coil.bump_stop.clearance: '1e20' is so large that rows of the curve fall together"},
     {"StopsWithoutAny", stops("from: p, to: t"), "11: stops.axle: no stop; allowed: bump, rebound"},
@@ -264,7 +266,7 @@ TEST(WrongDrive, OfWhatCannotBeDrivenSaysWhy) {
     }
 }
 
-// The twin of a stop is an element of its own, too.
+// The twin of a stop is also a named element.
 TEST(WrongMirror, MakesNoTwoElementsOfOneName) {
     const std::string text =
         "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\nmirror: left -> right\n"

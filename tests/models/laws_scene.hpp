@@ -1,4 +1,4 @@
-// A scene around the elements that a test writes.
+// Fixture: a scene around given elements.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace elastocheck {
 
-// `elements` are whole sections. The body `arm` has its origin in o; p is 50 mm from o along x, t is 400 mm above it.
+// `elements` are whole sections. The body `arm` has its origin at o; p is 50 mm from o along x, t
+// 400 mm above.
 inline std::string laws_scene(const std::string& elements,
                               const std::string& units = "length: mm, angle: deg, force: N",
                               const std::string& branch = "load: push, to: 10, steps: 1") {
@@ -35,7 +36,7 @@ inline std::string spring_with(const std::string& fields) {
     return "springs:\n  coil: {bodies: [arm, ground], from: p, to: t, " + fields + "}";
 }
 
-// A section of every kind that a curve may stand in.
+// A section of every kind that may contain a curve.
 inline const std::string every_law =
     spring_with(
         "curve: {table: [[-50, -900], [0, 0], [50, 1400]], scale: 1.1, offset: 2}, preload: 300, "

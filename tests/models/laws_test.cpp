@@ -1,5 +1,5 @@
-// Elements beyond linear rates: stops, torsion springs, bushings with curves and formulations, followers; their twins,
-// names and drivers.
+// Elements with other than linear rates, their twins, names and drivers.
+// Stops, torsion springs, bushings with curves and formulations, followers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(Stops, StandBetweenAnyTwoPoints) {
     }
 }
 
-// The same table as a spring's whose deflection is the penetration.
+// The law equals a spring's with the same table over the penetration.
 TEST(Stops, HaveCurvesOfPenetration) {
     const std::string table = "curve: {table: [[0, 0], [10, 900], [20, 4000], [25, 9000]], scale: 1.5}";
     const auto g = curve_of(laws(spring_with(table)), "coil");
@@ -81,7 +81,7 @@ TEST(Stops, MayBeClosedAtTheDesignPosition) {
     EXPECT_EQ(design_force(element<AxialSpring>(scene, "coil.rebound_stop")), 0);
 }
 
-// Open they are known as far as anything moves, whatever is known of them closed.
+// The open range of a stop is unbounded even if its closed range is bounded.
 TEST(Stops, AreKnownWhereTheyAreOpen) {
     const std::string curve = ", curve: {table: [[0, 0], [10, 900], [20, 4000]], outside: unknown}}";
     const Scene scene = laws(
@@ -193,7 +193,7 @@ TEST(BushingUndeformed, IsAnOffsetOfSix) {
     EXPECT_LE((mount.undeformed - expected).norm(), 1e-16);
 }
 
-// One axis of the frame is enough where nothing across it says otherwise.
+// One axis of the frame suffices if the law is symmetric about it.
 TEST(BushingFrame, OfOneAxisMayHaveCurvesAlongIt) {
     EXPECT_NO_THROW(laws(bushing_with(
         "frame: {z: [1, 2, 3]}, rates: [7, 7, 0], rotational_rates: [2, 2, 0], curves: {z: {table: "
@@ -294,9 +294,10 @@ Scene mirrored_axle() {
                        "axle.yaml");
 }
 
-// What a careful hand writes on the right: polar vectors S v, axial ones -S v; a frame of two axes S a, S b has a third
-// one of the other sign, and so what counts along an axis keeps its sign on x and y, rotations turn theirs on x and y.
-// The axis of a torsion spring is turned as an axial vector, so that its law and preload stay as they are.
+// The mirrored entries written by hand: polar vectors S v, axial ones -S v. A frame of two axes S
+// a, S b has a third axis of opposite sign, so that translations keep their sign along x and y, and
+// rotations change theirs about x and y. The axis of a torsion spring is mirrored as an axial
+// vector, so that its law and preload are unchanged.
 const std::string right_by_hand = R"(static_loads:
   drag_right: {on: arm_right, at: t_right, force: [1, -2, 3], follows: true}
   curl_right: {on: arm_right, moment: [-1, 2, -3], follows: true}
@@ -321,7 +322,7 @@ Scene axle_by_hand() {
     return parse_scene(axle_top + axle_ends + axle_middle + right_by_hand + end, "axle.yaml");
 }
 
-// The generalised force of a bushing's law and preload on the deformation e told in ground axes.
+// Generalised force of a bushing's law and preload for the deformation e given in ground axes.
 Vector6 force_in_ground(const Bushing& b, const Vector6& ground_e) {
     const Eigen::Matrix3d A = b.i.A_local.toRotationMatrix();
     Vector6 e;
@@ -369,7 +370,8 @@ TEST(MirroredLaws, AreThoseWrittenByHand) {
               std::get<FollowerMoment>(load(by_hand, "curl_right")).m_local);
 }
 
-// Equal values are a symmetric motion, so they preload the twin as the same value does one written with its axis turned.
+// Equal driver values are a symmetric motion, so they preload the twin like an entry with a
+// mirrored axis.
 TEST(MirroredLaws, AreDrivenAsThoseWrittenByHand) {
     const auto moment = [](const Scene& scene) -> Vector3d {
         const Driver& driver = scene.branches.at(0).drivers.back();
@@ -424,7 +426,8 @@ TEST(SpringCurve, IsDrivenByItsFreeLength) {
     EXPECT_EQ(scene.branches[0].to, 0.01);
 }
 
-// ---- What compile() makes of them: a body that hangs on one other is left out unless something there is loaded.
+// ---- Reduction by compile(): a body attached to one other is removed unless it has a loaded
+// element.
 
 std::size_t bodies_kept(const std::string& elements) {
     std::string text = laws_scene(

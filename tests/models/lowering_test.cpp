@@ -1,6 +1,6 @@
-// A joint, lowered, forbids what its name says and nothing else: for bodies anywhere in any orientation, its
-// constraints hold at the design pose, stay satisfied along its own motions however large, and are as many as
-// they are independent.
+// Lowering of joints to constraints.
+// For bodies with any poses the constraints hold at the design pose, remain satisfied along the
+// joint's own motions of any size, and are linearly independent.
 #include "models/lowering.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +46,8 @@ Pose moved(const Pose& pose, const Motion& motion, double amount) {
     return {centre + turn * (pose.r - centre), (turn * pose.p).normalized()};
 }
 
-// Φ_q of one body for infinitesimal shifts and turns about its origin, by central differences [m × 6].
+// Φ_q of one body for infinitesimal displacements and rotations about its origin, by central
+// differences [m × 6].
 Eigen::MatrixXd jacobian(const std::vector<ConstraintKind>& constraints, const Poses& poses,
                          std::size_t body) {
     const double h = 1e-5;
@@ -67,7 +68,7 @@ Eigen::Index rank(const Eigen::MatrixXd& J) {
     return (singular_values.array() > 1e-6).count();
 }
 
-// ---- One joint of every kind at a place in ground axes, with what it leaves free to body i.
+// ---- One joint of every kind at a place in ground axes, with the free motions of body i.
 
 struct Place {
     BodyId i, j;
@@ -90,7 +91,7 @@ struct Lowered {
     const char* name;
     JointKind kind;
     int rows;
-    std::vector<Motion> freedoms;  // of body i, in an order in which they may follow each other
+    std::vector<Motion> freedoms;  // of body i, in an order in which they can be combined
 };
 
 std::vector<Lowered> all_joints(const Place& at) {
@@ -100,7 +101,7 @@ std::vector<Lowered> all_joints(const Place& at) {
     const Turn about_u{at.p, at.u}, about_v{at.p, at.v}, about_w{at.p, at.w};
     const Shift along_u{at.u}, along_v{at.v}, along_w{at.w};
     const Vector3d rod = at.other - at.p;
-    // The rotation about the rod itself is one for both of its ends.
+    // The rotation about the rod is the same for both of its ends.
     const Turn about_a{at.p, rod.unitOrthogonal()}, about_b{at.p, rod.cross(rod.unitOrthogonal())},
         about_rod{at.p, rod};
     const Turn around_a{at.other, about_a.axis}, around_b{at.other, about_b.axis};
@@ -130,8 +131,8 @@ std::vector<Lowered> all_joints(const Place& at) {
     };
 }
 
-// Calls check(place, joint) for every joint between two bodies,
-// a body and ground, and ground and a body, in many places.
+// Calls check(place, joint) for every joint between two bodies, body and ground, and ground and
+// body, at many random places.
 template <class Check>
 void sweep(Check check) {
     Random random;
@@ -209,7 +210,7 @@ TEST(Lowering, AllowsTheJointsOwnMotionsHoweverLarge) {
     });
 }
 
-TEST(Lowering, ListsIndependentMotionsOnly) {  // a test of the table above: the freedoms are all there are
+TEST(Lowering, ListsIndependentMotionsOnly) {  // checks that the table above lists all freedoms
     sweep([&](const Place& place, const Lowered& joint, const auto&, const Poses& design) {
         if (place.i == ground || joint.freedoms.empty()) return;
         const Pose& pose = design[static_cast<std::size_t>(place.i)];

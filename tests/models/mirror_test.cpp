@@ -1,4 +1,4 @@
-// A scene that mirrors itself is the one that a careful hand would have written for both sides.
+// A mirrored scene equals the same scene with both sides written by hand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -131,8 +131,8 @@ const auto& named(const List& list, const std::string& name) {
     throw std::out_of_range(name);
 }
 
-// An angle about an axis: x_j and y_j are any pair across it, so only the axis and the angle between u_i and x_j say
-// something.
+// x_j and y_j of an angle are an arbitrary pair perpendicular to the axis: only the axis and the
+// angle between u_i and x_j are significant.
 bool is_gauge(const std::string& what) {
     return what.find(".drive.") != std::string::npos && what.find("u_local") != std::string::npos;
 }
@@ -156,8 +156,8 @@ TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
     EXPECT_EQ(named(scene.hardpoints, "ball_right").position, Vector3d(-0.021, -0.94, -0.174));
 }
 
-// Equal angles on both sides are a symmetric motion: a point p of the left arm turned about the left axis is the mirror
-// image of S p turned by the same angle about the right one.
+// Equal angles on both sides are a symmetric motion: a point p of the left arm rotated about the
+// left axis is the mirror image of S p rotated by the same angle about the right one.
 TEST(Mirror, EqualDrivesAreASymmetricMotion) {
     const Scene scene = parsed(axle_scene);
     const auto axis = [&](const char* name) {
@@ -176,8 +176,8 @@ TEST(Mirror, EqualDrivesAreASymmetricMotion) {
     EXPECT_LE((drive_axis("arm_right.drive") - axis("arm_right")).norm(), 1e-15);
 }
 
-// In ground axes a translational stiffness C = A K A' (a polar pair) becomes S C S, however its frame is chosen; so does
-// a preload, S f, or a moment, -S m.
+// In ground axes a translational stiffness C = A K A' (of polar vectors) becomes S C S for any
+// choice of frame; a preload becomes S f, a moment -S m.
 TEST(Mirror, ReflectsABushingInGroundAxes) {
     const Scene scene = parsed(axle_scene);
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();

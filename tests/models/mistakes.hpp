@@ -1,4 +1,4 @@
-// One change to a sound text, one complaint, word for word.
+// Fixture: one change to a valid text and the exact error message.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace elastocheck {
 
 struct OneMistake {
     std::string right;    // occurs once in the text
-    std::string wrong;    // what stands there instead
+    std::string wrong;    // its replacement
     std::string message;  // after "scene.yaml:LINE: "
 };
 

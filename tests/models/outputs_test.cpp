@@ -1,4 +1,4 @@
-// What is read off a scene and acts on nothing: steering axes, dampers, the vehicle.
+// Outputs of a scene without effect on the mechanics: steering axes, dampers, the vehicle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ TEST(Vehicle, IsInTheUnitsOfTheScene) {
     EXPECT_EQ(parsed(replaced(strut, "axle: rear", "axle: front")).vehicle->axle, Axle::front);
 }
 
-// What acts on nothing is set like anything else.
+// Numbers of outputs can be set like all others.
 TEST(Outputs, TheirNumbersCanBeSet) {
     const Scene scene = parsed(strut);
     for (const char* path :
@@ -102,7 +102,7 @@ TEST(Outputs, OfAModelAreThoseOfItsScene) {
     }
 }
 
-// A damper's end on a body that is fixed to ground is on ground: it needs no body that cannot move.
+// A damper's end on a body merged into ground is on ground, and does not prevent the merge.
 TEST(Outputs, AnEndOfADamperDoesNotKeepABodyFromBeingGround) {
     const Scene scene = parsed(
         replaced(replaced(replaced(strut, "rod: {origin: top}}", "rod: {origin: top}, frame: {origin: top}}"),
@@ -173,7 +173,7 @@ TEST(Outputs, SayWhatIsWrong) {
           "vehicle: unknown field 'wheel_base', did you mean 'wheelbase'? allowed: wheelbase, cg_height, "
           "axle, "
           "brake_share, drive_share"}});
-    // A stop is no spring: it has no output of this name.
+    // A stop has no output of this name.
     EXPECT_EQ(complaint_of(replaced(strut, "{damper: {bodies", "{coil.bump_stop: {bodies")), "none");
 }
 

@@ -1,4 +1,4 @@
-// What compile() condenses: bodies fixed to each other, links with two balls, parts within one body, duplicates.
+// Model reduction by compile(): merged bodies, links, parts within one body, duplicates.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// ---- Scenes in a few words. Bodies a, b, c, ... stand anyhow, each turned its own way; a is the output.
+// ---- Small scenes. Bodies a, b, c, ... have arbitrary poses; a is the output.
 
 Scene bodies(int count) {
     Scene scene;
@@ -34,7 +34,7 @@ Scene bodies(int count) {
     return scene;
 }
 
-// What stands at p, or along u, in ground axes, as a part of the body.
+// A point at p, or a direction along u, in ground axes, as a part of the body.
 Point at(const Scene& scene, BodyId body, const Vector3d& p) {
     const Pose pose = reduce::design(scene, body);
     return {body, pose.p.conjugate() * (p - pose.r)};
@@ -86,7 +86,7 @@ std::string names(const List& list) {
     return names;
 }
 
-// Where everything of the scene is, in ground axes, by name.
+// Positions and directions of all parts in ground axes, by name.
 std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
     std::map<std::string, std::vector<Vector3d>> result;
     std::vector<Vector3d>* list = nullptr;
@@ -139,7 +139,8 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
     return result;
 }
 
-// A part of every kind on bodies b and c, which are fixed to each other and to d by a chain of welds.
+// All kinds of parts on bodies b and c, which a chain of Fixed joints connects to each other and to
+// d.
 Scene welded() {
     Scene s = bodies(5);
     const Vector3d p(0.3, -0.2, 0.5), q(1, 0.4, 0.2), n(1, 1, 3);
@@ -293,7 +294,7 @@ TEST(WithinOneBody, WhatIsStrainedOrDrivenOrTurnsStays) {
 
 // ---- Links.
 
-// a hangs on a spring and is tied to ground by link b.
+// a has a spring, and link b connects it to ground.
 Scene linked() {
     Scene s = bodies(2);
     s.joints = {{"outer", ball(s, 0, 1, Vector3d(0.1, 0, 0))},
@@ -318,7 +319,7 @@ TEST(Link, WithTwoBallsIsADistanceOfItsName) {
         (Reasons{{"body 'b'", "a link with a ball at each end and no load: it is the distance joint 'b'"},
                  {"joint 'outer'", "an end of body 'b'; its reaction is no output, that of joint 'b' is"},
                  {"joint 'inner'", "an end of body 'b'; its reaction is no output, that of joint 'b' is"}}));
-    // 6 coordinates and 6 rows for 1 row: the spin about its own axis is gone.
+    // The link's 6 coordinates and 6 rows become 1 row: its spin is removed.
     EXPECT_EQ(model.as_written, (Size{2, 3, 1, 3 + 3 + 5}));
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
 }
@@ -369,7 +370,7 @@ TEST(Link, WithAnythingToSayStays) {
 
 TEST(Link, TakesANameThatIsFree) {
     Scene own = linked();
-    own.joints[0].name = "b";  // goes with the link
+    own.joints[0].name = "b";  // name of the removed link
     const Model model = compile(own);
     EXPECT_EQ(names(model.joints), "b root");
     EXPECT_EQ(left_out(model).count("joint 'b'"), 0U);
@@ -480,7 +481,7 @@ TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
     EXPECT_EQ(s.joints.size(), 2U);
 }
 
-// ---- All of it.
+// ---- All passes together.
 
 TEST(Detail, EverythingKeepsAllThatIsWritten) {
     Scene scene = linked();

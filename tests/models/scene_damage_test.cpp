@@ -1,4 +1,4 @@
-// Whatever happens to the text of a scene, the reader returns a scene of finite numbers or throws SceneError.
+// Fuzz test: for any damaged scene text the reader returns a finite scene or throws SceneError.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace elastocheck {
 namespace {
 
-// What the scenes below do without: beams, tyres, trim, gravity, torsion springs with a mirror.
+// Parts missing in the other scenes: beams, tyres, trim, gravity, torsion springs with a mirror.
 const std::string car_scene = R"(elastocheck: 1
 name: car
 units: {length: mm, angle: deg, force: kN}
@@ -50,7 +50,7 @@ wheels:
   left: {body: hub_left, centre: hub_left, contact_patch: road_left, spin_axis: y, side: left}
 )";
 
-// Every field there is stands in one of these; the families in models/scenes/ would only repeat them, at length.
+// These texts contain every field; the scenes in models/scenes/ would only add run time.
 std::vector<std::string> sound_texts() {
     std::vector<std::string> texts{bench_scene, axle_scene, laws_scene(every_law), car_scene};
     for (const char* name : {"arch_driven", "pendulum"})
@@ -64,7 +64,7 @@ struct Tally {
     double slowest = 0;  // [s]
 };
 
-// Reads a damaged text and compiles what comes out; the slowest reading is kept.
+// Reads and compiles a damaged text; records the slowest read.
 void read_damaged(const std::string& text, Tally& tally) {
     const auto begin = std::chrono::steady_clock::now();
     try {
@@ -143,13 +143,13 @@ TEST(DamagedScene, WithBytesOverwritten) {
     report(tally);
 }
 
-// What has a meaning in YAML or in a scene does more damage than any byte.
-// Prose, in which a number is none.
+// Characters with a meaning in YAML or in a scene are the most damaging ones.
+// Lines of prose, whose numbers are not numbers of the scene.
 bool contains_comment_or_name(const std::string& line) {
     return line.find('#') != std::string::npos || line.starts_with("name:");
 }
 
-// Where a number stands: no letter, digit, point or sign touches it.
+// Positions of numbers: not adjacent to a letter, digit, point or sign.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
     static const std::regex number(R"([-+]?\d+\.?\d*(e[-+]?\d+)?(?![\w.]))");
     std::vector<std::pair<std::size_t, std::size_t>> places;
@@ -224,7 +224,7 @@ TEST(DamagedScene, OfNothingButOneToken) {
     report(tally);
 }
 
-// Ten references to ten references to ...: two gigabytes if they were followed.
+// Nested aliases ("billion laughs"): two gigabytes if they were expanded.
 TEST(DamagedScene, WithABillionLaughs) {
     std::string text = "a0: &a0 ha\n";
     for (int n = 1; n < 10; ++n) {

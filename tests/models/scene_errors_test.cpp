@@ -1,4 +1,4 @@
-// Every message of the scene reader, word for word: one change to a sound scene, one complaint.
+// Exact messages of the scene reader: one change to a valid scene, one message.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -16,7 +16,7 @@ const char* const whole_text = nullptr;
 struct Mistake {
     const char* name;
     const char* right;    // occurs once in the bench scene; or whole_text
-    std::string wrong;    // what stands there instead
+    std::string wrong;    // its replacement
     std::string message;  // after "bench.yaml:"
 };
 

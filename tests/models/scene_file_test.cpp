@@ -1,4 +1,4 @@
-// What the reader understands: the shipped scenes, the ways to write a thing, and files as such.
+// Scene reader: the shipped scenes, alternative notations, and file handling.
 #include "models/reader/scene_file.hpp"
 
 #include <gtest/gtest.h>
@@ -195,7 +195,7 @@ TEST(Readme, ItsExampleIsAScene) {
     EXPECT_EQ(scene.elastics.size(), 5U);
 }
 
-// Those of curves and stops are sections in place of, or beside, those of the first.
+// Later examples replace or extend sections of the first.
 TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
     std::ifstream file(fs::path(ELASTOCHECK_SCENES) / "README.md");
     std::vector<std::string> blocks;
@@ -223,8 +223,7 @@ TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
 
 // ---- Units.
 
-// A scene with something of everything; `L`, `A` stand for what a number in metres or radians is multiplied
-// by.
+// A scene with all kinds of parts; `L`, `A` are the factors of numbers in metres and radians.
 std::string scene_in(const std::string& length, const std::string& angle, const std::string& force = "N",
                      const std::string& moment = "") {
     const double L = length == "mm" ? 1000 : 1;        // per m
@@ -313,7 +312,8 @@ TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
     EXPECT_DOUBLE_EQ(K_of(full)(5, 5), 2100);
     expect_near(element<Bushing>(scene, "rates").preload, (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
     expect_near(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 7, 0), 1e-15);
-    // The factor of `mixed` is a force: the moment per newton is a length. That of `moment` is a moment.
+    // `mixed` is driven by a force, so its moment per newton is a length. `moment` is driven by a
+    // moment.
     EXPECT_EQ(scene.branches[1].to, -2000);
     EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f, Vector3d(0.6, 0, 0.8));
     expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m, Vector3d(0.1, 0, 0.2),
@@ -345,7 +345,7 @@ TEST(Units, OneMomentServesBothKindsOfBranch) {
     EXPECT_EQ(moment(mm, 1), Vector3d(4, 0, 0));
 }
 
-// ---- Ways to write a thing.
+// ---- Alternative notations.
 
 TEST(Numbers, AreReadInAllTheirSpellings) {
     const std::pair<const char*, double> spellings[] = {{"28e3", 28e3},
@@ -460,7 +460,7 @@ TEST(Joint, EveryTypeGetsItsPointsAndDirections) {
         expect_same(scene, expected, 4e-16);
         seen[kind.index()] = true;
     }
-    seen[JointKind(Angle{}).index()] = true;  // the drive of a joint, never one by itself
+    seen[JointKind(Angle{}).index()] = true;  // the drive of a joint, never a joint by itself
     EXPECT_EQ(seen, std::vector<bool>(seen.size(), true));
 }
 
@@ -558,8 +558,8 @@ std::string bench_with(const Matrix6& K, const UnitsOfText& units) {
     return replaced(bench_with(written(K, units)), "length: mm, angle: deg, force: N", units.text);
 }
 
-// V Vᵀ with V [6 × rank]: what a bushing computed elsewhere may be like. Its zero eigenvalues come out as
-// ±1e-16. Whatever the units, the same 6×6 is accepted, or refused.
+// V Vᵀ with V [6 × rank], like a bushing matrix computed elsewhere. Its zero eigenvalues are
+// ±1e-16. The same 6×6 is accepted or rejected in all units.
 TEST(Stiffness, IsJudgedAlikeInAllUnits) {
     std::mt19937 random(6);
     std::normal_distribution<double> normal;
@@ -576,8 +576,9 @@ TEST(Stiffness, IsJudgedAlikeInAllUnits) {
     }
 }
 
-// The congruence with D = diag(√N/mm ..., √N·mm/deg ...) has √(N/mm · N·mm/deg) = N/√deg in its off-diagonal blocks,
-// where N/deg is written: turning deg into rad raises the coupling against the diagonal by √57.3.
+// The congruence with D = diag(√N/mm ..., √N·mm/deg ...) has √(N/mm · N·mm/deg) = N/√deg in its
+// off-diagonal blocks, where N/deg is written: converting deg to rad increases the coupling
+// relative to the diagonal by √57.3.
 TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
     Matrix6 K = Matrix6::Identity();
     K.topLeftCorner<3, 3>() *= 1e6;

@@ -1,4 +1,4 @@
-// All that a scene says, as labelled numbers: to compare two scenes, and to see that every number is finite.
+// All values of a scene as labelled numbers, to compare scenes and to check for NaN.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Numbers of a scene by name: which there are, and that they can be varied.
+// Settings: the named numbers of a scene can be listed and varied.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -73,7 +73,8 @@ TEST(Settings, NamesMayHaveDots) {
     EXPECT_NO_THROW(with({{"probes.t.i.p.at", "side"}}, text));
 }
 
-// Each number of a scene can be set to what it is, and to something else that then is what the scene has.
+// Each listed number can be set to its own value, and to another value that then appears in the
+// scene.
 TEST(Settings, ReachEveryNumberThatASceneLists) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES))

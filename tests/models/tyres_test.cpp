@@ -1,4 +1,4 @@
-// Tyres: a vertical rate under the contact patch, and the road that moves it.
+// Tyres: a vertical rate at the contact patch, and the road height as driver.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +50,8 @@ const Bushing& tyre(const Scene& scene, const std::string& name) {
     return std::get<Bushing>(found->kind);
 }
 
-// With which the tyre pushes the wheel up when the patch has risen by z and the road by h, in a branch that drives it.
+// Upward force of the tyre for a rise z of the patch and h of the road, on a branch that drives the
+// road.
 double push(const Scene& scene, const Driver& driver, double z, double h) {
     const auto& road = std::get<Preload>(driver.what);
     const auto& b = std::get<Bushing>(scene.elastics.at(static_cast<std::size_t>(road.elastic)).kind);

@@ -1,7 +1,10 @@
-// Random scenes by the thousand, by every leg and method: hunt --count 20000 --seed 1 --workers 2 --found DIR.
+// Property-based stress test: random scenes solved by every leg and method.
 //
-// Each worker is a process, so that a crash or a scene that takes for ever is told with the seed that made it, and the
-// rest goes on. Exit code 1 where anything is wrong.
+//   hunt --count 20000 --seed 1 --workers 2 --found DIR
+//
+// `--family driven` selects scenes whose branches drive lengths and jacks. Each worker is a
+// process, so that a crash or a time-out is reported with its seed and the run continues. Exit code
+// 1 if any result is wrong, or a scene crashes or times out.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
@@ -28,6 +31,8 @@ namespace {
 
 using namespace elastocheck;
 
+compare::Family family = compare::Family::any;  // of all scenes of the run
+
 double cpu_seconds() {
     rusage used{};
     ::getrusage(RUSAGE_SELF, &used);
@@ -37,11 +42,11 @@ double cpu_seconds() {
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-// ---- The child: a line a solver, through the pipe.
+// ---- Child process: writes one line per result to the pipe.
 
 std::string line(std::uint64_t seed, const std::string& solver, const std::string& verdict,
-                 const std::string& outcome, const std::string& why) {
-    return fmt::format("{}\t{}\t{}\t{}\t{}\n", seed, solver, verdict, outcome, why);
+                 const std::string& outcome, const std::string& why, int reactions = 0) {
+    return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\n", seed, solver, verdict, outcome, reactions, why);
 }
 
 std::string judged(std::uint64_t seed, const Scene& scene) {
@@ -50,13 +55,14 @@ std::string judged(std::uint64_t seed, const Scene& scene) {
     for (const auto& cell : compare::stress({&trial, 1}, {.threads = 1}).cells)
         lines +=
             line(seed, cell.solver, compare::name(cell.verdict), elastocheck::name(cell.outcome),
-                 fmt::format("{}: {}{}{}", cell.way, cell.why, cell.why.empty() ? "" : "; ", cell.detail));
+                 fmt::format("{}: {}{}{}", cell.way, cell.why, cell.why.empty() ? "" : "; ", cell.detail),
+                 cell.reactions);
     return lines;
 }
 
 std::string judged(std::uint64_t seed) {
     try {
-        return judged(seed, parse_scene(compare::random_scene(seed), "random.yaml"));
+        return judged(seed, parse_scene(compare::random_scene(seed, family), "random.yaml"));
     } catch (const SceneError& error) {
         return line(seed, "reader", "refused", "", error.what());
     } catch (const std::exception& error) {
@@ -77,11 +83,13 @@ std::string judged(std::uint64_t seed) {
     std::_Exit(0);
 }
 
-// ---- The parent.
+// ---- Parent process.
 
 struct Tally {
-    std::map<std::string, std::map<std::string, int>> table;  // solver, verdict or honest outcome
-    std::vector<std::string> wrong;                           // one a line
+    // by solver; then by verdict, or by outcome for a failure that was reported as such
+    std::map<std::string, std::map<std::string, int>> table;
+    std::vector<std::string> wrong;  // one message each
+    long reactions = 0;              // judged reactions: each of one joint, point and solver
     double seconds = 0, slowest = 0;
     std::uint64_t slowest_seed = 0;
     std::ofstream log;
@@ -93,10 +101,10 @@ struct Tally {
         std::fflush(stdout);
         if (!found.empty())
             std::ofstream(fmt::format("{}/seed-{}.yaml", found, seed)) << "# " << what << "\n"
-                                                                       << compare::random_scene(seed);
+                                                                       << compare::random_scene(seed, family);
     }
-    void take(const std::array<std::string, 5>& told) {
-        const auto& [seed, solver, verdict, outcome, why] = told;
+    void take(const std::array<std::string, 6>& told) {
+        const auto& [seed, solver, verdict, outcome, known, why] = told;
         if (log.is_open()) log << fmt::format("{}\n", fmt::join(told, "\t"));
         if (verdict == "done") {
             const double took = std::stod(outcome);
@@ -105,13 +113,14 @@ struct Tally {
             return;
         }
         ++table[solver][verdict == "honest" ? outcome : verdict];
+        reactions += std::stol(known);
 
         if (verdict == "wrong" || verdict == "thrown")
             fail(std::stoull(seed), fmt::format("seed {}: {}: {} {}", seed, solver, verdict, why));
     }
 };
 
-// One worker's share of the seeds; after a crash it goes on behind the seed that made it.
+// One worker process and its seeds; after a crash it is restarted at the next seed.
 struct Worker {
     std::uint64_t next = 0, end = 0, stride = 1;
     int limit = 0;
@@ -131,13 +140,13 @@ struct Worker {
         ::close(ends[1]);
         in = ::fdopen(ends[0], "r");
     }
-    // What it says of its next seed; false when there is no more.
+    // Reads the worker's results for its next seed; false if no seed is left.
     bool step(Tally& tally) {
         char* text = nullptr;
         std::size_t size = 0;
         while (::getline(&text, &size, in) > 0) {
             std::istringstream split(std::string(text, std::string(text).find_last_not_of('\n') + 1));
-            std::array<std::string, 5> told;
+            std::array<std::string, 6> told;
             for (auto& field : told) std::getline(split, field, '\t');
             tally.take(told);
             if (told[2] != "done") continue;
@@ -176,11 +185,14 @@ int main(int argc, char** argv) {
     app.add_option("--limit", limit, "CPU seconds that a scene may take");
     app.add_option("--found", tally.found, "folder for the scenes that fail");
     app.add_option("--log", log, "file for every answer, one a line");
+    app.add_option("--family", family, "any, or driven: lengths and jacks on elastic freedom")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, compare::Family>{
+            {"any", compare::Family::any}, {"driven", compare::Family::driven}}));
     app.add_option("--print", print, "only prints the scene of this seed");
     app.add_option("--scene", scene, "only this file");
     CLI11_PARSE(app, argc, argv);
     if (print > 0) {
-        fmt::print("{}", compare::random_scene(print));
+        fmt::print("{}", compare::random_scene(print, family));
         return 0;
     }
     if (!scene.empty()) {
@@ -204,7 +216,7 @@ int main(int argc, char** argv) {
         for (const auto& [verdict, number] : verdicts) fmt::print("  {} {}", number, verdict);
         fmt::print("\n");
     }
-    fmt::print("{} scenes, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} wrong\n", count, tally.seconds,
-               tally.slowest_seed, tally.slowest, tally.wrong.size());
+    fmt::print("{} scenes, {} reactions judged, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} wrong\n",
+               count, tally.reactions, tally.seconds, tally.slowest_seed, tally.slowest, tally.wrong.size());
     return tally.wrong.empty() ? 0 : 1;
 }

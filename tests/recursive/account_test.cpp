@@ -1,4 +1,5 @@
-// What points say of themselves: a bound that holds, and is no excuse; a stiffness that is gone where the branch is.
+// A-posteriori error bounds of path points hold and are tight.
+// The remaining stiffness vanishes at the end of the branch.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-// The worst of what is asked of bounds, of one leg or method.
+// Worst result over the error bounds of one leg or method.
 struct Judged {
     int points = 0, unbounded = 0;
     double tightest = 0;  // error over bound: 1 at most
@@ -25,7 +26,7 @@ struct Judged {
     std::string where;
 };
 
-// Of bodies that no idle mode moves: what it leaves open is no error.
+// Bodies that no idle mode moves; the bound does not cover idle modes.
 std::vector<bool> resisted(const Diagnosis& diagnosis, std::size_t bodies) {
     std::vector<bool> still(bodies, true);
     for (std::size_t b = 0; b < bodies; ++b)
@@ -125,9 +126,9 @@ TEST(Account, BoundsHoldOnRandomScenes) {
     print(all);
 }
 
-// ---- The stiffness that is left.
+// ---- Remaining stiffness.
 
-// Of the arch of two springs, which only goes up and down: F'(z) over F'(z₀).
+// The arch of two springs, which moves only vertically: F'(z) over F'(z₀).
 double arch_stiffness(double z) {
     const double l = std::hypot(0.3, z), l_0 = std::hypot(0.3, 0.08);
     return 2e5 * (1 - l_0 / l + l_0 * z * z / (l * l * l));
@@ -152,7 +153,7 @@ TEST(Account, TellsTheStiffnessThatIsLeftOfAnArch) {
     judge("series", solve(model, branch, {.method = *find_method("series"), .account = true}));
 }
 
-// Past the limit point, which a path by arc length passes, it is negative.
+// A path by arc length continues past the limit point; there the stiffness is negative.
 TEST(Account, StiffnessIsNegativePastALimitPoint) {
     Model model = compile(support::scene("two_spring_arch"));
     Branch& branch = model.branches[0];
@@ -170,8 +171,8 @@ TEST(Account, StiffnessIsNegativePastALimitPoint) {
     EXPECT_GT(negative, 5);
 }
 
-// Two modes that become unstable at once leave the determinant as it was: a bar on a ball joint, with one torsion
-// spring for both ways to fall.
+// Two modes that become unstable at once leave the sign of the determinant unchanged: a bar on a
+// ball joint, with the same torsional rate in both directions.
 TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: any way\nunits: {length: m, angle: rad, force: N}\n"
@@ -197,7 +198,8 @@ TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
     EXPECT_EQ(reference::energy::solve(model, branch, every_point(branch)).outcome, Outcome::dividing_point);
 }
 
-// Newton's method comes to rest where two links that contradict each other stay open: at no equilibrium, and on no branch.
+// Newton's method may converge between two inconsistent links that stay open: no equilibrium, on no
+// branch.
 TEST(Account, WhereTheFirstPointHasNoBoundNothingIsPromised) {
     const Model model = compile(parse_scene(R"(
 elastocheck: 1
@@ -222,7 +224,7 @@ probes: {tip: {on: bob, at: tip}}
     }
 }
 
-// Without being asked nobody gives account.
+// Error bounds are computed only on request.
 TEST(Account, IsGivenWhereItIsAsked) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];

@@ -1,5 +1,5 @@
-// The stepping loop allocates nothing: a run of a thousand steps asks for memory as often as one of ten. Nor
-// does an expansion of the series.
+// The stepping loop and the series expansion allocate no memory.
+// A run of a thousand steps has as many allocations as one of ten.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// Every allocation of this program passes here, operator new and Eigen's included.
+// Counts every allocation of this program, including operator new and Eigen's.
 extern "C" {
 void* __libc_malloc(std::size_t);  // NOLINT: glibc's own
 void* malloc(std::size_t size) {
@@ -29,8 +29,8 @@ void* malloc(std::size_t size) {
 namespace elastocheck::recursive {
 namespace {
 
-// A stop in parallel with every spring, every bushing another formulation with curves for a third of its axes, and
-// a load that follows.
+// Adds a stop in parallel with every spring, gives every bushing another formulation with curves
+// for a third of its axes, and adds a follower load.
 Scene with_curves(Scene scene) {
     Random random;
     const auto formulations = every_formulation();

@@ -1,4 +1,4 @@
-// Φ and Φ_q, eqs. (1), (6)-(7).
+// Constraint functions Φ and their Jacobian Φ_q, eqs. (1), (6)-(7).
 #include "recursive/constraints.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,8 @@ TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
             for (auto& pose : poses) pose = {move.r + move.p * pose.r, move.p * pose.p};
             const Vector<double> after =
                 constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
-            // Coincidence is written in ground axes: its three rows turn, their length stays.
+            // Coincidence is written in ground axes: its three rows rotate, their norm is
+            // unchanged.
             if (std::holds_alternative<CoincidentPoints>(model.constraints.front().kind))
                 EXPECT_NEAR(before.head<3>().norm(), after.head<3>().norm(), 1e-13);
             else

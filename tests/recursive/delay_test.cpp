@@ -1,4 +1,5 @@
-// The limit of methods that turn stored forces one step late, known before it is met.
+// Stability limit of methods that rotate stored forces with one step's delay.
+// The limit is predicted before the run.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +24,7 @@ TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
         for (const Method& method : methods) {
             const auto limit = stability_limit(model, branch, method, analysis);
             ASSERT_EQ(limit.has_value(), std::holds_alternative<Linear>(method.kind)) << method.name;
-            // `balanced` has the turning of the bushing's own moment to bear as well.
+            // In `balanced` the bushing's own moment is delayed as well.
             if (method.name == "balanced") {
                 EXPECT_LT(std::abs(*limit), pendulum_limit);
             } else {
@@ -60,8 +61,9 @@ TEST(Delay, BelowItsLimitThereIsNone) {
         EXPECT_FALSE(stability_limit(model, branch, methods[0], analyse(model)).has_value());
 }
 
-// A bar that hangs from its hinge on a torsion spring, drawn down by its weight P at L: T K_G = P L / k. With a hinge away
-// from the body's origin the same is said by the curvature of the joint and its reaction.
+// A bar hanging from its hinge on a torsion spring, with its weight P at L: T K_G = P L / k. With
+// the hinge away from the body's origin, the curvature of the joint and its reaction give the same
+// value.
 TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
     for (const char* origin : {"[0, 0, 0]", "[0.1, 0, 0.3]"}) {
         const Model model = compile(parse_scene(
@@ -88,12 +90,13 @@ TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
         const auto limit = stability_limit(model, model.branches[0], methods[0], analysis);
         ASSERT_TRUE(limit.has_value());
         EXPECT_NEAR(*limit, 200, 1e-6);
-        // Pressed, what turns late is negative: that is the branch's end, no fault of the method.
+        // Under compression the delayed stiffness is negative: the branch ends, the method is
+        // stable.
         EXPECT_FALSE(stability_limit(model, model.branches[1], methods[0], analysis).has_value());
     }
 }
 
-// What levers and axes leave of an element's own tangent is together all of it.
+// The lever and axis parts of an element's geometric tangent add up to the whole.
 TEST(Delay, LeversAndAxesTogetherAreEverything) {
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Branch& branch = model.branches[0];

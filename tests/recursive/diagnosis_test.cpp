@@ -1,4 +1,4 @@
-// Rank, redundancy, idle modes: what the design position tells.
+// Diagnosis at the design position: rank, redundancy, idle modes, condition number.
 #include "recursive/diagnosis.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
               "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount', moves no output");
 }
 
-// Two links between ball joints carry a block that slides: told together, as a person would.
+// Two links between ball joints carry a sliding block: their spins are reported together.
 TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
     const std::string begin =
         "elastocheck: 1\nname: links\nunits: {length: m, angle: rad, force: N}\n"
@@ -96,7 +96,8 @@ TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
 }
 
 TEST(Diagnosis, ThreeIdleModesOfABodyAreAllFound) {
-    // A spherical joint alone leaves three rotations; the spring along the bar does not resist any of them.
+    // A spherical joint alone leaves three rotations; the spring along the bar resists none of
+    // them.
     const auto d =
         diagnose(compile(bar("joints: {pin: {type: spherical, bodies: [bar, ground], at: a}}\n"
                              "springs: {s: {bodies: [bar, ground], from: b, to: a, rate: 1000}}\n"
@@ -150,8 +151,8 @@ TEST(Diagnosis, OnlyJointsThatShareADependencyAreUndetermined) {
 }
 
 TEST(Diagnosis, ASoftDirectionIsNotIdleInATurnedFrame) {
-    // Rates of 1e12 beside 100, at an angle to the ground and to the body, as a diagonal of the turned frame
-    // and as a full matrix of the straight one.
+    // Rates of 1e12 beside 100, at an angle to the ground and to the body, as a diagonal of the
+    // rotated frame and as a full matrix of the unrotated one.
     const Eigen::Matrix3d R(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()));
     for (const bool full : {false, true}) {
         Scene scene;
@@ -191,10 +192,10 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
     EXPECT_NEAR(diagnose(compile(scene)).imbalance, 50, 1e-9);
 }
 
-// Nothing is told of a rank that no number has; whoever walks says where there is none.
+// With a NaN in the model no rank is computed; the methods report the failure.
 TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
     const double none[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                           1e300};  // whose square is beyond all numbers
+                           1e300};  // its square overflows
     for (const double bad : none) {
         Scene joint = support::scene("mcpherson"), element = joint, body = joint;
         std::get<Distance>(joint.joints[2].kind).i.s_local.y() = bad;
@@ -235,7 +236,7 @@ TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {
     }
 }
 
-// ---- Against dense matrices, which tell the same of small scenes.
+// ---- Comparison with dense matrices on small scenes.
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -257,7 +258,8 @@ int dense_rank(const MatrixXd& rows) {
     return static_cast<int>(qr.rank());
 }
 
-// Of every joint, by ranks of all rows up to it; and which joints the projector on all dependencies couples.
+// Redundancy of every joint by ranks of all rows up to it; and which joints the projector on all
+// dependencies couples.
 void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& what) {
     const MatrixXd Phi_q = dense_rows(model, d.length);
     EXPECT_EQ(d.rank, dense_rank(Phi_q)) << what;
@@ -302,7 +304,8 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     EXPECT_EQ(d.determined, determined) << what;
     EXPECT_EQ(d.redundant_sets, sets) << what;
 
-    // As many directions as the matrix is short of, none of them the same, and the matrix knows none.
+    // The null space has the dimension of the rank deficiency, independent columns, and zero
+    // product with the matrix.
     SaddleMatrix<double> M = saddle_matrix(model);
     VectorXd Phi(d.rows);
     assemble<double>(model, inputs_as_drawn<double>(model), design_state<double>(model), M, Phi);
@@ -327,7 +330,8 @@ TEST(Diagnosis, IsTheDenseOneOnEveryBuiltInScene) {
 }
 
 TEST(Conditioning, IsThatOfTheDenseSingularValuesOnEveryBuiltInScene) {
-    // In long double: a matrix of 1e15 as it stands leaves the smallest singular value no digit in double.
+    // In long double: an unscaled condition number of 1e15 leaves the smallest singular value no
+    // digit in double.
     using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
@@ -345,15 +349,15 @@ TEST(Conditioning, IsThatOfTheDenseSingularValuesOnEveryBuiltInScene) {
         };
         EXPECT_LE(std::abs(found.equilibrated / kappa(scaled) - 1), 1e-6) << name;
         const double expected = kappa(raw);
-        // What rounding of its largest entries leaves open.
+        // Tolerance by rounding of the largest entries.
         EXPECT_LE(std::abs(found.raw / expected - 1), std::max(1e-6, 1e-16 * expected))
             << name << " " << expected;
     }
 }
 
-// ---- Scenes that a program writes.
+// ---- Generated scenes.
 
-// Bodies one after the other, each with its origin where it is joined to the next.
+// A chain of bodies, each with its origin at its joint with the next.
 Scene row_of_bodies(int n, const std::function<Vector3d(int)>& at) {
     Scene scene;
     for (int k = 0; k < n; ++k)
@@ -377,7 +381,7 @@ Bushing mount(const Scene& scene, BodyId i, BodyId j, const Vector3d& p, const V
 const Vector6<double> all_round = (Vector6<double>() << 1e6, 1e6, 1e6, 1e3, 1e3, 1e3).finished();
 const Vector6<double> about_z = (Vector6<double>() << 0, 0, 0, 0, 0, 1e3).finished();
 
-// Hinges with springs about them, every other one across.
+// Hinges with torsional springs, every other one with another axis.
 Scene chain_of_hinges(int n, bool in_a_plane) {
     Scene scene = row_of_bodies(n, [&](int k) -> Vector3d {
         return {0.1 * (k + 1), 0.03 * (k % 3), in_a_plane ? 0.0 : 0.02 * (k % 5)};
@@ -410,7 +414,7 @@ TEST(Diagnosis, AChainOfTwoThousandBushingsHasNoIdleMode) {
         scene.elastics.push_back(
             {"k" + std::to_string(b), mount(scene, b, b - 1, place(scene, b - 1), all_round)});
     EXPECT_TRUE(diagnose(compile(scene, Detail::everything)).idle.empty());
-    // Without a rate about the row, half-way: what is beyond turns about it as one.
+    // Without a rate about the chain halfway along it, the rest rotates about the chain as one.
     scene.elastics[1000].kind = mount(scene, 1000, 999, place(scene, 999),
                                       (Vector6<double>() << 1e6, 1e6, 1e6, 0, 1e3, 1e3).finished());
     const auto d = diagnose(compile(scene, Detail::everything));
@@ -421,7 +425,8 @@ TEST(Diagnosis, AChainOfTwoThousandBushingsHasNoIdleMode) {
 }
 
 TEST(Diagnosis, TheJointThatClosesALoopOfTwoThousandIsTheOneThatRepeats) {
-    // In a plane three of the five rows of the last hinge say what the others say; out of it they hold.
+    // In a plane three of the five rows of the last hinge are dependent; out of the plane they are
+    // independent.
     for (const double tilt : {0.0, 1e-6}) {
         Scene scene = chain_of_hinges(2000, true);
         const Vector3d end = place(scene, 1999) + Vector3d(0.1, 0.05, 0);
@@ -442,7 +447,7 @@ TEST(Diagnosis, TheJointThatClosesALoopOfTwoThousandIsTheOneThatRepeats) {
     }
 }
 
-// Loops of four hinges standing on each other: rows of every loop's last hinge repeat, and nothing else's.
+// A tower of four-hinge loops: only the last hinge of every loop has dependent rows.
 Scene tower(int loops) {
     Scene scene = row_of_bodies(3 * loops, [](int k) -> Vector3d {
         return {k % 3 == 1 ? 0.1 : 0.0, 0.1 * (k / 3 + 1), 0};
@@ -500,7 +505,7 @@ TEST(Diagnosis, AGridOfBallsHasTheJointThatIsThereTwice) {
 }
 
 TEST(Diagnosis, AThousandLinksThatSpinAreAModeOfOneBodyEach) {
-    // On one frame: a body with a thousand others on it.
+    // A body with a thousand others on it.
     Scene scene = row_of_bodies(1001, [](int k) -> Vector3d { return {0.01 * k, 0.5, 0.001 * (k % 7)}; });
     scene.elastics.push_back({"frame", mount(scene, 0, ground, place(scene, 0), all_round)});
     for (BodyId b = 1; b <= 1000; ++b) {

@@ -1,4 +1,4 @@
-// Branches that drive more than loads: exact geometry, closed forms, and two routes to one state.
+// Branches with drivers other than loads: exact geometry and closed forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "models/compile.hpp"
 #include "models/reader/scene_file.hpp"
 #include "recursive/solve.hpp"
+#include "recursive/watch.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -18,7 +19,7 @@ using Eigen::Vector3d;
 Body body(const char* name, const Vector3d& r) { return {name, {r, Eigen::Quaterniond::Identity()}}; }
 Point on_ground(const Vector3d& p) { return {ground, p}; }
 
-// A branch of one driver, and the model as it stands there.
+// A branch with one driver, and the model active on it.
 struct Driven1 {
     Model model;
     Branch branch;
@@ -38,7 +39,8 @@ Method rung(const char* name) { return *find_method(name); }
 Method adaptive(double tolerance) { return {"adaptive", 3, Adaptive{tolerance, tolerance}}; }
 bool steps_or_adapts(const Method& method) { return !std::holds_alternative<Series>(method.kind); }
 
-// ---- Mechanisms without elasticity: a crank about y, driven through a full turn by its angle, x towards -z.
+// ---- Mechanisms without elasticity: a crank about y, driven through a full turn by its angle, x
+// towards -z.
 
 constexpr double crank_length = 0.1, full_turn = 2 * 3.14159265358979323846;
 const Direction y_axis{ground, Vector3d::UnitY()};
@@ -78,7 +80,7 @@ double worst_slider(const EquilibriumPath& path) {
 TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
     const Driven1 d = slider_crank(360);
     EXPECT_LE(worst_slider(run(d, adaptive(1e-12), 36)), 1e-12 * 0.4);
-    // Each rung's error at a point is that of its last step: the order of one step.
+    // The error at a point is that of the method's last step: the order of one step.
     for (const auto& [name, order] :
          {std::pair{"closed", 2.0}, {"tangent", 2.0}, {"chord", 3.0}, {"midpoint", 3.0}}) {
         const double coarse = worst_slider(run(d, rung(name), 360, 36)),
@@ -103,7 +105,7 @@ TEST(Driver, AStepOfHalfATurnOrAWholeOneIsNotTakenForNone) {
 
 TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
     const Driven1 d = slider_crank(360);
-    // Over a whole turn the leading term comes back to zero: the worst of the way counts.
+    // Over a whole turn the leading term vanishes, so the worst point of the branch is tested.
     const auto error = [&](int steps) {
         double worst = 0;
         for (const auto& point : run(d, rung("published"), steps, 8).points)
@@ -144,7 +146,7 @@ TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
     EXPECT_LE(worst, 1e-12 * base);
 }
 
-// ---- Elastic scenes lifted by a jack.
+// ---- Elastic scenes on a jack.
 
 Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, double to, int steps) {
     Scene with = scene;
@@ -183,7 +185,7 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
     const auto force = [&](double z) {
         return 2 * k * (std::hypot(half_span, z) - free) * z / std::hypot(half_span, z);
     };
-    // What the published sum converges to: ∫ 2k ζ²/(b² + ζ²) dζ, the springs' axes of their time.
+    // Limit of the published sum: ∫ 2k ζ²/(b² + ζ²) dζ, with the spring axes of each step.
     const auto turned_nothing = [&](double z) {
         return 2 * k * (z - height - half_span * (std::atan(z / half_span) - std::atan(height / half_span)));
     };
@@ -201,7 +203,7 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
         }
         work *= d.branch.to / 400 / 3;
         const double stretch = std::hypot(half_span, height + d.branch.to) - free;
-        // In newtons of 2.6 kN; what a method's λ lags behind by is its order.
+        // In newtons of 2.6 kN; the lag of a method's λ has the method's order.
         const bool exact = method.name == "chord" || method.name == "adaptive";
         EXPECT_LE(worst, exact ? 1e-5 : method.formal_order > 1 ? 0.1 : 5) << method.name;
         if (exact) {
@@ -210,7 +212,7 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
     }
 }
 
-// ---- Elements as drivers, closed forms: exact for every method, since nothing turns.
+// ---- Elements as drivers, closed forms: exact for every method, since nothing rotates.
 
 Scene carriage() {
     Scene scene;
@@ -256,7 +258,8 @@ TEST(Driver, PreloadPullsABushingBackByItsRate) {
 }
 
 TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
-    // A pinned bar whose rod is drawn too short, a jack that begins 30 mm up: every method begins there.
+    // A pinned bar whose rod is drawn too short, and a jack with its start at 30 mm: every method
+    // starts there.
     const Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
     const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
@@ -281,7 +284,7 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
     }
 }
 
-// ---- Scenes that broke something.
+// ---- Regression scenes.
 
 Model found(const std::string& name) {
     return compile(
@@ -314,8 +317,78 @@ TEST(Found, AdaptiveEndsAtTheLimitPointOfTheArch) {
     }
 }
 
-// Bars upright on ball joints under a dead weight, one beyond its buckling load in both planes at once, so that the sign of
-// the determinant is that of a stable one; and others that are much softer and stable, which are what inverse iteration sees.
+// ---- Stability lost inside a branch and regained before its end.
+
+// `copies` of a body between two springs, which are compressed as it moves through the line between
+// their ends; all copies have the same load. The body is unstable sideways while the springs are
+// shorter than ℓ = ℓ_d / (1 + k_y / 2k), and stable before and after.
+Model bubbles(double k_y, double to, int copies = 1) {
+    std::string bodies, joints, springs, bushings, loads, load;
+    for (int k = 0; k < copies; ++k) {
+        bodies += fmt::format("  a{0}: {{origin: apex}}\n", k);
+        joints += fmt::format(
+            "  o{0}: {{type: parallel, bodies: [a{0}, ground], axis: x}}\n"
+            "  p{0}: {{type: in_plane, bodies: [a{0}, ground], at: apex, normal: x}}\n",
+            k);
+        springs += fmt::format(
+            "  l{0}: {{bodies: [a{0}, ground], from: apex, to: l, rate: 100}}\n"
+            "  r{0}: {{bodies: [a{0}, ground], from: apex, to: r, rate: 100}}\n",
+            k);
+        bushings += fmt::format(
+            "  k{0}: {{bodies: [ground, a{0}], at: apex, rates: [0, {1}, 20], rotational_rates: [10, 10, "
+            "10]}}\n",
+            k, k_y);
+        loads += fmt::format("  v{0}: {{on: a{0}, at: apex, force: [0, 0, 1]}}\n", k);
+        load += fmt::format("{}v{}: 1", k == 0 ? "" : ", ", k);
+    }
+    return compile(
+        parse_scene(fmt::format("elastocheck: 1\nname: bubble\nunits: {{length: mm, angle: deg, force: N}}\n"
+                                "points: {{l: [-300, 0, 0], r: [300, 0, 0], apex: [0, 0, 80]}}\n"
+                                "bodies:\n{}joints:\n{}springs:\n{}bushings:\n{}loads:\n{}"
+                                "branches: {{d: {{load: {{{}}}, to: {}, steps: 20}}}}\n"
+                                "probes: {{apex: {{on: a0, at: apex}}}}\n",
+                                bodies, joints, springs, bushings, loads, load, to),
+                    "bubble.yaml"));
+}
+
+// Load [N] at which the body of bubbles() becomes unstable; NaN if k_y keeps it stable.
+double bubble_begins(double k_y) {
+    const double drawn = std::hypot(300, 80), length = drawn / (1 + k_y / 200),
+                 z = std::sqrt(length * length - 300 * 300);
+    return 20 * (z - 80) + 200 * (1 - drawn / length) * z;
+}
+
+TEST(Watch, AStretchOfInstabilityEndsEveryMethodWithStepsWhereItBegins) {
+    for (const double k_y : {6.5, 6.8, 6.9, 6.95, 6.97, 6.98, 6.985, 6.988})
+        for (const double to : {-3200., -2500., -2100., -4100., -8000.})
+            for (const int copies : {1, 2}) {
+                const Model model = bubbles(k_y, to, copies);
+                const auto event = watch(model, model.branches[0], analyse(model));
+                ASSERT_TRUE(event) << k_y << " " << to << " " << copies;
+                EXPECT_NEAR(event->load, bubble_begins(k_y), 1e-4 * std::abs(to))
+                    << k_y << " " << to << " " << copies;
+            }
+    const Model model = found("bubble");
+    for (const auto& method : methods) {
+        if (!has_steps(method)) continue;
+        const auto path = solve(model, model.branches[0], {.method = method, .steps = 20});
+        EXPECT_NE(path.outcome, Outcome::converged) << method.name;
+        EXPECT_GE(path.points.back().load, bubble_begins(6.95)) << method.name;
+    }
+}
+
+TEST(Watch, AStretchThatStaysStableIsNoEvent) {
+    for (const double k_y : {6.99, 7.0, 7.1, 7.5})
+        for (const double to : {-3200., -2500., -8000.})
+            for (const int copies : {1, 2}) {
+                const Model model = bubbles(k_y, to, copies);
+                EXPECT_FALSE(watch(model, model.branches[0], analyse(model))) << k_y << " " << to;
+            }
+}
+
+// Six upright bars on ball joints with rotational bushings. A dead weight on the first buckles it
+// in both planes at once, so that the sign of the determinant does not show the instability. The
+// other bars are much softer and stable, and inverse iteration converges to their modes.
 std::string upright_bars(double weight) {
     std::string points, bodies, joints, bushings, loads;
     for (int k = 0; k < 6; ++k) {
@@ -359,7 +432,8 @@ void expect_followed(const std::string& scene) {
     }
 }
 
-// What rounding leaves of stiff elements and joints is more than the springs of a chain that is free as drawn, and stable.
+// Rounding of stiff elements and joints exceeds the springs of a chain that is free as drawn, and
+// stable.
 TEST(Start, ThatIsSoftBesideStiffElementsIsNotCalledUnstable) {
     expect_followed(R"(
 elastocheck: 1
@@ -413,8 +487,9 @@ probes:
 )");
 }
 
-// A thrust that turns with its body, above what a dead one could be and below what makes the links flutter: the symmetric part
-// of its K is negative, and says nothing, however little of the whole the other part is.
+// A follower thrust above the buckling load of a dead force and below the flutter load of the links
+// (Ziegler). The symmetric part of its K is negative but does not decide stability, however small
+// the other part is.
 TEST(Start, UnderAThrustThatFollowsIsNotJudgedAsIfItHadAnEnergy) {
     expect_followed(R"(
 elastocheck: 1
@@ -450,8 +525,9 @@ probes:
 }
 
 TEST(Found, AnUnstableStretchIsSeenFromAnyStepsOfItsOwn) {
-    // A body on a vertical slide through a ring of springs that push it sideways off its axis: unstable near
-    // the ring. Adaptive takes as many steps as it needs, not as many as points are asked for.
+    // A body on a vertical slide through a ring of springs that push it sideways off its axis:
+    // unstable near the ring. Adaptive takes the steps it needs, independent of the requested
+    // number of points.
     const Model model = found("adaptive-segfault-arch");
     for (const int points : {1, 5, 20, 60}) {
         const auto path = solve(model, model.branches[0], {.method = adaptive(1e-5), .steps = points});

@@ -1,4 +1,4 @@
-// Stiffness, eqs. (8)-(20), and the law behind it.
+// Element stiffness, eqs. (8)-(20), and the force laws.
 #include "recursive/elastic.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ Vector<double> force_of(const Model& model, const State<double>& q) {
     return elastic_force<double>(model, inputs_as_drawn<double>(model), q);
 }
 
-// The configuration in which the element's markers coincide, at a random place.
+// A random configuration in which the element's markers coincide.
 State<double> assembled(const Bushing& b, Random& random) {
     const Pose i = b.i.body == ground ? Pose{} : random.pose();
     const Eigen::Quaterniond A_j = i.p * b.i.A_local * b.j.A_local.conjugate();
@@ -50,7 +50,7 @@ State<double> assembled(const Bushing& b, Random& random) {
     return state_of<double>({i, j});
 }
 
-// The energies of models/mechanism.hpp, written anew.
+// The energies of models/mechanism.hpp, written independently.
 double energy(const ElasticKind& kind, const State<double>& q) {
     const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
     if (const auto* e = std::get_if<AxialSpring>(&kind)) {
@@ -99,7 +99,7 @@ TEST(Stiffness, RigidMotionGivesNoForce) {
     }
 }
 
-// The matrix as printed in the paper, with its sign turned.
+// The matrix as printed in the paper, with the opposite sign.
 Matrix<double> printed_equation_19(const ElementStiffness<double>& e) {
     const Matrix3<double> K_T = e.K.topLeftCorner<3, 3>(), K_R = e.K.bottomRightCorner<3, 3>();
     const Matrix3<double> si = tilde<double>(e.s_i), sj = tilde<double>(e.s_j);
@@ -159,7 +159,7 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
             random_bushing(0, ground, random),
             AxialSpring{{0, random.vector()}, {1, random.vector()}, LinearRate{3e4}, 0.3}};
         for (const auto& kind : kinds) {
-            // Markers within 2.5 rad of each other: the law ends at π.
+            // Markers within 2.5 rad of each other: the rotation vector is singular at π.
             State<double> q = random.state(2);
             if (const auto* b = std::get_if<Bushing>(&kind)) {
                 const Eigen::Quaterniond target = random.rotation(2.5);
@@ -201,7 +201,7 @@ TEST(ElasticForce, IsRegularWhereTheRotationVanishes) {
         EXPECT_TRUE(f.allFinite());
         EXPECT_LE((f - f0).cwiseAbs().maxCoeff(), 1e-9 + 1e7 * angle) << angle;
     }
-    // On both sides of where the series takes over.
+    // On both sides of the switch to the series.
     for (const double t : {0.99 * std::sqrt(1e-3), 1.01 * std::sqrt(1e-3)}) {
         const Vector3d theta = t * random.unit();
         const Matrix3<double> inverse = inverse_left_jacobian<double>(theta);

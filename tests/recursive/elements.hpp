@@ -1,16 +1,17 @@
-// Laws and formulations for tests: random curves, stops, every formulation that a leg meets.
+// Laws and formulations for tests: random curves, stops, all formulations of a bushing.
 #pragma once
 
 #include "tests/recursive/random.hpp"
 
 namespace elastocheck::recursive {
 
-// No force before x = clearance, the rate behind.
+// Zero force before x = clearance, constant rate behind.
 inline Curve stop(double clearance, double rate) {
     return {{clearance}, {{0, 0, 0, 0}, {0, rate, 0, 0}}, true};
 }
 
-// Continuous, of five knots within ± reach, its slope jumping at each of them; forces of the size `force`.
+// Continuous curve with five knots within ± reach, a kink at each of them, and forces of the size
+// `force`.
 inline Curve random_curve(Random& random, double reach, double force) {
     Curve f;
     for (int k = 0; k < 5; ++k) f.knots.push_back(reach * (-1 + 0.4 * k + random(0.05, 0.35)));
@@ -28,7 +29,7 @@ inline Curve random_curve(Random& random, double reach, double force) {
     }
     return f;
 }
-// Curves and rates by turns.
+// Curves and rates alternate.
 inline PerAxis random_axes(Random& random) {
     PerAxis law;
     for (std::size_t k = 0; k < 6; ++k) {

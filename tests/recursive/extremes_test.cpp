@@ -1,5 +1,5 @@
-// Where a number cannot be right every method says so: joints that nearly repeat or contradict each other, laws that end,
-// points next to a limit point.
+// Ill-posed scenes give an outcome instead of a wrong number.
+// Nearly redundant or inconsistent joints, limits of the laws, points next to a limit point.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
     }
 }
 
-// A bob on a ball, and a link from its middle to the ground that is longer than the two are apart.
+// A bob on a ball joint, and a link from its middle to ground that is longer than their distance.
 Model linked(double apart, const std::string& more = "") {
     return compile(parse_scene(
         fmt::format(
@@ -78,8 +78,8 @@ TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
     }
 }
 
-// The lever of models/extremes/over_centre, whose limit point is at 63.3413 N: the expansions before it are short, and a
-// rounding of the load is more than one of their reach.
+// The lever of models/extremes/over_centre has its limit point at 63.3413 N. The expansions before
+// it are short, and rounding of the load exceeds the range of some.
 TEST(Extremes, NoPointOfASeriesIsMissingNextToALimitPoint) {
     const auto lever = [](double to) {
         return compile(parse_scene(
@@ -108,7 +108,8 @@ TEST(Extremes, NoPointOfASeriesIsMissingNextToALimitPoint) {
     EXPECT_GT(converged, 30);
 }
 
-// A slider that its load pulls through the point where its spring ends: there the force turns over at once.
+// A load pulls a slider through the point where its spring has zero length: the force reverses at
+// once.
 TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: slider\nunits: {length: m, angle: rad, force: N}\n"
@@ -123,7 +124,8 @@ TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
             << method.name;
 }
 
-// A bar on a torsion spring that a moment turns: θ = M / k, up to half a turn, where the law of a rotation ends.
+// A moment rotates a bar on a torsion spring: θ = M / k, up to half a turn, the limit of the
+// rotation vector.
 TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
     for (const double to : {300., 320.}) {
         const Model model = compile(parse_scene(
@@ -141,7 +143,7 @@ TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
     }
 }
 
-// A row that can be of no body is in no loop of joints but its own.
+// A row without moving bodies forms a loop of its own.
 TEST(Extremes, ALinkBetweenWhatIsFixedIsHeldAtItsLengthAndAtNoOther) {
     const Model model = compile(parse_scene(R"(
 elastocheck: 1
@@ -172,7 +174,8 @@ probes: {tip: {on: bob, at: tip}}
     }
 }
 
-// A rod on a ball at the end of a mount, loaded along itself: nothing resists its turning as drawn.
+// A rod on a ball joint at the end of a mount, loaded along its axis: nothing resists its rotation
+// as drawn.
 Model rod(const std::string& held, double to) {
     return compile(parse_scene(fmt::format(R"(
 elastocheck: 1
@@ -198,7 +201,7 @@ TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
             << method.name;
         const auto falls = solve(pushed, pushed.branches[0], {.method = method, .account = true});
         EXPECT_EQ(falls.outcome, Outcome::dividing_point) << method.name << falls.detail;
-        EXPECT_LE(falls.points.size(), 1u) << method.name;  // there is none but the first
+        EXPECT_LE(falls.points.size(), 1u) << method.name;  // at most the first point
     }
 }
 
@@ -212,7 +215,7 @@ TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
         const auto none = solve(stands, stands.branches[0], {.method = method});
         EXPECT_EQ(none.outcome, Outcome::singular) << method.name;
         EXPECT_NE(none.detail.find("that settles at 0"), none.detail.npos) << method.name << none.detail;
-        // Hangs until the load has taken the weight from it, at 50 N.
+        // Hangs until the load exceeds its weight, at 50 N.
         const auto over = solve(falls, falls.branches[0], {.method = method});
         EXPECT_EQ(over.outcome, Outcome::dividing_point) << method.name << over.detail;
         ASSERT_FALSE(over.points.empty());

@@ -1,4 +1,4 @@
-// Laws, formulations and followers against the statements of models/mechanism.hpp, written anew.
+// Laws, formulations and followers against an independent implementation of models/mechanism.hpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using Long = long double;
 using Matrix3L = Matrix3<Long>;
 using Vector3L = Vector3<Long>;
 
-// ---- The energy, in long double.
+// ---- Energy in long double.
 
 Long f_of(const Curve& f, Long x) {
     std::size_t k = 0;
@@ -100,7 +100,7 @@ Bushing bushing(Random& random, const Formulation& formulation, bool curves) {
     b.formulation = formulation;
     return b;
 }
-// Two bodies somewhere, the second turned until B is the rotation by so much about any axis.
+// Two random poses with the relative rotation B by the given angle about a random axis.
 std::vector<Pose> somewhere(const Bushing& b, double angle, Random& random) {
     std::vector<Pose> poses{random.pose(), random.pose()};
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, random.unit()));
@@ -127,7 +127,8 @@ bool near_a_knot(const ElasticKind& kind, const State<double>& q) {
     return false;
 }
 
-// The largest difference between the force and the differences (order h⁴) of the energy, as a share of the force.
+// Largest difference between the force and finite differences (order h⁴) of the energy, relative to
+// the force.
 template <class Element>
 double gradient_error(const Element& element, const std::vector<Pose>& poses) {
     const Vector<Long> f = force_of<Long>(element, state_of<Long>(poses));
@@ -173,7 +174,7 @@ TEST(Law, OfACurveIsItsPolynomialAndTheDerivativeOfIt) {
 
 TEST(Law, HasKinksWhereTheSlopeJumps) {
     EXPECT_EQ(kinks_of(stop(0.03, 3e5)), std::vector<double>{0.03});
-    // x³ on one side of 0, nothing on the other: C1, and its curvature is continuous as well. x² is C1 only.
+    // x³ on one side of 0, zero on the other: C1, with continuous curvature. x² is C1 only.
     EXPECT_TRUE(kinks_of({{0, 1}, {{0, 0, 0, 0}, {0, 0, 1e5, 0}, {1e5, 2e5, 0, 0}}}).empty());
 }
 
@@ -217,7 +218,8 @@ TEST(Formulation, OfASpringWithACurveHasTheForcesOfItsEnergy) {
     EXPECT_GT(compared, 20);
 }
 
-// (F on i, M on i, F on j, M on j) of forces not conjugate, or without the moment of the offset, as stated.
+// (F on i, M on i, F on j, M on j) of non-conjugate forces, or without the moment of the offset, as
+// stated.
 TEST(Formulation, WithoutEnergyHasTheForcesAsStated) {
     Random random;
     for (const Formulation& formulation : every_formulation()) {
@@ -246,7 +248,7 @@ TEST(Formulation, OfAnyKindTurnsWithTheBodiesAndBalancesButForTheOffset) {
             const State<double> q = state_of<double>(poses);
             const Vector<double> f = force_of<double>(b, q);
             const double size = f.cwiseAbs().maxCoeff();
-            // Moved as a whole.
+            // Rigid motion of both bodies.
             const Eigen::Quaterniond R = random.rotation();
             const Vector3d t = random.vector();
             std::vector<Pose> moved = poses;
@@ -255,7 +257,7 @@ TEST(Formulation, OfAnyKindTurnsWithTheBodiesAndBalancesButForTheOffset) {
             for (int c = 0; c < 12; c += 3)
                 EXPECT_LE((turned.segment<3>(c) - R * f.segment<3>(c)).norm(), 1e-11 * size)
                     << name_of(formulation);
-            // Forces balance, and moments up to D × F where it is left out.
+            // Forces balance, and moments too, up to D × F where it is left out.
             const Vector3d F = f.segment<3>(6);
             const Vector3d D = q[1].r + q[1].lever(b.j.s_local) - q[0].r - q[0].lever(b.i.s_local);
             Vector3d left =
@@ -285,7 +287,7 @@ TEST(Formulation, OfAnyKindIsTheSameLawAtSmallDeformations) {
 }
 
 TEST(Formulation, OnJIsTheBushingTurnedRound) {
-    // Its energy told straight: d in the axes of j, the same rotation vector.
+    // The energy stated directly: d in the axes of j, the same rotation vector.
     Random random;
     for (const bool curves : {false, true})
         for (int trial = 0; trial < 10; ++trial) {

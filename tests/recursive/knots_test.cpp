@@ -1,4 +1,4 @@
-// Curves on the way: what is left of each rung's order where a step goes over a knot, and that `adaptive` lands there.
+// Convergence across knots of force curves, and event location in `adaptive`.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,8 +20,9 @@ using Eigen::Vector3d;
 
 Method rung(const char* name) { return *find_method(name); }
 
-// An arm of 1 m along x, hinged at the origin about y, on a spring of 20 kN/m (and whatever the curve adds along
-// the same line) from 0.6 m out on the arm to the ground 0.5 m below. A weight, up to -`to`, presses on its end.
+// An arm of 1 m along x, hinged at the origin about y, on a spring of 20 kN/m (plus the curve along
+// the same line) from 0.6 m out on the arm to the ground 0.5 m below. A load, up to -`to`, acts on
+// its end.
 struct Arm {
     Curve curve;
     double to = -1500;
@@ -48,7 +49,7 @@ struct Arm {
         scene.probes = {{"end", {0, {1, 0, 0}}}};
         return compile(scene);
     }
-    // What holds the arm at the angle φ about y less what presses it there: -∂V/∂φ, falling with the load.
+    // Moment about y on the arm at the angle φ: -∂V/∂φ, decreasing with the load.
     double imbalance(double phi, double load) const {
         const double x = out * std::cos(phi), z = -out * std::sin(phi);  // of the head
         const double length = std::hypot(x - out, z + below), stretch = length - below;
@@ -56,9 +57,9 @@ struct Arm {
         const double slope = ((x - out) * -out * std::sin(phi) + (z + below) * -out * std::cos(phi)) / length;
         return f * slope + load * std::cos(phi);  // ∂V/∂φ, V = u - load z_end, z_end = -sin φ
     }
-    // ... where it vanishes.
+    // Its zero, by bisection.
     double angle(double load) const {
-        double low = -0.9, high = 0.65;  // the spring's line goes through the hinge's level beyond
+        double low = -0.9, high = 0.65;  // beyond, the spring's line passes the level of the hinge
         const bool rises = imbalance(high, 0) > 0;
         for (int k = 0; k < 200; ++k) {
             const double middle = (low + high) / 2;
@@ -73,7 +74,7 @@ double angle_of(const Equilibrium& point) {
     return std::atan2(-end.z(), end.x());
 }
 
-// Errors of the angle: the worst of all points, and of the last.
+// Errors of the angle: the largest of all points, and the last.
 struct Errors {
     double worst = 0, last = 0;
 };
@@ -88,7 +89,7 @@ Errors errors(const Arm& arm, const Method& method, int steps) {
     }
     return e;
 }
-// A knot falls somewhere into a step: the worst over several step counts near one.
+// A knot lies anywhere within a step: the worst over several step counts near one.
 Errors errors_near(const Arm& arm, const Method& method, int steps) {
     Errors all;
     for (int more = 0; more < 8; ++more) {
@@ -100,29 +101,29 @@ Errors errors_near(const Arm& arm, const Method& method, int steps) {
 }
 
 const Arm none{Curve{{0}, {{0, 0, 0, 0}, {0, 0, 0, 0}}, true}};
-// Closes after 20 mm, five times as stiff as the spring beside it.
+// Closes after 20 mm, five times as stiff as the parallel spring.
 const Arm with_stop{reversed(stop(0.02, 100e3))};
-// Begins there as well, with its square: the curvature alone jumps.
+// Also starts at 20 mm, quadratically: only the curvature jumps.
 const Arm with_curve{
     reversed(Curve{{0.02, 0.2}, {{0, 0, 0, 0}, {0, 0, 1e6, 0}, {32400, 3.6e5, 0, 0}}, true})};
 
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
-    // The branch's own order, as the table in method.hpp says it, with nothing on the way ...
+    // Without a knot each method has the order in the table of method.hpp ...
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
         const Errors coarse = errors_near(none, method, 200), fine = errors_near(none, method, 400);
         EXPECT_NEAR(order(coarse.worst, fine.worst), method.formal_order, 0.05) << method.name;
     }
-    // ... and with a stop: the point behind the knot is off by what the step went too far.
+    // ... and with a stop the point behind the knot has the error of the overshoot.
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
         const Errors coarse = errors_near(with_stop, method, 400), fine = errors_near(with_stop, method, 800);
         EXPECT_NEAR(order(coarse.worst, fine.worst), 1, 0.1) << method.name;
         if (method.formal_order > 0) {
             EXPECT_NEAR(order(coarse.last, fine.last), method.formal_order, 0.05) << method.name;
-        } else {  // a sum carries it on
+        } else {  // a sum keeps the error
             EXPECT_GT(fine.last, fine.worst / 2) << method.name;
         }
     }
@@ -147,14 +148,15 @@ TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
             const auto path = solve(model, model.branches[0], {.method = method, .steps = 100});
             const Errors e = errors(arm, method, 100);
             EXPECT_LE(e.worst, tolerance) << name;
-            // Fourth order costs 10^¼ times as much for a tenth of the tolerance.
+            // A fourth-order method needs 10^¼ times as many steps for a tenth of the tolerance.
             EXPECT_LE(path.counts.factorisations, most * std::pow(1e-5 / std::min(tolerance, 1e-5), 0.25))
                 << name;
         }
 }
 
 TEST(Knots, AdaptiveWalksATableOfManyPoints) {
-    // f = 1000 sinh(20 x) told every 10 mm, with the slopes it has there: C1, and its curvature jumps.
+    // f = 1000 sinh(20 x) as a Hermite table every 10 mm with exact slopes: C1, and its curvature
+    // jumps.
     const auto at = [](double x) { return 1e3 * std::sinh(20 * x); };
     const auto slope = [](double x) { return 2e4 * std::cosh(20 * x); };
     Curve f;
@@ -192,7 +194,7 @@ TEST(Knots, AreNoMatterWhereTheBranchBegins) {
 }
 
 TEST(Knots, AreNoMatterOnTheWayToTheSettledState) {
-    // The weight stands on it as drawn: the stop closes while it settles.
+    // The weight acts as drawn: the stop closes while settling.
     for (const auto& method : methods) {
         if (std::holds_alternative<Series>(method.kind)) continue;
         const Arm arm = with_stop;
@@ -209,14 +211,16 @@ TEST(Knots, AreNoMatterOnTheWayToTheSettledState) {
 TEST(Knots, OfAnOpenStopLeaveNothingIdle) {
     Model model = with_stop.model();
     EXPECT_TRUE(diagnose(model).idle.empty());
-    model.elastics.erase(model.elastics.begin());  // it alone: the arm falls freely, and that is idle
+    // the stop alone: the arm rotates freely, an idle mode
+    model.elastics.erase(model.elastics.begin());
     EXPECT_EQ(diagnose(model).idle.size(), 1u);
     const auto path = solve(model, model.branches[0], {.method = rung("tangent"), .steps = 10});
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode);
 }
 
 TEST(Knots, WhereThePathTurnsBackEndIt) {
-    // Behind 20 mm the curve falls more steeply than the spring rises: the load there is the largest there is.
+    // Beyond 20 mm the curve falls more steeply than the spring rises: the load has its maximum
+    // there.
     const Arm arm{reversed(stop(0.02, -100e3))};
     const Model model = arm.model();
     const double phi = std::asin(0.02 / Arm::out);  // nearly: the spring leans a little
@@ -262,7 +266,8 @@ TEST(Follower, AtRightAnglesTurnsAnArmByForceTimesLeverOverRate) {
             if (std::holds_alternative<Series>(method.kind)) continue;
             const auto path = solve(model, model.branches[0], {.method = method, .steps = 300});
             ASSERT_EQ(path.outcome, Outcome::converged) << method.name << " " << path.detail;
-            // The moment about the hinge is constant in the arm, so that every linear step is exact.
+            // The moment about the hinge is constant in the arm's axes, so that every linear step
+            // is exact.
             for (const auto& point : path.points) {
                 const double turn = moment * point.load / rate;
                 EXPECT_NEAR(std::remainder(angle_of(point) - turn, 2 * std::numbers::pi), 0,

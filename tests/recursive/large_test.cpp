@@ -1,4 +1,4 @@
-// Models of hundreds of bodies: what they hold, and that they come out as the closed form says.
+// Models with hundreds of bodies: memory use, and agreement with closed forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@
 namespace elastocheck::recursive {
 namespace {
 
-// n bodies in a row along x, each on the one before by a bushing of rate k, the first on the ground; F pulls at the last.
+// A chain of n bodies along x, each on the one before by a bushing of rate k, the first on ground;
+// the force F acts on the last.
 constexpr double k = 1e6, F = 1e4, pitch = 0.1;
 Scene springs_in_series(int n) {
     std::string points = "  p0: [0, 0, 0]\n", bodies, bushings;
@@ -56,8 +57,8 @@ TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
     }
 }
 
-// Its matrix, rounded, answers to 1e-12 only: coefficients that are not corrected by their own equations bring the
-// expansions to a halt.
+// The rounded matrix solves to 1e-12 only. Without residual correction of the coefficients the
+// expansions would become arbitrarily short.
 TEST(Large, ALongLeafIsBentInFewExpansions) {
     using namespace support;
     const Model model = compile(
@@ -84,8 +85,8 @@ TEST(Large, MemoryOfTheFactorsGrowsAsTheChain) {
                            30));  // of every body: the triangles of its own block, and the next one's twice
 }
 
-// n carriers on bushings to the ground, side by side along y, each tied to the next by a rod with two balls, which is
-// free to spin about itself; a force on the first.
+// n carriers on bushings to ground, side by side along y, each connected to the next by a rod with
+// two balls, which spins freely; a force on the first.
 Scene carriers_and_rods(int n) {
     std::string points, bodies, bushings, joints;
     for (int i = 0; i < n; ++i) {
@@ -139,7 +140,7 @@ TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
     }
 }
 
-// A link on two hinges in one line: the second says all over again what the first does, five rows.
+// A link on two collinear hinges: the five rows of the second are redundant.
 std::string stiff_link(int at) {
     return fmt::format(
         "  l{}: {{type: revolute, bodies: [link{}, ground], at: q{}, axis: y}}\n"
@@ -177,7 +178,8 @@ TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
 }
 
 TEST(Large, LoopsAreWhatNoSingleBodyDivides) {
-    // ground - a - b - ground is a loop; c hangs on b, d and e go round from c; the ground divides them from f.
+    // ground - a - b - ground is a loop; c is attached to b; d and e form a loop with c; ground
+    // separates them from f.
     const char* text = R"(elastocheck: 1
 name: loops
 units: {length: m, angle: rad, force: N}

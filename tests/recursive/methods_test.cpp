@@ -1,4 +1,4 @@
-// The ladder: each rung's order to the truth, and where a rung must say no.
+// Order of convergence of the stepping methods, and outcomes where they must fail.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 Method rung(const char* name) { return *find_method(name); }
 bool sees_the_truth(const Method& method) { return !std::holds_alternative<Linear>(method.kind); }
 
-// Largest distance of any body's origin [m], or of the orientation of a body without an idle mode [rad], over
-// the recorded points. Along an idle mode nothing is determined.
+// Largest distance of any body's origin [m], or of the orientation of a body without an idle mode
+// [rad], over the recorded points. Along an idle mode the position is arbitrary.
 double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath& b) {
     EXPECT_EQ(a.points.size(), b.points.size());
     std::vector<bool> idle(model.bodies.size(), false);
@@ -33,7 +33,7 @@ double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath
     return worst;
 }
 
-// The branch to round-off: a rung of order 3 with many steps, whose residuals confirm that it is equilibrium.
+// Reference branch to round-off: a third-order method with many steps, checked by its residuals.
 EquilibriumPath truth(const Model& model, const Branch& branch) {
     auto path = solve(model, branch, {.method = rung("chord"), .steps = 12000, .record = 10});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -56,7 +56,7 @@ TEST(Methods, EachRungHasItsOrderToTheTruth) {
                         << name << " " << method.name << ": " << path.detail;
                     return apart(model, path, exact);
                 };
-                // Fine enough for the leading term to lead, coarse enough to stay above round-off.
+                // Fine enough for the asymptotic order, coarse enough to stay above round-off.
                 const int steps = method.formal_order == 2 ? 4000 : method.formal_order == 3 ? 500 : 1000;
                 const double coarse = error(steps), fine = error(2 * steps);
                 if (fine < 1e-11) continue;
@@ -120,7 +120,8 @@ TEST(Methods, AdaptiveTakesFewSolvesForHundredsOfPoints) {
 }
 
 TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
-    // Gap attribution starts from the published sum; with all three terms its limit is equilibrium.
+    // Gap attribution starts from the published sum; with all three terms its limit is the true
+    // equilibrium.
     const Model model = compile(support::scene("bushing_pair"));
     const auto exact = truth(model, model.branches[0]);
     Method method;
@@ -131,8 +132,8 @@ TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
 }
 
 TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
-    // With hardly any steps a rung may be rough or say no. Those that see the true residual refuse what is
-    // off by more than half the motion; the others cannot know, but stay within twice.
+    // With very few steps a method may be inaccurate or fail. Methods with the true residual reject
+    // errors above half the motion; the others cannot detect it, but stay within twice the motion.
     double worst_share = 0;
     for (const auto& name : support::small_scene_names()) {
         for (auto [model, branch] : one_ways(compile(support::scene(name)))) {
@@ -154,7 +155,7 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
                 }
         }
     }
-    EXPECT_GT(worst_share, 0.1);  // rough is allowed, so refusing everything is not what passed here
+    EXPECT_GT(worst_share, 0.1);  // inaccurate results did occur: not everything was rejected
 }
 
 TEST(Methods, TooFewStepsAreNamedAsSuch) {
@@ -167,7 +168,7 @@ TEST(Methods, TooFewStepsAreNamedAsSuch) {
 }
 
 TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
-    // So many steps of a rung of order 3, over so short a way, that only rounding is left of |Φ|.
+    // So many steps of a third-order method over so short a branch that |Φ| is only rounding.
     const Model model = compile(support::scene("chrono_mcpherson"));
     Branch branch = model.branches[0];
     branch.to = 1000;
@@ -184,7 +185,7 @@ TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
 }
 
 TEST(Methods, SinglePrecisionClosesJointsAsFarAsItCan) {
-    // Open as drawn by less than single precision can tell: no contradiction of the joints.
+    // Open as drawn by less than single precision resolves: the joints are not inconsistent.
     Model model = compile(support::scene("chrono_mcpherson"));
     for (auto& constraint : model.constraints)
         if (auto* rod = std::get_if<DistanceBetween>(&constraint.kind)) rod->length += 3e-8;

@@ -1,4 +1,4 @@
-// The sweep is the paper's loop.
+// The sweep gives the same result as the paper's loop.
 #include "recursive/paper.hpp"
 
 #include <fmt/format.h>
@@ -23,10 +23,10 @@ TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
     std::string where;
     for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
-            // The loop begins at the design position.
+            // The paper's loop starts at the design position.
             if (std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; })) continue;
             ++compared;
-            std::vector<bool> idle(model.bodies.size(), false);  // turning where nothing asks how far
+            std::vector<bool> idle(model.bodies.size(), false);  // idle rotation is not compared
             for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
             const auto sweep = solve(model, branch, {.steps = N});
             const auto loop = paper(model, branch, N);
@@ -42,7 +42,7 @@ TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
                         where = fmt::format("{} {} point {} body {}", name, branch.name, k, b);
                     }
                 }
-            // λ as the wrenches it makes, in newtons.
+            // Compares λ as wrenches in newtons.
             std::vector<Wrench> wrenches(model.joints.size());
             const double a = branch.to * (N - 1) / N;
             (void)joint_wrenches<double>(model, inputs_at<double>(model, branch, a), loop[N - 1].q,

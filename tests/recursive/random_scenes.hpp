@@ -1,5 +1,6 @@
-// Scenes nobody designed: one to five bodies on random joints, bushings and springs, some of them preloaded or under a
-// static load, pushed until many turn, tip over or come to the end of their branch.
+// Generator of random scenes: one to five bodies on random joints, bushings and springs.
+// Some are preloaded or under a static load. Loads make many of them rotate far, turn over or reach
+// the end of their branch.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace elastocheck::recursive {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Everything is attached where it fits as drawn, told in ground axes.
+// All attachments fit as drawn, in ground axes.
 struct Builder {
     Scene scene;
     Random random;
@@ -27,7 +28,7 @@ struct Builder {
     }
     bool chance(double share) { return random(0, 1) < share; }
     double decades(double low, double high) { return std::pow(10, random(low, high)); }
-    // Of ground and the bodies before b.
+    // Ground or a body before b.
     BodyId earlier(BodyId b) { return static_cast<BodyId>(std::floor(random(-1, b))); }
 };
 

@@ -1,4 +1,4 @@
-// What is said of scenes nobody designed has to be right, or no more than that it could not be said.
+// Property-based test on random scenes: a result is correct, or the outcome is a failure.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 namespace elastocheck::recursive {
 namespace {
 
-// How far two states of a model are apart, as a share of the tolerances for origins and for orientations.
-// Bodies that an idle mode moves are anywhere along it.
+// Distance between two states, in units of the tolerances for origins and orientations. Bodies
+// moved by an idle mode are skipped, since their position along it is arbitrary.
 double apart(const Diagnosis& diagnosis, const Equilibrium& a, const Equilibrium& b, double length,
              double angle) {
     double worst = 0;
@@ -32,10 +32,10 @@ double apart(const Diagnosis& diagnosis, const Equilibrium& a, const Equilibrium
 }
 
 TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
-    constexpr int scenes = 200;  // adaptive and series decline 68 and 149
+    constexpr int scenes = 200;  // adaptive and series fail on 68 and 149
     int judged = 0;
     std::map<std::string, int> declined;
-    std::set<int> unsolved;  // by either
+    std::set<int> unsolved;  // by either method
     std::string which;
     for (int number = 0; number < scenes; ++number) {
         const Model model = compile(random_scene(number));
@@ -81,8 +81,9 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
                     << number << " " << name << " at " << loads[k];
         }
     }
-    // The equilibrium leg has a second way to settle, to states that no path from the drawing leads to (149), and steps
-    // short enough to settle where hardly any stiffness is left, which the recursion calls none (68).
+    // The equilibrium leg has a second settling method that reaches states without a path from the
+    // drawing (149), and steps short enough to settle with very little stiffness, which the
+    // recursion rejects (68).
     EXPECT_LE(static_cast<int>(unsolved.size()), judged / 50) << which;
     RecordProperty("judged", judged);
     RecordProperty("adaptive declined", declined["adaptive"]);
@@ -90,7 +91,7 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
     EXPECT_GE(judged, scenes * 6 / 10);
 }
 
-// 97 of a thousand branches were walked to their end by `balanced` where both references end before.
+// Regression: `balanced` followed 97 of 1000 branches past the point where both references end.
 TEST(RandomScenes, NoMethodGoesOnWhereBothReferencesEnd) {
     const char* asked = std::getenv("RANDOM_SCENES");
     const int scenes = asked != nullptr ? std::atoi(asked) : 120;

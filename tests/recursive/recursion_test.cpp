@@ -1,4 +1,4 @@
-// The recursion, eqs. (25)-(29): what it converges to, how fast, and how it fails.
+// The recursion, eqs. (25)-(29): its limit, its order of convergence, and its outcomes.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -39,9 +39,9 @@ double root(F&& f, double low, double high) {
     return low;
 }
 
-// ---- What the published recursion converges to, derived by hand. With N → ∞ the sum of K(qⁿ)Δqⁿ becomes an
-// integral, taken in ground axes along the path; the stored force is never turned. For one rotation θ that is
-// a sum of torques K_θθ dθ.
+// ---- Limit of the published recursion, derived by hand. For N → ∞ the sum of K(qⁿ)Δqⁿ becomes an
+// integral in ground axes along the path; the stored force is never rotated. For a single rotation
+// θ it is a sum of torques K_θθ dθ.
 
 struct OwnLimit {
     const char* scene;
@@ -51,20 +51,20 @@ struct OwnLimit {
 
 std::vector<OwnLimit> own_limits() {
     std::vector<OwnLimit> limits;
-    {  // k L² θ = F L cos θ, where the truth is k L² sin θ = F L cos θ
+    {  // k L² θ = F L cos θ; true: k L² sin θ = F L cos θ
         const double t = root([](double x) { return 20e3 * 0.5 * x - 5000 * std::cos(x); }, 0, 1.5);
         limits.push_back({"pinned_bar", 5000, {0.5 * std::cos(t), 0, 0.5 * std::sin(t)}});
     }
-    {  // (2 k a² + 2 k_R) θ = F e cos θ, where the truth is 2 k a² sin θ + 2 k_R θ
+    {  // (2 k a² + 2 k_R) θ = F e cos θ; true: 2 k a² sin θ + 2 k_R θ
         const double t =
             root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0, 1.5);
         limits.push_back({"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
     }
-    {  // k_R θ = F L cos θ: the truth, nothing is stored with a lever
+    {  // k_R θ = F L cos θ: exact, no force is stored with a lever
         const double t = root([](double x) { return 600 * x - 1500 * 0.4 * std::cos(x); }, 0, 1.5);
         limits.push_back({"pendulum", 1500, {0.32 * std::cos(t), 0.24 * std::cos(t), 0.4 * std::sin(t)}});
     }
-    {  // F = ∫ 2k ζ²/(b²+ζ²) dζ from h to z, where the truth is 2k (ℓ - ℓ₀) z / ℓ
+    {  // F = ∫ 2k ζ²/(b²+ζ²) dζ from h to z; true: 2k (ℓ - ℓ₀) z / ℓ
         const auto F = [](double z) {
             return 2e5 * (z - 0.08 - 0.3 * (std::atan(z / 0.3) - std::atan(0.08 / 0.3)));
         };
@@ -93,7 +93,7 @@ TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
         if (coarse.norm() < 1e-10) continue;  // linear scenes: exact with any number of steps
         EXPECT_NEAR(std::log2(coarse.norm() / fine.norm()), 1, 0.02) << limit.scene;
         EXPECT_LE((2 * fine - coarse).norm(), 1e-2 * fine.norm())
-            << limit.scene;  // Richardson's limit is the closed form
+            << limit.scene;  // Richardson extrapolation meets the closed form
     }
 }
 
@@ -125,7 +125,7 @@ TEST(Recursion, ConstraintErrorOfEquation31FallsAtFirstOrder) {
     }
 }
 
-// Eq. (28) as it stands: the sum of all K(qᵏ)Δqᵏ is kept, and the whole load applied.
+// Eq. (28) as printed: keeps the sum of all K(qᵏ)Δqᵏ, and applies the whole load.
 std::vector<State<double>> equation_28(const Model& model, const Branch& branch, int N) {
     State<double> q = design_state<double>(model);
     const int n = coordinates(model), m = constraint_rows(model);
@@ -177,12 +177,13 @@ TEST(Recursion, SixHundredStepsMeanThreeHundredOfTenNewtonEachWay) {
 }
 
 TEST(Recursion, StaticLoadAndPreloadStartFromTheirReactionsNotFromZero) {
-    // The guide carries nothing, the spring's preload carries the weight: no motion at load factor 0.
+    // The guide has no reaction, the spring's preload carries the weight: no motion at load factor
+    // 0.
     Scene scene = support::scene("parallel_springs");
     const Model model = compile(scene);
     const auto path = solve(model, model.branches[0], {.steps = 10});
     EXPECT_LE((leading_point(model, path.points.front()) - Vector3d(0, 0, 0.4)).norm(), 1e-12);
-    // A sideways weight goes into the guide's reaction and must still be there at full load.
+    // A lateral weight is carried by the guide's reaction, which must still be there at full load.
     std::get<DeadForce>(scene.static_loads[0].kind).f.x() = 250;
     const Model loaded = compile(scene);
     const auto sideways = solve(loaded, loaded.branches[0], {.steps = 10});
@@ -198,14 +199,15 @@ TEST(Recursion, UnbalancedDesignPositionSettlesAtLoadFactorZero) {
     const Model model = compile(scene);
     const auto path = solve(model, model.branches[0], {.steps = 10});
     EXPECT_NEAR(leading_point(model, path.points.front()).z(), 0.399, 1e-12);
-    EXPECT_EQ(path.counts.factorisations, 21);  // one says that it is not at rest, ten settle, ten load
+    // one shows that it is not at rest, ten settle, ten load
+    EXPECT_EQ(path.counts.factorisations, 21);
 }
 
 // ---- Reactions
 
 TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
-    // A bar hinged at a about y, propped at b by a vertical distance rod, loaded at c by 90 N up: with arms 1
-    // and 3 the rod pulls down with 270 and the hinge pushes up with 180.
+    // A bar hinged at a about y, supported at b by a vertical distance rod, loaded at c by 90 N up:
+    // with arms 1 and 3 the rod pulls down with 270 and the hinge pushes up with 180.
     const std::string text =
         "elastocheck: 1\nname: lever\nunits: {length: m, angle: rad, force: N}\n"
         "points: {a: [0, 0, 0], b: [1, 0, 0], c: [3, 0, 0], foot: [1, 0, -2]}\n"
@@ -229,7 +231,7 @@ TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
     }
 }
 
-// ---- What must not matter
+// ---- Invariance
 
 TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
@@ -271,7 +273,7 @@ TEST(Invariance, TheSameRunGivesTheSameBits) {
         }
 }
 
-// ---- Every outcome
+// ---- One test per outcome
 
 // A bar from a to b with two more points; joints, elements and loads to be added.
 Model bar(const std::string& rest) {
@@ -313,7 +315,7 @@ TEST(Outcome, APreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
 }
 
 TEST(Outcome, ADrivenPreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
-    // Nothing pushes as drawn: the moment about the guide comes with the branch alone.
+    // No load as drawn: only the branch applies the moment about the guide.
     Model model =
         bar("bodies: {bar: {origin: a}}\n"
             "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
@@ -327,7 +329,7 @@ TEST(Outcome, ADrivenPreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
         EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << method.name << ": " << path.detail;
         EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos) << method.name << ": " << path.detail;
     }
-    // About another axis it turns nothing: the guide bears it.
+    // A moment about another axis is carried by the guide.
     std::get<elastocheck::Preload>(model.branches[0].drivers.back().what).direction =
         elastocheck::Vector6::Unit(4);
     for (const auto& method : methods) {
@@ -337,8 +339,8 @@ TEST(Outcome, ADrivenPreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
 }
 
 TEST(Outcome, APreloadThatTurnsOntoAnIdleModeIsAnErrorOfEveryMethod) {
-    // An arm turns about z; on its end a block slides along the arm, and nothing resists it. The block is pulled along
-    // y by a spring of constant force, which works on nothing until the arm has turned.
+    // An arm rotates about z; a block slides freely along the arm at its end. A spring of constant
+    // force pulls the block along y, which does no work until the arm has rotated.
     Model model = compile(parse_scene(
         "elastocheck: 1\nname: constant force\nunits: {length: m, angle: rad, force: N}\n"
         "points: {hinge: [0, 0, 0], block: [1, 0, 0], far: [1, -100, 0]}\n"
@@ -367,7 +369,7 @@ TEST(Outcome, APreloadThatTurnsOntoAnIdleModeIsAnErrorOfEveryMethod) {
     }
 }
 
-// A block on a rail is tied to a cart by a bushing with free play along the rail, and the cart is driven along it.
+// A bushing with free play along a rail connects a block to a cart, which is driven along the rail.
 Model free_play(double to) {
     Model model = compile(parse_scene(
         "elastocheck: 1\nname: free play\nunits: {length: m, angle: rad, force: N}\n"
@@ -396,7 +398,8 @@ TEST(Outcome, FreePlayThatHoldsNothingIsIdleUntilItCloses) {
         EXPECT_NEAR(path.points.back().poses[1].r.x(), 0.04, 1e-9) << method.name;
         EXPECT_NEAR(path.points.back().poses[0].r.x(), 0, 1e-12) << method.name;
     }
-    // Behind it the block goes along. Nothing of that is known as drawn, and it is said; in few steps, too.
+    // Beyond the free play the block follows. The diagnosis as drawn cannot show that; every method
+    // reports it, also with few steps.
     for (const auto& method : methods)
         for (const int steps : {1, 2, 50}) {
             const auto path = solve(closes, closes.branches[0], {.method = method, .steps = steps});
@@ -414,8 +417,9 @@ TEST(Outcome, FreePlayThatIsPushedIsALoadedIdleMode) {
 }
 
 TEST(Outcome, ForcesWithoutEnergyOnAnIdleModeAreAnErrorOfEveryMethod) {
-    // No rate about the marker's x, Cardan angles: turned about z by θ_z, a motion about B e_x changes none of the other
-    // two. The moment (0, M'_y, M'_z) along the axes of i has a part along it all the same.
+    // No rate about the marker's x, Cardan angles: after a rotation about z by θ_z, a motion about
+    // B e_x does not change the other two angles. But the moment (0, M'_y, M'_z) in the axes of i
+    // has a component along it.
     Model model =
         bar("bodies: {bar: {origin: a}}\n"
             "joints: {ball: {type: spherical, bodies: [bar, ground], at: a}}\n"
@@ -445,8 +449,8 @@ TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
 }
 
 TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
-    // A block on a free slide, tied by a spring across the slide to a cart. While the cart drives off along
-    // the slide the spring would take the block along; at the design position nothing does.
+    // A block on a free slide, connected to a cart by a spring across the slide. When the cart
+    // moves along the slide, the spring pulls the block along; at the design position it does not.
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: dead centre\nunits: {length: m, angle: rad, force: N}\n"
         "points: {block: [0, 0, 0], cart: [0, 0, 1], end: [-1, 0, 1]}\n"
@@ -481,7 +485,7 @@ TEST(Outcome, RedundantButConsistentConstraintsGiveTheRightMotion) {
 }
 
 TEST(Outcome, JointsThatCannotBeClosedAreInconsistent) {
-    // Two hinges on one line, and a rod from the bar to ground that is longer than the bar can reach.
+    // Two collinear hinges, and a rod from the bar to ground that is too long for the bar.
     const Model model =
         bar("bodies: {bar: {origin: a}}\n"
             "joints:\n  hinge: {type: revolute, bodies: [bar, ground], at: a, axis: y}\n"
@@ -524,7 +528,7 @@ TEST(Outcome, NaNInTheModelIsNeverConverged) {
 }
 
 TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
-    // The pendulum beyond F = 1979 N, where F L sin θ > k_R: a perfectly stable equilibrium, which no step
+    // The pendulum beyond F = 1979 N, where F L sin θ > k_R: a stable equilibrium that no step
     // count reaches.
     Scene scene = support::scene("pendulum");
     for (auto& branch : scene.branches) branch.to *= 2;

@@ -1,4 +1,4 @@
-// What a state answers to small disturbances: slopes of the own solutions, closed forms, and the step of the paper.
+// Linear response against derivatives of solutions, closed forms and the paper's first step.
 #include "recursive/respond.hpp"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ TEST(Respond, FollowersAnswerAsTheyAreSolved) {
                  "follower");
 }
 
-// The first step of the paper is K's answer to the load, whatever its size.
+// The paper's first step is the response of K to the load, for any size of the load.
 TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const auto& load = std::get<DeadForce>(std::get<Load>(way.branch.drivers[0].what).kind);
@@ -99,8 +99,9 @@ TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     }
 }
 
-// A slider on x between two springs: one of rate k along x without force, one across it at the distance l under the
-// tension T. Across, a taut spring is as stiff as T/l, which is no part of (19):
+// A slider on x between two springs: one of rate k along x without force, one across at the
+// distance l with the tension T. The taut spring has the transverse stiffness T/l, which is not in
+// (19):
 //
 //   published 1/k,   consistent 1/(k + T/l)
 struct Taut {
@@ -175,7 +176,7 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
               1e-13);
 }
 
-// ---- What is idle, redundant, wrong.
+// ---- Idle modes, redundant joints, invalid input.
 
 TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
@@ -198,7 +199,7 @@ TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
-    // The idle mode itself, by the diagnosis of the model drawn where the state is.
+    // The idle mode by the diagnosis of a model drawn at the state.
     Model there = way.model;
     for (std::size_t b = 0; b < there.bodies.size(); ++b) there.bodies[b].design = state.poses[b];
     const Diagnosis diagnosis = diagnose(there);
@@ -213,7 +214,7 @@ TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
     }
 }
 
-// A bar on a hinge, once with the hinge twice.
+// A bar on a hinge, or on the same hinge twice.
 Scene hinged(bool twice) {
     Scene s;
     s.bodies = {{"bar", {}}};
@@ -262,7 +263,8 @@ TEST(Respond, AnOffsetThatASecondJointHoldsIsSaidToContradict) {
 }
 
 TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
-    // A strut across under 1024 N, whose 4096 N/m are what the spring along has: all of it exact in binary.
+    // A strut across under 1024 N, whose geometric stiffness -4096 N/m cancels the rate along:
+    // exact in binary.
     const OneWay way = way_of(Taut{4096, 0.25, -1024, 65536}.scene(), "pull", 1);
     const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
     const Disturbance pull = UnitWrench{{0, Vector3d::Zero()}, Vector3d::UnitX()};

@@ -1,5 +1,5 @@
-// The series driven by something other than a load: offsets, angles, free lengths, preloads, and what is held
-// while they move.
+// The series method with drivers other than loads, and with start values.
+// Offsets, angles, free lengths, preloads.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -23,7 +23,7 @@ namespace elastocheck::recursive::series {
 namespace {
 
 struct Walked {
-    Model model;  // as it stands on the branch
+    Model model;  // active on the branch
     Branch branch;
 };
 Walked walked(const Scene& scene, const Branch& branch) {
@@ -33,8 +33,7 @@ Walked walked(const Scene& scene, const Branch& branch) {
     return {on_branch(model, model.branches[0]), model.branches[0]};
 }
 
-// Newton's method with dense factors of its own, the step of minimum norm where a motion is idle; from
-// `start`.
+// Newton's method with dense factors from `start`; minimum-norm steps along idle modes.
 Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     const int n = coordinates(w.model), m = constraint_rows(w.model);
     const Inputs<double> inputs = inputs_at<double>(w.model, w.branch, a);
@@ -67,8 +66,8 @@ Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     return point;
 }
 
-// How far origins, and points 0.1 m beside them, are apart [m]; bodies that turn idly are left to their
-// origins.
+// Largest distance of origins, and of points 0.1 m beside them [m]; for bodies with idle rotation
+// origins only.
 double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
     std::vector<bool> idle(model.bodies.size(), false);
     for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
@@ -112,13 +111,13 @@ TEST(SeriesDrivers, TravelCoversJounceAndReboundOfTheMcPherson) {
             worst = std::max(worst, apart(w.model, point, exact));
             open = std::max(open, point.constraint_error);
             from = exact.poses;
-            // ... and the jack pushes with the load that holds the wheel there.
+            // ... and the jack carries the load that holds the wheel there.
             const Wrench& jack = point.reactions.back();
             EXPECT_LE((jack.force - exact.reactions.back().force).norm(), 1e-6);
         }
         EXPECT_LE(worst, 1e-12) << to;  // 1e-9 mm
         EXPECT_LE(open, 1e-12) << to;
-        // The wheel centre is where the jack holds it.
+        // The jack holds the wheel centre.
         const Wheel& wheel = w.model.wheels[0];
         const auto height = [&](const Equilibrium& point) {
             const Pose& pose = point.poses[static_cast<std::size_t>(wheel.body)];
@@ -145,7 +144,7 @@ TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
         force = next;
         before = point.load;
         const auto place = find(by_load, force);
-        if (!place) continue;  // to rounding below zero
+        if (!place) continue;  // below zero by rounding
         EXPECT_LE(apart(loaded, point, evaluate(loaded, loaded.branches[0], by_load, *place)), 1e-9)
             << point.load;
     }
@@ -153,7 +152,7 @@ TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
     EXPECT_GT(work, 0);
 }
 
-// ---- Mechanisms that nothing but geometry moves, against it.
+// ---- Mechanisms without elasticity against exact geometry.
 
 const Direction along_z{ground, Eigen::Vector3d::UnitZ()};
 Direction z_of(BodyId body) { return {body, Eigen::Vector3d::UnitZ()}; }
@@ -207,7 +206,7 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
 
 TEST(SeriesDrivers, FourBarGoesAFullTurn) {
     const double crank = 0.1, coupler = 0.3, rocker = 0.25, base = 0.28;  // Grashof: the crank turns
-    // Where coupler and rocker meet: always on the same side of the diagonal.
+    // Intersection of coupler and rocker, always on the same side of the diagonal.
     const auto joint = [&](double angle) {
         const Eigen::Vector2d A(crank * std::cos(angle), crank * std::sin(angle)), D(base, 0);
         const Eigen::Vector2d d = D - A;
@@ -267,15 +266,15 @@ TEST(SeriesDrivers, TheArchIsPushedThroughBothOfItsLimitPoints) {
         least = std::min(least, force);
         most = std::max(most, force);
     }
-    EXPECT_LT(least, -200);  // what the load could not go past
+    EXPECT_LT(least, -200);  // beyond the limit load
     EXPECT_GT(most, 200);
 }
 
-// ---- What is held.
+// ---- Start values.
 
 TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
-    // Everything at once: the jack held 30 mm up, a preload in a bushing, a free length 20 mm longer, a load
-    // that pulls aft; then travel moves on.
+    // Combined: the jack held 30 mm up, a preload in a bushing, a free length 20 mm longer, a
+    // rearward load; then the travel changes.
     Branch branch;
     branch.to = 0.05;
     Scene scene = mcpherson_on_a_jack(branch);
@@ -319,7 +318,7 @@ TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
     }
 }
 
-// ---- Scenes that broke something: right, or an honest outcome.
+// ---- Regression scenes: the result is right, or the outcome is a failure.
 
 Model found(const std::string& name) {
     return compile(
@@ -331,7 +330,7 @@ TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
         const Model model = found(name);
         const Path path = follow(model, model.branches[0]);
         EXPECT_EQ(path.outcome, Outcome::dividing_point) << name << " " << path.detail;
-        // Below it nothing is said of it.
+        // Below that load the branch converges.
         Branch below = model.branches[0];
         below.to /= 10;
         EXPECT_EQ(follow(model, below).outcome, Outcome::converged) << name;
@@ -362,7 +361,7 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
     }
 }
 
-// ---- One analysis for all.
+// ---- One analysis shared by branches and threads.
 
 TEST(Analysis, ServesBranchesAndThreadsAlike) {
     const Model model = compile(support::scene("chrono_mcpherson"));
@@ -385,9 +384,9 @@ TEST(Analysis, OfAnotherModelIsRefused) {
                  std::invalid_argument);
 }
 
-// ---- The pattern of (24).
+// ---- Sparsity pattern of (24).
 
-// The matrix far from where anything vanishes by chance.
+// The matrix at a random state, without accidental zeros.
 Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     State<double> q = design_state<double>(model);
     Vector<double> dq(coordinates(model)), lambda(constraint_rows(model)), Phi(constraint_rows(model));
@@ -403,8 +402,8 @@ Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
 }
 
 struct Coverage {
-    double held = 0, met = 0,
-           missed = 0;  // entries: of the pattern; ever other than zero; of these not in it
+    // Entries: in the pattern; non-zero in some state; of these outside the pattern.
+    double held = 0, met = 0, missed = 0;
 };
 Coverage coverage(const Model& model, Random& random) {
     Pattern pattern;
@@ -430,7 +429,7 @@ TEST(Pattern, HoldsAllThatIsNotZero) {
 }
 
 TEST(Pattern, OfASuspensionIsAtMostATwentiethMoreThanThat) {
-    // Not so of planar mechanisms, whose third dimension it does not know to be empty.
+    // Planar mechanisms are excluded: their pattern includes the third dimension.
     Random random;
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "chrono_mcpherson_travel"}) {
         const Coverage c = coverage(compile(support::scene(name)), random);

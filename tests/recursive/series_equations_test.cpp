@@ -1,5 +1,6 @@
-// The coefficients of the full equations against the equations themselves: whatever polynomial x(τ) is put
-// in, Σ G_k τ^k and Σ Φ_k τ^k are what G and Φ are at the configuration x(τ) leads to. Nothing is solved.
+// Series coefficients of the full equations against direct evaluation.
+// For any polynomial x(τ), Σ G_k τ^k and Σ Φ_k τ^k equal G and Φ at the configuration x(τ). Nothing
+// is solved.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ Case anywhere(Random& random) {
     return c;
 }
 
-// Coefficients that fall as 4^-k, so that orders up to 20 count at τ near one.
+// Coefficients fall as 4^-k, so that orders up to 20 are significant at τ near one.
 void expect_same(const Case& c, Random& random, const std::string& what, Drive drive) {
     constexpr int p = 30;
     const int n = coordinates(c.model), m = constraint_rows(c.model);
@@ -83,7 +84,7 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
         EXPECT_LE((sum.tail(m) - Phi).norm(), 1e-12 * (1 + left.bottomRows(m).norm()))
             << what << ", τ = " << tau;
     }
-    // Order by order that is no accident: the last orders are there, and count.
+    // The agreement is significant: the last orders are not zero.
     EXPECT_GT(left.middleCols(8, 4).norm(), 0) << what;
 }
 void expect_same(const Case& c, Random& random, const std::string& what) {
@@ -121,7 +122,7 @@ TEST(SeriesEquations, HoldForASpringBetweenAnyBodies) {
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
             const AxialSpring e{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
-            // Near to ends that meet the force is not analytic.
+            // The force is not analytic near coincident ends.
             if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local)).norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", e});
@@ -154,7 +155,7 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
         c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K},
                                                      Vector6<double>::Zero()}});
         expect_same(c, random, fmt::format("mount between {} and {}", i, j));
-        // Until something brings a moment about.
+        // Until a driver adds a moment.
         Preload preload{0, Vector6<double>::Zero()};
         preload.direction.tail<3>() = random.vector(50);
         c.branch.drivers.push_back({preload, random(), random()});
@@ -162,7 +163,7 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
     }
 }
 
-// Three knots, four pieces of any kind: the equations know no more of them than that each is a polynomial.
+// Three knots, four arbitrary polynomial pieces: the equations do not require continuity.
 Curve curve(Random& random, double size, double force) {
     Curve f;
     for (int k = 0; k < 3; ++k) f.knots.push_back(size * (k - 1 + random(-0.3, 0.3)));
@@ -280,7 +281,7 @@ TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
                 Case c = anywhere(random);
                 c.model.joints.push_back({.name = "joint", .at = {}, .driven = 0});
                 c.model.constraints.push_back({0, kind});
-                // Two drivers of one joint: what they move adds up.
+                // Two drivers of one joint are added.
                 for (int k = 0; k < 2; ++k)
                     c.branch.drivers.push_back({Motion{0}, random(0, 0.3), random(0, 0.3)});
                 expect_same(c, random, fmt::format("offset {} between {} and {}", kind.index(), i, j));

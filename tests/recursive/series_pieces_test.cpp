@@ -1,4 +1,4 @@
-// The series over curves, from one polynomial piece to the next; formulations and followers along whole branches.
+// The series method across pieces of force curves; formulations and followers on branches.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace elastocheck::recursive::series {
 namespace {
 
 struct Walked {
-    Model model;  // as it stands on the branch
+    Model model;  // active on the branch
     Branch branch;
 };
 Walked walked(const Scene& scene, const Branch& branch) {
@@ -33,7 +33,7 @@ Branch loaded(double to, std::vector<Driver> drivers) {
     return branch;
 }
 
-// ---- A body on the x axis, one metre from the origin, pushed along x by springs' curves alone.
+// ---- A body on the x axis, one metre from the origin, with springs along x only.
 
 constexpr BodyId slider = 0;
 Scene on_the_x_axis(std::vector<Elastic> elastics) {
@@ -48,7 +48,7 @@ Scene on_the_x_axis(std::vector<Elastic> elastics) {
     scene.probes = {{"slider", {slider, Eigen::Vector3d::Zero()}}};
     return scene;
 }
-// Stretched by as much as the slider has moved, `drawn` more as drawn.
+// A spring with the slider's displacement as stretch, plus `drawn`.
 Elastic along_x(const std::string& name, const ScalarLaw& law, double drawn = 0) {
     return {name, AxialSpring{
                       {ground, Eigen::Vector3d::Zero()}, {slider, Eigen::Vector3d::Zero()}, law, 1 - drawn}};
@@ -59,9 +59,9 @@ Driver push(double start, double rate) {
 }
 double moved(const Equilibrium& point) { return point.poses[slider].r.x() - 1; }
 
-// f = k (x - c) behind c, 0 before it.
+// f = k (x - c) for x > c, else 0.
 Curve stop(double c, double k) { return {{c}, {{0, 0, 0, 0}, {0, k, 0, 0}}}; }
-// f = below · x before 0, above · x behind it.
+// f = below · x for x < 0, above · x for x > 0.
 Curve bent(double below, double above) { return {{0}, {{0, below, 0, 0}, {0, above, 0, 0}}}; }
 
 double value(const Curve& f, double x) {
@@ -71,7 +71,7 @@ double value(const Curve& f, double x) {
     const auto& c = f.pieces[piece];
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
-// Through the points with the slopes there, straight outside.
+// Hermite interpolant with the given slopes, linear outside.
 Curve hermite(const std::vector<double>& x, const std::vector<double>& f, const std::vector<double>& slope) {
     Curve curve{x, {{f[0], slope[0], 0, 0}}};
     for (std::size_t k = 0; k + 1 < x.size(); ++k) {
@@ -82,7 +82,7 @@ Curve hermite(const std::vector<double>& x, const std::vector<double>& f, const 
     curve.pieces.push_back({f.back(), slope.back(), 0, 0});
     return curve;
 }
-// How far from the curve's inverse, to first order [m].
+// Distance from the curve's inverse, to first order [m].
 double off(const Curve& f, double x, double force) {
     const double h = 1e-7, slope = (value(f, x + h) - value(f, x - h)) / (2 * h);
     return std::abs((value(f, x) - force) / slope);
@@ -99,7 +99,8 @@ TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         int knots = 0;
         for (const auto& expansion : path.expansions) knots += expansion.knots;
-        EXPECT_EQ(knots, to > 0 ? 3 : 2);  // each that is passed, once; the one at the start is none
+        // each knot crossed is counted once; the one at the start is not
+        EXPECT_EQ(knots, to > 0 ? 3 : 2);
         double worst = 0;
         const auto sampled = sample(w.model, path, w.branch, 400);
         ASSERT_EQ(sampled.points.size(), 401u);
@@ -139,7 +140,7 @@ TEST(SeriesPieces, AStopThatClosesTakesItsShareFromThere) {
 }
 
 TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
-    // ... the second a rounding earlier, at the same place, a rounding later.
+    // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
         const Walked w =
             walked(on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("left", stop(0.03, 1e5)),
@@ -155,7 +156,7 @@ TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
 }
 
 TEST(SeriesPieces, FromAKnotTheMotionGoesIntoItsOwnPiece) {
-    // Of a curve that breaks where it is drawn, or a rounding beside it.
+    // A curve with its kink at the design position, or within rounding of it.
     for (const double drawn : {0.0, 1e-17, -1e-17, 1e-16, -1e-16})
         for (const double to : {500.0, -500.0})
             for (const bool arc : {false, true}) {
@@ -172,7 +173,8 @@ TEST(SeriesPieces, FromAKnotTheMotionGoesIntoItsOwnPiece) {
 }
 
 TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
-    // Sixty curves that all begin at a knot; whether one is compressed depends on all the others' pieces.
+    // Sixty curves that all start at a knot; the sign of each deflection depends on the pieces of
+    // all others.
     Random random;
     for (int trial = 0; trial < 20; ++trial) {
         Scene scene;
@@ -198,7 +200,7 @@ TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
     }
 }
 
-// ---- A slider that a jack moves past a spring whose other end is h beside the rail.
+// ---- A jack moves a slider past a spring whose other end is h beside the rail.
 
 Scene beside_the_rail(double h, const ScalarLaw& law, double free_length, double from) {
     Scene scene = on_the_x_axis({});
@@ -226,7 +228,7 @@ Branch jacked(double to) {
 }
 
 TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
-    // The spring is shortest at x = 0, where its stretch is h - ℓ₀ = `deep` behind the knot at 0.
+    // The spring is shortest at x = 0, where its stretch is h - ℓ₀ = `deep` beyond the knot at 0.
     const double h = 0.1;
     for (const double deep : {0.0, 1e-17, -1e-17, 1e-16, -1e-16, 1e-14, -1e-14, 5e-14, -1e-13, 1e-12, -1e-12,
                               1e-10, -1e-10, 1e-6, -1e-6}) {
@@ -241,14 +243,14 @@ TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
         EXPECT_LE(path.expansions.size(), 9u) << deep;
         for (const auto& point : sample(w.model, path, w.branch, 240).points) {
             const double x = -0.06 + point.load, l = std::hypot(h, x);
-            const double force = value(f, l - free_length) * x / l;  // the jack's along x
+            const double force = value(f, l - free_length) * x / l;  // of the jack along x
             EXPECT_NEAR(point.reactions[1].force.x(), force, 2e-8) << deep << " " << x;
         }
     }
 }
 
 TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
-    // The stretch begins as x² / 2h: its first coefficient says nothing.
+    // The stretch starts as x² / 2h: its first coefficient is zero.
     const double h = 0.1;
     for (const double to : {0.05, -0.05})
         for (const auto& f : {bent(200e3, 4e3), bent(4e3, 200e3)}) {
@@ -262,7 +264,7 @@ TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
         }
 }
 
-// ---- A curve that falls: f rises to 100 N at 10 mm, falls to 50 at 20 mm, rises again.
+// ---- A non-monotone curve: f rises to 100 N at 10 mm, falls to 50 at 20 mm, rises again.
 Curve falling() { return {{0.01, 0.02}, {{100, 1e4, 0, 0}, {100, -5e3, 0, 0}, {50, 1e4, 0, 0}}}; }
 
 TEST(SeriesPieces, WhereAStopGivesWayIsALimitPoint) {
@@ -295,7 +297,7 @@ TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
         for (const auto& point : sample(w.model, path, w.branch, 30).points)
             EXPECT_LE(off(rising(), moved(point), held + point.load), 1e-12) << held;
     }
-    // To a knot exactly, and on from there: up and down.
+    // Exactly to a knot, and on from there, in both directions.
     for (const double to : {300.0, -300.0}) {
         const Walked w =
             walked(on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("stop", stop(0.03, 3e5))}),
@@ -307,7 +309,8 @@ TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     }
 }
 
-// ---- Formulations along a branch: an arm on two bushings of any formulation, turned by tenths of a radian.
+// ---- Formulations along a branch: an arm on two bushings of any formulation, rotated by tenths of
+// a radian.
 
 TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
     using Frame = Formulation::Frame;
@@ -348,7 +351,8 @@ TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
                 }
 }
 
-// n bodies along x, held together and to the ground by beams of length L between their origins.
+// n bodies along x, connected to each other and to ground by beams of length L between their
+// origins.
 Scene chain(int n, double L) {
     Scene scene;
     Matrix6<double> K = Matrix6<double>::Zero();
@@ -374,7 +378,8 @@ TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
                                  LoadKind(FollowerForce{{n - 1, at}, Eigen::Vector3d(0, 0.3, 1)}),
                                  LoadKind(FollowerMoment{n - 1, Eigen::Vector3d(0.4, 0, 1)})}) {
         const Walked w = walked(chain(n, 0.2), loaded(3000, {{Load{"tip", kind}, 0, 1}}));
-        // A beam resists 4e8 N/m along itself: at the usual 1e-12 m it would be 2e-9 of the load.
+        // A beam has 4e8 N/m along itself: at the usual 1e-12 m the error would be 2e-9 of the
+        // load.
         const Path path = follow(w.model, w.branch, {.tolerance = 1e-13});
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         const auto sampled = sample(w.model, path, w.branch, 50);
@@ -390,7 +395,8 @@ TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
 }
 
 TEST(SeriesFormulations, AChainUnderATipMomentRollsIntoAnArc) {
-    // Pure bending: every beam turns by M L / EI, and its chord, the axis of its middle, by half of that more.
+    // Pure bending: every beam bends by M L / EI, and its chord, the axis of its middle, by half of
+    // that more.
     const int n = 5;
     const double L = 0.2, EI = 2.4e3, M = 6000;
     const Walked w = walked(

@@ -1,4 +1,4 @@
-// The branch as a power series: its coefficients, its reach, its derivatives, its end.
+// The branch as a power series: coefficients, range of validity, derivatives, and singularities.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,7 @@
 namespace elastocheck::recursive::series {
 namespace {
 
-// Polynomials by their coefficients, truncated:
-// the closed forms are expanded with what is written here alone.
+// Truncated polynomials by their coefficients, for an independent expansion of the closed forms.
 using Poly = std::vector<double>;
 Poly times(const Poly& a, const Poly& b) {
     Poly c(a.size(), 0);
@@ -26,15 +25,15 @@ Poly times(const Poly& a, const Poly& b) {
         for (std::size_t j = 0; i + j < a.size(); ++j) c[i + j] += a[i] * b[j];
     return c;
 }
-// y with y' = f' r(τ): of an antiderivative.
+// y with y' = f.
 Poly integral(const Poly& f) {
     Poly y(f.size(), 0);
     for (std::size_t k = 1; k < f.size(); ++k) y[k] = f[k - 1] / static_cast<double>(k);
     return y;
 }
 
-// tan θ = F / (k L) from F = 0 at the shares τ of `to`: θ = atan(c τ), tip = L (cos θ, sin θ), and the Gibbs
-// vector of a turn by -θ about y, g = -tan(θ/2).
+// tan θ = F / (k L) from F = 0 at fractions τ of `to`: θ = atan(c τ), tip = L (cos θ, sin θ), and
+// the Gibbs vector of a rotation by -θ about y, g = -tan(θ/2).
 struct PinnedBar {
     Poly half_angle_tangent;
     explicit PinnedBar(double c, std::size_t p) {
@@ -62,11 +61,11 @@ TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
     ASSERT_FALSE(path.expansions.empty());
     const Expansion& first = path.expansions.front();
     const PinnedBar exact(branch.to / (20e3 * 0.5), static_cast<std::size_t>(p));
-    // Odd coefficients vanish with F → -F turned over; the even ones of the angle too.
+    // Coefficients of one parity vanish by the symmetry F → -F.
     for (int k = 1; k <= p; ++k) {
         const double computed = std::abs(first.x(4, k) / 2),
                      expected = std::abs(exact.half_angle_tangent[static_cast<std::size_t>(k)]);
-        const double size = std::pow(0.5, k);  // of a coefficient of this order: the radius is 2
+        const double size = std::pow(0.5, k);  // typical size of this order: the radius is 2
         EXPECT_LE(std::abs(computed - expected), 1e-12 * std::max(expected, 1e-3 * size)) << k;
     }
     EXPECT_NEAR(first.singularity.radius * branch.to, 20e3 * 0.5, 0.01 * 20e3 * 0.5);  // F = ± i k L
@@ -74,7 +73,8 @@ TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
 }
 
 TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
-    // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as h².
+    // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as
+    // h².
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "pendulum"}) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
@@ -182,8 +182,8 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
 }
 
 TEST(Series, OrderOneIsTheTangent) {
-    // Its first coefficient is the step that `tangent` takes: displacement, and the rotation's axis and angle
-    // to first order.
+    // Its first coefficient is the step of `tangent`: displacement, and the rotation's axis and
+    // angle to first order.
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         const Path path = follow(model, branch);
@@ -263,7 +263,7 @@ TEST(Series, GoesThroughLimitPointsByArcLength) {
         ASSERT_EQ(sampled.points.size(), 51u);
         EXPECT_NEAR(sampled.points.back().load, -400, 1e-9);
         const double b = 0.3, k = 100e3, l_0 = std::hypot(b, 0.08);
-        for (const auto& point : sampled.points) {  // on the closed form all the way
+        for (const auto& point : sampled.points) {  // on the closed form everywhere
             const double z = point.poses[0].r.z(), l = std::hypot(b, z);
             EXPECT_NEAR(2 * k * (l - l_0) * z / l, point.load, 1e-8);
         }
@@ -271,7 +271,7 @@ TEST(Series, GoesThroughLimitPointsByArcLength) {
 }
 
 TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
-    // So many tolerances that some expansions end beside a turn, and some are drawn nearer.
+    // Many tolerances, so that some expansions end near a limit point and some are shortened.
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
     branch.to = -400;
@@ -352,8 +352,8 @@ TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
 }
 
 TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
-    // The second pass, linear in x_k, against the matrix
-    // it is solved with: G_k with x_k in place must vanish.
+    // The second pass, linear in x_k, against the matrix of the solve: G_k with x_k inserted must
+    // vanish.
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         March<double> s(model, branch, analyse(model));
@@ -363,7 +363,7 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
         Equations e = equations(model, branch, 8);
         Coefficients c = reserve_coefficients(s, 8);
         expand(s, e, c, branch.to, false, Vector<double>::Zero(s.n() + s.m()));
-        // Every coefficient is in place: one `known` pass with them is G_k and Φ_k themselves.
+        // All coefficients are set: a `known` pass then gives G_k and Φ_k.
         for (int k = 1; k <= 7; ++k) {
             evaluate(e, {k, Pass::known});
             const Matrix<double> M = sparse(s.system.M);
@@ -389,7 +389,7 @@ TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
         if (s_0 >= 1e-3) {
             EXPECT_NEAR(f3[0], (1 - exact_1(s_0)) / s_0, 4e-16 / s_0) << s_0;
         }
-        // Its sum elsewhere: the radius is 1 + s_0, to where the nearest singularity is.
+        // Value at another point: the radius is 1 + s_0, the distance to the nearest singularity.
         const double sigma = 0.05 * (1 + s_0);
         double sum = 0;
         for (std::size_t n = f1.size(); n-- > 0;) sum = sum * sigma + f1[n];

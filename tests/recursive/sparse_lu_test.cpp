@@ -1,4 +1,4 @@
-// The factorisation against a dense one, and the zeros it counts on.
+// Sparse LU against a dense factorisation, and its sparsity.
 #include "recursive/sparse_lu.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-// A saddle-point matrix with zeros all over the place: [K Aᵀ; A 0] of random sizes.
+// A random sparse saddle-point matrix [K Aᵀ; A 0].
 Matrix<double> random_saddle_point(std::mt19937& random, int n, int m) {
     std::uniform_real_distribution<double> value(-1, 1);
     std::bernoulli_distribution zero(0.6);
@@ -21,7 +21,7 @@ Matrix<double> random_saddle_point(std::mt19937& random, int n, int m) {
     return M;
 }
 
-// The three calls for a dense matrix: its entries other than zero are the pattern.
+// The three calls for a dense matrix, with its non-zeros as pattern.
 Pattern pattern_of(const Matrix<double>& A) {
     Pattern pattern{static_cast<int>(A.rows()), {}, {}};
     for (int j = 0; j < pattern.size; ++j) {
@@ -68,8 +68,8 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
     EXPECT_LE(worst, 1e-14);
 }
 
-// A saddle-point matrix with the zeros of a large model: n coordinates, each tied to the next and to a few others, m
-// rows of constraints on three neighbours each.
+// A saddle-point matrix with the sparsity of a large model: n coordinates, each coupled to the next
+// and to a few others, m constraint rows on three neighbours each.
 Matrix<double> sparse_saddle_point(std::mt19937& random, int n, int m) {
     std::uniform_real_distribution<double> value(-1, 1);
     Matrix<double> M = Matrix<double>::Zero(n + m, n + m);
@@ -176,7 +176,7 @@ TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
 }
 
 TEST(SparseLU, WhatStaysInOnePlaceIsSoughtThereAlone) {
-    // A thousand couples that know nothing of each other but through a thread of zeros.
+    // A thousand 2×2 blocks coupled only by negligible entries.
     const int n = 2000;
     Matrix<double> A = Matrix<double>::Zero(n, n);
     for (int i = 0; i < n; ++i) A(i, i) = 2;
@@ -214,7 +214,9 @@ TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
 TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
     for (const int n : {3, 100}) {
         Matrix<double> A = 4 * Matrix<double>::Identity(
-                                   n, n);  // an arrow, whose point fills in what is left when it goes first
+                                   // arrow matrix: its first row fills in everything if eliminated
+                                   // first
+                                   n, n);
         A.row(0).tail(n - 1).setOnes();
         A.col(0).tail(n - 1).setOnes();
         A(0, 0) = n + 1;
@@ -234,11 +236,11 @@ TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
 
 TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
     Matrix<double> A(3, 3);
-    A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any diagonal that is not negative, and one zero
+    A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any non-negative diagonal with one zero
     SparseLU<double> lu;
     analyse(lu, A);
     for (double pivot = 1; pivot > 1e-17; pivot /= 10) {
-        for (int k = 0; k < 3; ++k) {  // whichever comes first in the order
+        for (int k = 0; k < 3; ++k) {  // for each position in the order
             Matrix<double> B = A;
             B(k, k) *= pivot;
             ASSERT_GT(factorise(lu, B), 0);

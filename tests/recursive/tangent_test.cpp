@@ -1,4 +1,4 @@
-// The consistent tangent against differences of the residual it is the derivative of.
+// The consistent tangent against finite differences of its residual.
 #include "recursive/tangent.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using Long = long double;
 constexpr BodyId bodies = 2;
 const std::vector<std::pair<BodyId, BodyId>> sides{{0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
 
-// Everything ∂G/∂q depends on.
+// All inputs of ∂G/∂q.
 struct Case {
     Model model;
     Branch branch;
@@ -51,7 +51,7 @@ Bushing bushing(BodyId i, BodyId j, Random& random) {
     return e;
 }
 
-// Turns body j (or body i, where j is ground) until the relative rotation of the markers is θ.
+// Rotates body j (or body i, if j is ground) until the relative rotation of the markers is θ.
 void turn_to(const Vector3d& theta, const Bushing& e, std::vector<Pose>& poses) {
     const auto of = [&](BodyId b) {
         return b == ground ? Eigen::Quaterniond::Identity() : poses[static_cast<std::size_t>(b)].p;
@@ -98,7 +98,7 @@ Matrix<Long> differences(const Case& c) {
     return T;
 }
 
-// The largest difference of any entry, as a share of the largest entry.
+// Largest difference of any entry, relative to the largest entry.
 double apart(const Matrix<Long>& a, const Matrix<Long>& b) {
     const Long size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
     return size > 0 ? static_cast<double>((a - b).cwiseAbs().maxCoeff() / size) : 0;
@@ -132,7 +132,7 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
 }
 
 TEST(Tangent, OfABushingIsTheDerivativeOfItsForceAtAnyAngle) {
-    const double at_switch = std::sqrt(1e-3);  // where the series for small angles end
+    const double at_switch = std::sqrt(1e-3);  // upper end of the small-angle series
     Random random;
     for (const auto& [i, j] : sides)
         for (const double angle :
@@ -270,7 +270,7 @@ TEST(Tangent, OfEverythingTogetherIsTheDerivativeOfTheResidual) {
         expect_derivative(everything_at_once(random), fmt::format("trial {}", trial), 1e-10);
 }
 
-// The largest entry of T - Tᵀ - blockdiag(0, G̃_π) as a share of T's.
+// Largest entry of T - Tᵀ - blockdiag(0, G̃_π), relative to that of T.
 double asymmetry(const Case& c) {
     const Vector<Long> left = G<Long>(c, state_of<Long>(c.poses));
     const Matrix<Long> T = tangent<Long>(c);
@@ -283,15 +283,15 @@ double asymmetry(const Case& c) {
 }
 
 TEST(Tangent, IsSymmetricUpToTheMomentLeftOver) {
-    // Of a potential V, increments Δπ in ground axes: ∂(∂V/∂π)/∂π is symmetric up to the commutator of two
-    // rotations, so that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which equilibrium makes zero. No
-    // differences are involved.
+    // For a potential V and increments Δπ in ground axes, ∂(∂V/∂π)/∂π is symmetric up to the
+    // commutator of two rotations, so that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which is
+    // zero in equilibrium. No finite differences are involved.
     Random random;
     for (int trial = 0; trial < 20; ++trial) EXPECT_LE(asymmetry(everything_at_once(random)), 1e-16);
 }
 
 TEST(Tangent, IsSymmetricUpToTheMomentLeftOverWhereverThereIsAnEnergyAndNotWithoutOne) {
-    // Cardan and projected angles blow rounding up near their gimbal lock, which random poses come to.
+    // Cardan and projected angles amplify rounding near gimbal lock, which random poses approach.
     Random random;
     for (const Formulation& formulation : every_formulation()) {
         double worst = 0;

@@ -1,4 +1,4 @@
-// What a leg is given of a model: the ways of each branch, and the model as it stands on them.
+// Branch sides of a model, and the model active on each: the input of a leg.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,14 @@
-// Another solver's results, as files and as a command: read, run, judged; what cannot be judged never passes.
+// External candidates as files and as commands: read, run and judged; missing or unreadable results
+// never pass.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -21,7 +27,7 @@ using support::text_of;
 
 const std::string strut = scenes + "/mcpherson.yaml";
 
-// What `solve` writes of the strut, as a file of that name.
+// Output of `solve` for the strut, as a file of that name.
 std::string solved(const Folder& folder, const std::string& name, const std::string& how) {
     const std::string file = (folder.path / name).string();
     const Said said = elastocheck_says(fmt::format("solve {} {} {}", strut, how, file));
@@ -42,14 +48,26 @@ TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
         EXPECT_EQ(contains(said.out, "its states in the equilibrium leg's equations: force "), file == states)
             << said.out;
     }
-    // With forces, which the curves have and the states come to.
+    // With forces, from the curves and from the states.
     for (const auto& file : {curves, states}) {
         const Said said = judge("--steps 10 --tolerance 1e-6mm,1e-6deg,1e-4N,1e-4Nm --candidate " + file);
         EXPECT_EQ(said.code, 0) << said.out << said.err;
     }
 }
 
-// Turned about its own axis the bar has every place that is asked, and its bushing is twisted.
+TEST(CandidateCommand, ATableWithoutForcesSaysThatNoneWasCompared) {
+    const Folder folder;
+    const std::string all = solved(folder, "all.csv", "--steps 10 --method energy -o"),
+                      some = solved(folder, "some.csv",
+                                    "--steps 10 --method energy --channels toe,camber,travel -o");
+    const std::string none = " No force or moment was compared.";
+    EXPECT_FALSE(contains(judge("--steps 10 --candidate " + all).out, none));
+    const Said said = judge("--steps 10 --candidate " + some);
+    EXPECT_EQ(said.code, 0) << said.out;
+    EXPECT_TRUE(contains(said.out, none)) << said.out;
+}
+
+// A bar rotated about its own axis has the correct outputs, but its bushing is twisted.
 TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
     const Folder folder;
     const std::string states = (folder.path / "states.jsonl").string();
@@ -66,7 +84,7 @@ TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
     for (std::string line; std::getline(lines, line);) {
         auto state = json::parse(line);
         for (auto& body : state["bodies"]) {
-            // (w, x, y, z), then by 0.3 rad about the body's (0.8, 0.6, 0), where the bar lies
+            // (w, x, y, z), rotated by 0.3 rad about the body's (0.8, 0.6, 0), the axis of the bar
             const auto q = body["orientation"].get<std::vector<double>>();
             const double c = std::cos(0.15), a = 0.8 * std::sin(0.15), b = 0.6 * std::sin(0.15);
             body["orientation"] = {q[0] * c - q[1] * a - q[2] * b, q[0] * a + q[1] * c - q[3] * b,
@@ -173,7 +191,83 @@ TEST(CandidateCommand, NothingOfAProgramThatIsKilledGoesOn) {
     EXPECT_FALSE(std::filesystem::exists(mark));
 }
 
-// ---- Tables that are written otherwise.
+// Whether the process exists and has not ended.
+bool is_running(pid_t process) {
+    const std::string state = text_of(fmt::format("/proc/{}/stat", process));
+    const auto at = state.rfind(") ");
+    return at != state.npos && state[at + 2] != 'Z';
+}
+
+// Runs `elastocheck WORDS` with default signal actions and $TMPDIR in the folder, and sends the
+// signal when `file` has content. Returns the signal that ended it, or minus its exit code.
+int ended_by(const Folder& folder, const std::string& file, int signal,
+             const std::vector<std::string>& words) {
+    const std::string temporary = folder.path / "tmp";
+    std::filesystem::create_directories(temporary);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        for (const int one : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) std::signal(one, SIG_DFL);
+        ::setenv("TMPDIR", temporary.c_str(), 1);
+        const int nothing = ::open("/dev/null", O_RDWR);
+        for (const int stream : {0, 1, 2}) ::dup2(nothing, stream);
+        std::vector<char*> arguments{const_cast<char*>(ELASTOCHECK_COMMAND)};
+        for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+        arguments.push_back(nullptr);
+        ::execv(arguments[0], arguments.data());
+        ::_exit(127);
+    }
+    for (int k = 0; k < 3000 && text_of(file).empty(); ++k) ::usleep(10'000);
+    ::kill(child, signal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : -WEXITSTATUS(status);
+}
+
+TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndLeavesNoTemporaryFolder) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        const Folder folder;
+        const std::string numbers = (folder.path / "numbers").string(),
+                          wrapper = folder.write("wrapper",
+                                                 "#!/bin/sh\nsleep 600 & a=$!\nsleep 600 & echo $$ $a $! > " +
+                                                     numbers + "\nwait\n");
+        std::filesystem::permissions(wrapper, std::filesystem::perms(0755));
+        EXPECT_EQ(
+            ended_by(folder, numbers, signal,
+                     {"judge", scenes + "/pinned_bar.yaml", "--candidate-command", wrapper + " {output}"}),
+            signal);
+        std::istringstream list(text_of(numbers));
+        int processes = 0;
+        for (pid_t process; list >> process; ++processes) {
+            for (int k = 0; k < 200 && is_running(process); ++k) ::usleep(10'000);
+            EXPECT_FALSE(is_running(process)) << "signal " << signal;
+        }
+        EXPECT_EQ(processes, 3);
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path / "tmp")) << "signal " << signal;
+    }
+}
+
+TEST(CandidateCommand, AnUnusableTemporaryFolderIsNamedWithItsVariable) {
+    const Said said = support::says("env -u CI TMPDIR=/nowhere " ELASTOCHECK_COMMAND " judge " + scenes +
+                                    "/pinned_bar.yaml --candidate-command 'true {output}'");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err,
+                         "TMPDIR: no temporary folder can be made in /nowhere (No such file or "
+                         "directory); set TMPDIR to a folder that can be written"))
+        << said.err;
+}
+
+TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
+    const Folder folder;
+    const Said said =
+        elastocheck_says("trade " + scenes + "/pinned_bar.yaml --candidate-command 'false {output}' -o " +
+                         (folder.path / "out").string());
+    EXPECT_EQ(said.code, 3) << said.out << said.err;
+    const auto result = json::parse(text_of(folder.path / "out/result.json"));
+    EXPECT_TRUE(contains(result["scenes"][0]["verdict"].dump(),
+                         "the candidate with 10 steps could not be judged: 'false' ended with exit code 1"));
+}
+
+// ---- Tables in other layouts.
 
 std::string rows(const std::string& csv, const std::vector<std::string>& columns, const std::string& head,
                  const std::function<std::string(const std::string&, double)>& written) {
@@ -217,7 +311,7 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
     const Said said = judge("--steps 10 --candidate " + theirs + " --map " + map);
     EXPECT_EQ(said.code, 0) << said.out << said.err;
     EXPECT_TRUE(contains(said.out, "columns that are not compared: WHATEVER")) << said.out;
-    // Without the sign it is told.
+    // Without the sign, the error is diagnosed.
     std::string wrong = text_of(map);
     wrong.replace(wrong.find(", sign: -1"), 10, "");
     const Said turned =
@@ -297,7 +391,7 @@ TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
     EXPECT_TRUE(contains(no_number.out, "is no number at")) << no_number.out;
 }
 
-// The same poses in the other format, in another order of rows.
+// States as a table, with another order of rows, give the same result as JSON lines.
 TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
     const Folder folder;
     const std::string lines = solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
@@ -328,7 +422,7 @@ TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
     EXPECT_EQ(a["states"][0]["equilibrium"]["force_N"].size(), 5u);
 }
 
-// ---- In the other commands.
+// ---- Other commands.
 
 TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
     const Folder folder;

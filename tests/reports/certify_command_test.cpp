@@ -1,4 +1,4 @@
-// `elastocheck certify`: what it prints, writes and returns.
+// `elastocheck certify`: output, files and exit codes.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -43,7 +43,7 @@ TEST(CertifyCommand, APointThatIsProvablyNoneIsABrokenLimit) {
     EXPECT_TRUE(contains(said.out, "published: excluded at ")) << said.out;
 }
 
-// The published recursion's point is 2 mm off: what is asked is decided before the proof.
+// The published recursion's point has an error of 2 mm: the tolerance is fixed before the proof.
 TEST(CertifyCommand, TheToleranceIsWhatIsProved) {
     const std::string asks =
         "certify " + scenes + "/pinned_bar.yaml --method equilibrium --points 2 --tolerance ";

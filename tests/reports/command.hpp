@@ -1,4 +1,4 @@
-// The elastocheck command, the scenes that come with it, and the CSV that it writes.
+// Runs the elastocheck command in tests; paths of the built-in scenes, and a reader of its CSV.
 #pragma once
 
 #include <sstream>
@@ -11,7 +11,7 @@ namespace elastocheck {
 
 inline const std::string scenes = ELASTOCHECK_SCENES;
 
-// Runs `elastocheck ARGUMENTS` as on a desk, wherever the tests themselves run: CI is not set.
+// Runs `elastocheck ARGUMENTS` as in an interactive session: CI is unset.
 inline support::Said elastocheck_says(const std::string& arguments) {
     return support::says("env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " " + arguments);
 }

@@ -1,4 +1,4 @@
-// The command as a user runs it: output, exit codes, typos.
+// The command line: output, exit codes, typing errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
-// What an output means is written in one place: the README quotes it, inspect and result.json say it.
+// Definitions of outputs have one source: README, inspect and result.json agree.
 TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
     const std::string readme = text_of(scenes + "/../../reports/README.md");
     int rows = 0;
@@ -43,7 +43,7 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
             ++rows;
             std::string means = row.substr(row.find_first_not_of(' ', row.find("] ") + 1));
             if (means.starts_with("such as: ")) means = means.substr(9);
-            // Names of the scene and axes are what differs.
+            // Only names of the scene and axes differ.
             means = std::regex_replace(means, std::regex("^position of '[^']+'"), "position of the probe");
             means = std::regex_replace(means, std::regex("joint '[^']+' on ('[^']+'|ground)"),
                                        "the joint on its first body");
@@ -171,7 +171,8 @@ TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
 }
 
 TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
-    // The mount's sideways preload turning with the strut: in equilibrium, but no minimum of the energy.
+    // The mount's lateral preload rotates with the strut: an equilibrium, but no minimum of the
+    // energy.
     const Folder folder;
     std::string scene = text_of(scenes + "/chrono_mcpherson_preload.yaml");
     scene.replace(scene.find("bodies: [ground, strut], at: strut_top"), 38,

@@ -1,5 +1,5 @@
-// What befalls a run from outside: it is killed, the disk is full, the folder is closed, another run writes to the same
-// place. What was there stays, or what is new is there whole.
+// Interrupted runs: kill, full disk, read-only folder, concurrent runs. The output is the complete
+// old or the complete new one.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -37,7 +37,7 @@ std::set<std::string> names_in(const fs::path& folder) {
     return names;
 }
 
-// Each of `count` processes does `work` with its number; how many of them failed.
+// Runs `work` with its number in each of `count` processes; returns the number of failures.
 template <class Work>
 int failures(int count, Work work) {
     std::vector<pid_t> children;
@@ -75,8 +75,8 @@ TEST(Writers, OfOneFolderAtOnceLeaveItWholeAndNothingBesideIt) {
     constexpr int writers = 4, rounds = 40;
     int mixed = 0, seen = 0;
     const int failed = failures(writers + 1, [&](int writer) {
-        if (writer == writers) {  // the one who reads
-            // It may begin long before the first writer does.
+        if (writer == writers) {  // the reader
+            // It may start long before the first writer.
             for (int k = 0, early = 0; k < 4000 && early < 200'000;) {
                 const int open = ::open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
                 if (open < 0) {
@@ -87,7 +87,7 @@ TEST(Writers, OfOneFolderAtOnceLeaveItWholeAndNothingBesideIt) {
                 ++k;
                 const std::string first = of_file(open, "first"), second = of_file(open, "second");
                 ::close(open);
-                // Of a folder that was replaced meanwhile the files are going, one after the other.
+                // Files of a replaced folder are being removed one by one.
                 if (first.empty() || second.empty()) continue;
                 ++seen;
                 mixed += first != second;
@@ -125,15 +125,68 @@ TEST(Writers, OfOneFileAtOnceLeaveOneOfTheirs) {
 
 TEST(Writers, RemoveWhatOneOfThemThatWasKilledLeftOfAFileAndNoLivingOnes) {
     const Folder folder;
-    folder.write(".curves.csv.1-0.tmp", "half");
-    folder.write(".curves.csv.notes", "mine");
-    const std::string living = folder.write(".curves.csv.2-0.tmp", "half");
+    folder.write(".curves.csv.elastocheck-1-0.tmp", "half");
+    const std::set<std::string> theirs{".curves.csv.notes", ".curves.csv.1-0.tmp", ".curves.csv.mine.tmp",
+                                       ".curves.csv.elastocheck-1.tmp", ".curves.csv.elastocheck-a-b.tmp"};
+    for (const auto& name : theirs) folder.write(name, "mine");
+    const std::string living = folder.write(".curves.csv.elastocheck-2-0.tmp", "half");
     const int open = ::open(living.c_str(), O_RDONLY | O_CLOEXEC);
     ASSERT_EQ(::flock(open, LOCK_EX), 0);
     write_whole(folder.path / "curves.csv", curves_file.beginning, curves_file);
-    EXPECT_EQ(names_in(folder.path),
-              (std::set<std::string>{"curves.csv", ".curves.csv.notes", ".curves.csv.2-0.tmp"}));
+    auto expected = theirs;
+    expected.insert({"curves.csv", ".curves.csv.elastocheck-2-0.tmp"});
+    EXPECT_EQ(names_in(folder.path), expected);
     ::close(open);
+}
+
+TEST(Writers, NeverReplaceAFolderWithAnEmptyFolderOfSomebodyElses) {
+    const Folder folder;
+    const fs::path out = folder.path / "out";
+    write_folder(out, {{"first", "1"}, {"deep/er/second", "1"}});
+    write_folder(out, {{"first", "2"}, {"deep/er/second", "2"}});
+    for (const char* mine : {"mine", "deep/mine", "dee", "deep/er/mine"}) {
+        fs::create_directories(out / mine);
+        try {
+            write_folder(out, {{"first", "3"}});
+            ADD_FAILURE() << mine << " was lost";
+        } catch (const FileError& error) {
+            EXPECT_TRUE(contains(error.what(), std::string(mine) + ": is no part of a report"))
+                << error.what();
+        }
+        EXPECT_TRUE(fs::is_directory(out / mine));
+        fs::remove(out / mine);
+    }
+    write_folder(out, {{"first", "3"}});
+    EXPECT_EQ(names_in(out), (std::set<std::string>{"first", manifest}));
+}
+
+// ---- Ended by a signal, or by a reader that closes the pipe.
+
+TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
+    const Folder made;
+    ASSERT_EQ(says(command + "compare " + scene + " --steps 10 -o " + (made.path / "c").string()).code, 0);
+    for (const std::string& what :
+         std::vector<std::string>{"solve " + (fs::path(ELASTOCHECK_SCENES) / "front_axle.yaml").string() +
+                                      " --steps 200000 -o out.csv",
+                                  "report --from " + (made.path / "c/result.json").string() + " -o out"}) {
+        const Folder folder;
+        // The temporary name is there while it works.
+        const Said said =
+            says("cd " + folder.path.string() + " && { env --default-signal " + command + what +
+                 " >/dev/null 2>&1 & } && for k in $(seq 3000); do ls -A | grep -q elastocheck- "
+                 "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!");
+        EXPECT_TRUE(contains(said.out, ".elastocheck-")) << what << said.out;
+        EXPECT_EQ(said.code, 128 + SIGTERM) << what << said.out << said.err;
+        EXPECT_TRUE(fs::is_empty(folder.path)) << what;
+    }
+}
+
+TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
+    const Folder folder;
+    const Said said = says("cd " + folder.path.string() + " && env --default-signal " + command + "solve " +
+                           scene + " --steps 20000 --states states.jsonl | head -1");
+    EXPECT_TRUE(said.out.starts_with("branch,")) << said.out << said.err;
+    EXPECT_TRUE(fs::is_empty(folder.path));
 }
 
 // ---- Killed. Of folders: Harm.ComparesFilesAreOfOneRun, ReportCommand.KilledAtAnyMoment...
@@ -176,9 +229,9 @@ TEST(Killed, AtAnyMomentTheGateLeavesTheOldBaselineOrTheNewOne) {
         << "what the killed runs left behind is removed by the next one";
 }
 
-// ---- A disk that is full, or a folder that is closed.
+// ---- Full disk, read-only folder.
 
-// What each command writes, and the first of its files.
+// A command, and its first output file.
 struct Writing {
     std::string command, target;
 };
@@ -189,7 +242,7 @@ const std::vector<Writing> writings{{"compare s.yaml -o out", "out/result.json"}
                                     {"gate s.yaml --accept --reason r", "baselines/s.json"},
                                     {"gate s.yaml --junit out.xml", "out.xml"}};
 
-// A folder with a scene, a result to draw, and what an earlier run wrote.
+// A folder with a scene, a result to draw, and the output of an earlier run.
 struct Place : Folder {
     Place() {
         write("s.yaml", text_of(scene));
@@ -198,10 +251,10 @@ struct Place : Folder {
                       .code,
                   0);
         for (const auto& w : writings) EXPECT_EQ(in(w.command).code & ~3, 0) << w.command;
-        // Another scene from now on, so that what is written is another as well.
+        // The scene changes, so that the next output differs.
         write("s.yaml", std::regex_replace(text_of(scene), std::regex("to: [0-9.]+"), "to: 10"));
     }
-    // `before` is what a shell does first.
+    // `before` is a shell command run first.
     Said in(const std::string& what, const std::string& before = "true") const {
         return says("cd " + path.string() + " && " + before + " && " + command + what);
     }
@@ -213,7 +266,7 @@ TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
     for (const auto& [what, target] : writings) {
         const std::string before = text_of(place.path / target);
         ASSERT_FALSE(before.empty()) << target;
-        // As full after one block as a disk is for all: what is written fails, whoever writes it.
+        // A limit of one block acts like a full disk: every writer fails.
         const Said said = place.in(what, "ulimit -f 1");
         EXPECT_EQ(said.code, 2) << what << said.err;
         EXPECT_TRUE(contains(said.err, "cannot be written: File too large") || contains(said.err, "gnuplot"))
@@ -224,7 +277,7 @@ TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
     }
 }
 
-// The same on a file system that is full, where this user may make one.
+// The same on a full file system, where the user may mount one.
 TEST(FullDisk, OfAFileSystemToo) {
     const Folder folder;
     const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
@@ -248,7 +301,7 @@ TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
         EXPECT_TRUE(contains(said.err, "/proc/elastocheck")) << said.err;
     }
     const Place place;
-    // Who may do everything is told what others are: the right to pass over modes is given up.
+    // Root gives up the capability to bypass file permissions.
     const std::string as_others =
         ::geteuid() == 0 ? "setpriv --bounding-set -dac_override,-dac_read_search " : "";
     if (!as_others.empty() && says(as_others + "true").code != 0)

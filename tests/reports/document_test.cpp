@@ -1,4 +1,4 @@
-// result.json says what was compared, in a form that cannot lie by leaving out.
+// result.json contains everything that was compared; missing values are explicit.
 #include "reports/document/document.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
                 EXPECT_EQ(leg["curve"]["values"][channel["name"].get<std::string>()].size(), 13u);
             EXPECT_EQ(leg["residuals_by"].size(), 3u);
         }
-        // All but those that have no value somewhere on the branch: null.
+        // All channels except those that are undefined somewhere on the branch: null.
         const auto compared = std::ranges::count_if(s["channels"], [&](const json& channel) {
             return std::ranges::none_of(branch["legs"], [&](const json& leg) {
                 const auto& values = leg["curve"]["values"][channel["name"].get<std::string>()];
@@ -162,7 +162,7 @@ TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     }
 }
 
-// Three bytes of text, and as many lists of their own: a file of 30 MB would take 2 GB.
+// Three bytes of text, each with its own list: a file of 30 MB would take 2 GB.
 TEST(Json, WhatWouldTakeMoreMemoryThanThereIsIsRefusedBeforeItIsParsed) {
     std::string many = "[";
     while (many.size() < 30'000'000) many += "[],";
@@ -173,7 +173,7 @@ TEST(Json, WhatWouldTakeMoreMemoryThanThereIsIsRefusedBeforeItIsParsed) {
     } catch (const JsonError& error) {
         EXPECT_EQ(std::string(error.what()), "would take about 2.4 GB of memory; allowed: 2 GB");
     }
-    std::string text = "[\"";  // signs within a text are text
+    std::string text = "[\"";  // brackets within a string are text
     text += many.substr(0, 20'000'000) + "\"]";
     EXPECT_EQ(parse_json(text).size(), 1u);
 }

@@ -1,5 +1,4 @@
-// A suspension is drawn so that a stranger recognises it: every point named, no word on another, symbols where the
-// scene has them.
+// Drawing of a suspension: every point is named, no words overlap, symbols match the scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -130,12 +129,13 @@ TEST(Drawing, ABeamIsALineFromEndToEnd) {
     EXPECT_NEAR(left, 500, 1e-9);
     EXPECT_NEAR(right, -500, 1e-9);
     EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 2) << "a segment is none";
-    std::map<std::string, int> lines;  // of the arms, which are each other's image
+    std::map<std::string, int> lines;  // of the arms, which are mirror images
     for (const auto& link : d["links"]) lines[link["name"]] += link["kind"] == "body";
     EXPECT_EQ(lines["arm_left"], lines["arm_right"]);
 }
 
-// From the side forward is to the left, from above down the page, below the front view on which left is right.
+// In the side view forward is to the left; in the top view it points down the page, below the front
+// view, in which left is right.
 TEST(Drawing, ViewsAreThoseOfADrawingBoard) {
     Suspension s;
     s.points = {{"origin", "ground", true, {0, 0, 0}},

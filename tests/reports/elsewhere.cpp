@@ -1,6 +1,7 @@
-// Linked into the command, elastocheck_elsewhere is the same program where everything around it is other: the locale of the
-// environment is in force for C and C++ alike, as a program that calls the library may have it, and time goes by at a
-// millisecond a look, so that two runs can be compared byte by byte.
+// Linked into the command, this makes elastocheck_elsewhere: the same program in another
+// environment. The locale of the environment is active for C and C++, as in a program that calls
+// the library, and the clock advances by a millisecond per call, so that two runs can be compared
+// byte by byte.
 #include <ctime>
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// Text that crosses into another language stays text.
+// Escaping of text for each output language.
 #include "reports/text/escape.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,8 @@
 namespace elastocheck::reports {
 namespace {
 
-// Controls, writing that turns, bytes that are no UTF-8, and every language's own signs.
+// Control characters, direction changes, bytes that are not UTF-8, and special characters of every
+// language.
 const std::vector<std::string> odd{"a\nb",      "\r",     "\x1b[31m", "\x7F",         "\u0085",
                                    "\u009b31m", "\u2028", "\u202e",   "\u2066",       std::string("\0", 1),
                                    "\x85",      "\xA0",   "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
@@ -50,8 +51,8 @@ TEST(Escape, EachLanguagesOwnSignsAreText) {
     EXPECT_EQ(for_shell(""), "''");
 }
 
-// Spreadsheets compute what begins so, also in quotes, and take a semicolon for the end of a cell where numbers have
-// decimal commas.
+// Spreadsheets evaluate cells with these beginnings, also in quotes, and take a semicolon for a
+// separator where numbers have decimal commas.
 TEST(Escape, NoCellOfASpreadsheetIsAFormula) {
     EXPECT_EQ(for_csv("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
     EXPECT_EQ(for_csv("@SUM(1)"), "'@SUM(1)");

@@ -1,4 +1,4 @@
-// Files are written whole or not at all.
+// Atomic writing of files.
 #include "reports/files/files.hpp"
 
 #include <fcntl.h>
@@ -34,7 +34,7 @@ TEST(WriteWhole, MakesTheFolderAndReplacesAnOlderFile) {
     EXPECT_EQ(entries(file.parent_path()), 1);
 }
 
-// What a path holds, to be left alone; and what is said.
+// Contents that must not change; returns the error message.
 TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
     namespace fs = std::filesystem;
     const Folder folder;
@@ -66,7 +66,7 @@ TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
     EXPECT_EQ(refusal(baseline, baseline_file), "");
     expect(scene, baseline_file, "is no baseline");
 
-    // A link, be its target ours, absent or itself.
+    // A link to a file of this program, to nothing, or to itself.
     const auto ours = folder.path / "s.md";
     EXPECT_EQ(refusal(ours, summary_file), "");
     fs::create_symlink(ours, folder.path / "link");

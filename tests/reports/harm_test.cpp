@@ -1,5 +1,5 @@
-// What a command must never do, whatever it is given: write over what is not its own, say what it was not
-// told to say, work for nothing, or look as if all were well.
+// Safety of commands for any input: no overwriting of foreign files, no injected output, no useless
+// work, no hidden failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
         }
     }
     EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
-    // Its own it does replace.
+    // Files of this program are replaced.
     for (int again = 0; again < 2; ++again) {
         EXPECT_EQ(in(folder, "solve a.yaml --steps 2 -o curves.csv").code, 0);
         EXPECT_EQ(in(folder, "gate a.yaml --junit j.xml --summary s.md").code, 3);
@@ -115,7 +115,7 @@ TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
         EXPECT_FALSE(fs::exists(folder.path / "out"));
         fs::remove(folder.path / name);
     }
-    // A baseline in a folder is a name too, and so is the scene a baseline names.
+    // A baseline in a folder is a name too, and so is the scene that it names.
     fs::create_directory(folder.path / "baselines");
     std::ofstream(folder.path / "baselines" / "x\n::error::y.json") << "{}";
     const Said said = in(folder, "gate");
@@ -168,7 +168,7 @@ TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
     EXPECT_EQ(said.code, 2) << said.err;
     EXPECT_TRUE(contains(said.err, "points on 7 branches, by 3 of the legs, would take about")) << said.err;
     EXPECT_TRUE(contains(said.err, "steps a branch")) << said.err;
-    // A scene that asks for it itself.
+    // The scene itself requests too many steps.
     const std::string text = std::regex_replace(text_of(scenes + "/double_wishbone.yaml"),
                                                 std::regex("steps: [0-9]+"), "steps: 1000000");
     for (const char* command : {"compare s.yaml", "report s.yaml -o out", "gate s.yaml"}) {
@@ -238,7 +238,7 @@ TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
     }
 }
 
-// result.json and its tables are one folder, exchanged in one step: never of two runs.
+// result.json and its tables are replaced as one folder: never from two runs.
 TEST(Harm, ComparesFilesAreOfOneRun) {
     const Folder folder;
     ASSERT_EQ(in(folder, "compare " + scene + " --steps 2 -o out").code, 0);

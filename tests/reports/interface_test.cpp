@@ -1,4 +1,4 @@
-// The command line for programs, shells and readers of manuals: --json, --version, completion, the manual, --open.
+// Command-line interface for programs and shells: --json, --version, completion, manual, --open.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,7 +23,7 @@ const std::string scene = scenes + "/single_bushing.yaml";
 
 // ---- --json
 
-// The one document on standard output.
+// The single document on standard output.
 json document(const std::string& arguments, int code = 0) {
     const Said said = elastocheck_says(arguments + " --json");
     EXPECT_EQ(said.code, code) << arguments << ": " << said.err;
@@ -137,14 +137,14 @@ TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
     EXPECT_GT(std::abs(first["measured"].get<double>() - first["accepted"].get<double>()),
               first["noticeable"]);
     EXPECT_EQ(elastocheck_says("gate " + own + " --accept --reason x --json").code, 2);
-    // Its annotations are no part of the document.
+    // Its annotations are not part of the document.
     const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " + own +
                                    " --set bushings.mount.rates.x=3e5 --json");
     EXPECT_FALSE(json::parse(hub.out, nullptr, false).is_discarded());
     EXPECT_TRUE(contains(hub.err, "::error file=")) << hub.err;
 }
 
-// ---- what is written where
+// ---- Output files
 
 TEST(Names, AHyphenIsNoFileAndNoFolder) {
     const Folder folder;
@@ -193,7 +193,7 @@ TEST(Version, NamesTheCommitAndEveryLibrary) {
             << library << said;
 }
 
-// What the build says of the sources in a folder.
+// Commit recorded by the build for the sources in a folder.
 std::string commit_of(const std::string& folder) {
     const Said said = support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
                                     folder + "/reports/document/build_info.cmake");
@@ -255,7 +255,8 @@ TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
 
 // ---- completion
 
-// What bash offers after `line`, its last word begun: one a line. The name of the command in it is a function's, no matter.
+// Offers of bash after `line`, whose last word is incomplete: one per line. The command name in it
+// is a shell function.
 std::vector<std::string> offered(const std::string& line, const std::string& folder = "/") {
     const Folder own;
     const std::string script = own.write("script", elastocheck_says("completion bash").out + R"(
@@ -299,7 +300,7 @@ TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
     EXPECT_EQ(offered("elastocheck compare car.yaml -o ca", here), (Words{"cars"}));
 }
 
-// What --help offers, each shell knows, and each can read its text.
+// Every shell completes everything listed by --help, and can parse its script.
 TEST(Completion, OfEveryShellHasEveryCommandAndOption) {
     const Folder folder;
     const std::string help = elastocheck_says("--help").out;
@@ -350,7 +351,7 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
 
 // ---- report
 
-// Draws a report from a document that is there, so that nothing is solved.
+// Draws a report from an existing document, so that nothing is solved.
 struct Report {
     Folder folder;
     std::string document = (folder.path / "in/result.json").string();

@@ -1,8 +1,9 @@
-// Pass or fail: one rule, one sentence, the same wherever it is said.
+// Verdict: one rule and one sentence in all outputs.
 #include "compare/judgement.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/compile.hpp"
@@ -36,16 +37,94 @@ TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     EXPECT_EQ(j.verdict, Grade::fail);
     ASSERT_TRUE(j.position && j.angle && j.wheel_rate);
-    const double mm = std::max(j.position->max, compare::as_position(*j.wheel_rate));
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 1.01 * j.angle->max}).verdict,
-              Grade::pass);
+    // of every position and angle, main or not
+    double mm = compare::as_position(*j.wheel_rate), deg = 0;
+    for (const auto& branch : compared().branches)
+        for (const auto* reading : {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
+            for (std::size_t c = 0; c < reading->channels.size(); ++c)
+                if (const auto& channel = compared().channels[c]; compare::is_motion(channel)) {
+                    double& most = channel.unit == compare::Unit::mm ? mm : deg;
+                    most = std::max(most, reading->channels[c].max);
+                }
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 1.01 * deg}).verdict, Grade::pass);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * mm, 1.01 * deg}).verdict, Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 0.99 * deg}).verdict, Grade::fail);
     EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Grade::fail);
     EXPECT_EQ(compare::assess(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Grade::fail);
     EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict, Grade::pass)
         << "an angle that nobody asked about";
 }
 
-// A jack dictates the travel: every position is right whatever force it takes, and a rate that is wrong must not pass.
+// Joint forces, drive forces and rates are judged like positions: a single one with an error of
+// `share` of its extent decides the verdict.
+TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
+    const Model model = compile(support::scene("chrono_mcpherson_travel"));
+    compare::Options options;
+    options.recursion.method = recursive::find_method("series").value();
+    options.recursion.steps = 10;
+    const auto right = compare::compare(model, options);
+    const auto whole = compare::assess(model, right, compare::default_tolerance, false);
+    ASSERT_EQ(whole.verdict, Grade::pass) << sentence(whole);
+    EXPECT_TRUE(contains(sentence(whole), "exact here")) << sentence(whole);
+    EXPECT_TRUE(contains(sentence(whole), " outputs compared, ")) << sentence(whole);
+    EXPECT_GT(whole.others, 20);
+    int spoiled = 0;
+    for (std::size_t c = 0; c < right.channels.size(); ++c) {
+        const auto& channel = right.channels[c];
+        if (compare::is_motion(channel) || !right.branches[0].determined[c]) continue;
+        const auto off_by = [&](double share) {
+            auto comparison = right;
+            auto& branch = comparison.branches[0];
+            branch.deviation.equal_parameter.channels[c].max = share * branch.extents[c];
+            return compare::assess(model, comparison, compare::default_tolerance, false);
+        };
+        const auto wrong = off_by(0.07), little = off_by(0.005);
+        EXPECT_EQ(wrong.verdict, Grade::fail) << channel.name;
+        EXPECT_EQ(little.verdict, Grade::pass) << channel.name;
+        EXPECT_FALSE(little.exact) << channel.name;
+        std::string name = channel.name;
+        std::ranges::replace(name, '_', ' ');
+        for (const auto& j : {wrong, little})
+            EXPECT_TRUE(contains(sentence(j), " of its extent (" + name + ", branch "))
+                << name << ": " << sentence(j);
+        EXPECT_TRUE(contains(sentence(wrong), ", 7.0\u00a0% of its extent (")) << sentence(wrong);
+        ++spoiled;
+    }
+    EXPECT_GT(spoiled, 20);
+}
+
+// Forces are judged by a tolerance in newtons or by a share of their extents, as given.
+TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
+    using compare::Asks, compare::parse_tolerance;
+    const auto verdict = [&](const char* text) {
+        return compare::assess(mcpherson(), compared(), parse_tolerance(text, Asks::forces_too)).verdict;
+    };
+    EXPECT_EQ(verdict("100mm,10deg"), Grade::fail);  // by 1 %
+    EXPECT_EQ(verdict("100mm,10deg,1000%"), Grade::pass);
+    EXPECT_EQ(verdict("100mm,10deg,1000%,1N"), Grade::fail);
+    EXPECT_EQ(verdict("100mm,10deg,1000%,1e5N,1e5Nm"), Grade::pass);
+}
+
+// Extents: components of a wrench have that of the largest one; a nearly constant output has a
+// tenth of its value; a force that is small beside the acting forces has a thousandth of these.
+TEST(Extents, AreOfTheWrenchOfTheValueOrOfWhatActs) {
+    const Model& model = mcpherson();
+    const auto all = compare::channels(model);
+    compare::Curve curve{.unit = compare::Unit::newton, .a = {0, 1}, .start = 0, .values = {}};
+    curve.values.assign(2, std::vector<double>(all.size(), 0));
+    std::size_t x = 0;
+    while (!all[x].name.ends_with(".force_x")) ++x;
+    curve.values[1][x] = 500;                              // one component
+    curve.values[0][x + 6] = curve.values[1][x + 6] = 50;  // of the next joint, still
+    const auto extents = compare::extents_of(all, curve, {.force = 1000, .length = 2, .round_off = 0});
+    for (const std::size_t c : {x, x + 1, x + 2}) EXPECT_EQ(extents[c], 500) << all[c].name;
+    for (const std::size_t c : {x + 3, x + 4, x + 5}) EXPECT_EQ(extents[c], 2) << all[c].name;
+    for (const std::size_t c : {x + 6, x + 7, x + 8}) EXPECT_EQ(extents[c], 5) << all[c].name;
+    for (const std::size_t c : {x + 12, x + 13, x + 14}) EXPECT_EQ(extents[c], 1) << all[c].name;
+}
+
+// A jack prescribes the travel: every position is correct whatever the force, so a wrong wheel rate
+// must fail the verdict by itself.
 TEST(Assessment, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
@@ -91,7 +170,7 @@ TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
         << sentence(j);
     j.position_across->max = 1.2;
     EXPECT_TRUE(contains(sentence(j), "1.3\u00a0mm (left.wheel centre z, branch roll)")) << sentence(j);
-    // What breaks it by little, or is next to nothing itself, is seen to.
+    // A small excess, or a value near zero, is shown with enough digits.
     j.tolerance.mm = 1.2999;
     EXPECT_TRUE(contains(sentence(j), "by up to 1.3 mm")) << sentence(j);
     j.position->max = 1.30004, j.tolerance.mm = 1.3;
@@ -103,9 +182,10 @@ TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
 TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);
-    for (const char* part :
-         {"Fail: the linear recursion as published is off", "wheel centre", ", branch ", "\u00a0deg (",
-          "its wheel rate is up to ", "The tolerance is 0.01\u00a0mm and 0.001\u00a0deg (the default)."})
+    for (const char* part : {"Fail: the linear recursion as published is off", "wheel centre", ", branch ",
+                             "\u00a0deg (", "its wheel rate is up to ",
+                             "The tolerance is 0.01\u00a0mm, 0.001\u00a0deg and 1\u00a0% of the extent of "
+                             "forces, moments and rates (the default)."})
         EXPECT_TRUE(contains(text, part)) << part << ": " << text;
     const std::string given = sentence(compare::assess(mcpherson(), compared(), {100, 100}));
     EXPECT_TRUE(given.starts_with("Pass: ")) << given;
@@ -123,9 +203,10 @@ TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
     EXPECT_TRUE(said.out.ends_with(judgement["sentence"].get<std::string>() + "\n")) << said.out;
     const auto wide = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m");
     EXPECT_EQ(wide.code, 2);
-    EXPECT_TRUE(contains(
-        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg").out,
-        "\nPass: "));
+    EXPECT_TRUE(contains(elastocheck_says("compare " + scenes +
+                                          "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg,100000%")
+                             .out,
+                         "\nPass: "));
 }
 
 }  // namespace

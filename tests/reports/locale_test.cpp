@@ -1,4 +1,4 @@
-// Where numbers are written with a decimal comma: every command says and writes what it does anywhere, byte for byte.
+// Locale with decimal comma: output of every command is unchanged, byte for byte.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <langinfo.h>
@@ -21,7 +21,7 @@ using support::contains;
 using support::Folder;
 using support::text_of;
 
-// German, compiled into the folder: of a machine no locale is asked for but its sources (package locales).
+// German locale, compiled into the folder; the machine only needs locale sources (package locales).
 struct German {
     Folder folder;
 
@@ -45,9 +45,9 @@ struct German {
     }
 };
 
-// A line of shell, $E the command, $SCENES and $SAMPLES folders; run in a folder of its own.
+// A shell line with $E the command, $SCENES and $SAMPLES folders; run in its own folder.
 struct Line {
-    const char* command;  // which of those that --help lists
+    const char* command;  // one of those listed by --help
     const char* line;
 };
 const Line lines[] = {
@@ -77,12 +77,12 @@ const Line lines[] = {
      "$E judge $SCENES/pendulum.yaml --candidate-timeout 30.5 --candidate-command "
      "\"$E solve {scene} --steps {steps} -o {output}\""},
     {"report", "$E report $SCENES/single_bushing.yaml -o page && $E report --from page/result.json -o again"},
-    // Its joints contradict each other, so that nobody takes the million steps that it is asked for.
+    // Its joints are inconsistent, so no solver takes the requested million steps.
     {"stress",
      "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 -o extremes"},
     {"equilibria", "$E equilibria $SCENES/two_spring_arch.yaml --at -120.5 --turned 80.5"},
     {"completion", "$E completion bash; $E man"},
-    // What is wrong is told with its line and its number.
+    // Errors are reported with line and number.
     {"inspect",
      "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; sed 's/^units:.*/units: {length: 1.5}/' "
      "$SCENES/pendulum.yaml; } "
@@ -104,7 +104,7 @@ Found run(const std::string& line, const std::string& environment) {
         "cd {} && unset CI GITHUB_STEP_SUMMARY; export {} E={} SCENES={} SAMPLES={} FIXTURES={}; {}",
         folder.path.string(), environment, ELASTOCHECK_ELSEWHERE, ELASTOCHECK_SCENES, ELASTOCHECK_SAMPLES,
         ELASTOCHECK_FIXTURES, line));
-    // Several threads look at one clock.
+    // Several threads advance one clock.
     if (contains(line, " stress ")) found.said.out = std::regex_replace(found.said.out, seconds, "");
     for (const auto& entry : fs::recursive_directory_iterator(folder.path))
         if (entry.is_regular_file())
@@ -112,7 +112,7 @@ Found run(const std::string& line, const std::string& environment) {
     return found;
 }
 
-// Where two texts part.
+// First difference of two texts.
 std::string parting(const std::string& a, const std::string& b) {
     std::size_t at = 0;
     while (at < a.size() && at < b.size() && a[at] == b[at]) ++at;

@@ -1,4 +1,4 @@
-// Measured curves: read, refused, compared.
+// Measured curves: reading, rejection, comparison.
 #include "reports/document/measurement.hpp"
 
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ std::string refusal(const std::string& csv) {
 
 TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
     std::string csv = "load_N,toe_deg\n";
-    for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none that is reached
+    for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none within range
     EXPECT_EQ(measured(csv)["points"], most_measured);
     EXPECT_EQ(refusal(csv + "5e9,0\n"), "kc.csv:100002: more points than 100000, the most that are read");
 }
@@ -105,7 +105,7 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     EXPECT_TRUE(fourth);
 }
 
-// Whatever is a position or an angle can be measured.
+// Every position or angle can be measured.
 TEST(Measurement, MayBeOfAnyOutputThatIsAFunctionOfTheState) {
     const auto& all = solved().comparison.channels;
     const auto& curve = solved().comparison.branches[0].runs[1].curve;
@@ -158,9 +158,9 @@ Sweep first_sweep(const json& result, const std::string& file) {
     return sweeps_of(Field{&result["scenes"][0], "scenes[0]", &file}).front();
 }
 
-// A point of one branch is neither compared with another nor drawn or tabulated on it.
+// A point of one branch is not compared, drawn or tabulated on another.
 TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
-    // Said to be of rebound, though they lie where jounce goes: nothing to compare.
+    // Assigned to rebound but in the range of jounce: no comparison.
     const json misplaced = measured("branch,travel_mm,toe_deg\nrebound,50,-1.8\n");
     EXPECT_EQ(misplaced["readings"][0]["channels"][0]["compared"], 0);
     json result = sample_result();
@@ -174,11 +174,12 @@ TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
     const auto jounce = measured_for(scene, sweep, sweep.branches[0], "toe", false);
     ASSERT_TRUE(jounce);
     EXPECT_EQ(jounce->rows.size(), 2u);
-    EXPECT_TRUE(std::isnan(value_between(*jounce, 0)));  // not from jounce's 20 mm to rebound's -60 mm
+    // no interpolation from jounce's 20 mm to rebound's -60 mm
+    EXPECT_TRUE(std::isnan(value_between(*jounce, 0)));
     EXPECT_NEAR(value_between(*jounce, 40), -1.35, 1e-12);
 }
 
-// Without travel the figures go over the load, and the points are in them.
+// Without travel the figures use the load as abscissa, with the points.
 TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
     json result = sample_result();
     result["scenes"][0]["measured"] =
@@ -203,7 +204,7 @@ TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
     EXPECT_EQ(drawn, 2);  // toe and lateral movement
 }
 
-// A scene out of balance settles before it travels; a measurement counts from where it is drawn.
+// An unbalanced scene settles first; a measurement is relative to the design position.
 TEST(Measurement, TravelCountsFromTheDesignPosition) {
     Scene heavy = support::scene("chrono_mcpherson");
     heavy.static_loads = {std::get<Load>(heavy.branches[0].drivers.at(0).what)};
@@ -227,7 +228,7 @@ TEST(Measurement, TravelCountsFromTheDesignPosition) {
     EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 1e-9);
 }
 
-// Newtons say nothing of a branch that goes by millimetres.
+// Newtons do not place a point on a branch in millimetres.
 TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
@@ -253,7 +254,7 @@ TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
                     comparison);
 }
 
-// As a rig delivers them: one file, several load cases, each over what drives it, in the rig's own names.
+// As from a test rig: one file, several load cases with their own parameters and names.
 struct Rig {
     Model model = [] {
         Scene scene = support::scene("chrono_mcpherson_travel");
@@ -312,8 +313,8 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
         EXPECT_THROW((void)parse_load_case(wrong), std::invalid_argument) << wrong;
 }
 
-// A rig's file has a travel column for its ride case and a force for the others: a point is drawn over what its figure
-// goes over, and one without that is not drawn at all.
+// A rig's file has a travel column for its ride case and a force for the others: a point is drawn
+// over the abscissa of its figure, and omitted without it.
 TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
     json result = sample_result("chrono_mcpherson_travel");
     result["scenes"][0]["measured"] =

@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Formatting of numbers for readers.
 #include "reports/page/numbers.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The page as its readers get it: without a network, without eyes, on a phone, in a browser.
+// The HTML page without network, for screen readers, on a phone, in a browser.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -117,7 +117,7 @@ TEST(Page, TheMarkdownTwinSaysTheSame) {
                       md = text_of(folder.path / "r" / "report.md");
     EXPECT_EQ(all(html, "<h3[^>]*>([^<]*)</h3>"), all(md, "\n### ([^\n]*)"));
     EXPECT_EQ(all(html, "<h4[^>]*>([^<]*)</h4>"), all(md, "\n#### ([^\n]*)"));
-    // but for the summary of scenes, which Markdown does not fold
+    // except the summary of scenes, which Markdown does not fold
     EXPECT_EQ(parts(html, "<table>", "</table>").size(),
               1 + parts(md, "<details><summary>", "</summary>").size());
     for (const auto& file : all(md, "\\]\\((figures/[^)]*)\\)"))
@@ -125,7 +125,7 @@ TEST(Page, TheMarkdownTwinSaysTheSame) {
     EXPECT_EQ(all(md, "\\]\\((figures/)").size(), parts(html, "<svg", "</svg>").size());
 }
 
-// In a browser: a script that the test adds measures the page and leaves what it found in the body.
+// In a browser: a script added by the test measures the page and writes the result into the body.
 json measured_in_a_browser(const std::string& width, const std::string& scheme) {
     const Folder folder;
     std::string html = page();

@@ -1,4 +1,4 @@
-// A report is a folder that is replaced in one step, and never somebody else's.
+// Report folders: atomic replacement, and protection of foreign files.
 #include "reports/page/report.hpp"
 
 #include <fcntl.h>
@@ -85,7 +85,7 @@ TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
         fs::remove(svg.replace_extension(".svg"));
         const std::string script = "figures/" + entry.path().filename().string();
         const std::string there = "cd " + (folder.path / "r").string() + " && ";
-        // In the C locale gnuplot warns that it has no degree sign, and draws all the same.
+        // In the C locale gnuplot warns about the degree sign, but draws.
         const auto said = support::says(there + "LC_ALL=C.UTF-8 gnuplot " + script);
         EXPECT_EQ(said.code, 0) << said.err;
         EXPECT_TRUE(said.err.empty()) << said.err;
@@ -122,7 +122,7 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
     EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
 }
 
-// A name with a line end would leave the string or the comment it stands in.
+// A line end in a name would end the string or comment that contains it.
 TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
     const Folder folder;
     for (const std::string evil :
@@ -139,7 +139,7 @@ TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
             files += !entry.is_directory();
         EXPECT_EQ(files, 3) << evil;  // the script, its data, the picture
     }
-    // A document with such a name is refused before it comes to that.
+    // A document with such a name is rejected earlier.
     json result = small_result("x");
     result["scenes"][0]["branches"][0]["name"] = "up\nsystem 'touch hacked'";
     try {
@@ -234,7 +234,7 @@ TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
 
 TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     const Folder folder;
-    // Somebody's list of files is no proof, even if it lists all there is.
+    // A foreign list of files is not accepted, even if it lists all files.
     const fs::path theirs = folder.path / "theirs";
     fs::create_directory(theirs);
     std::ofstream(theirs / "files.txt") << "thesis.tex\nfiles.txt\n";
@@ -242,12 +242,12 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     Contents before = contents_of(theirs);
     EXPECT_TRUE(contains(refusal(theirs), "files.txt: is no part of a report")) << refusal(theirs);
     EXPECT_EQ(contents_of(theirs), before);
-    // Nor is one with our first line and the name, but another content.
+    // Nor is a manifest with the right first line and name, but another content.
     std::ofstream(theirs / "files.txt") << "elastocheck files 1\n" << input_hash("draft") << "  thesis.tex\n";
     EXPECT_TRUE(contains(refusal(theirs), "thesis.tex: was changed since elastocheck wrote it"))
         << refusal(theirs);
     EXPECT_TRUE(fs::exists(theirs / "thesis.tex"));
-    // A result.json beside it proves nothing either.
+    // A result.json beside it is not accepted either.
     const fs::path result = folder.path / "result";
     fs::create_directory(result);
     std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/3\"}";
@@ -255,7 +255,7 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     before = contents_of(result);
     EXPECT_TRUE(contains(refusal(result), "curves.csv: is no part of a report"));
     EXPECT_EQ(contents_of(result), before);
-    // What was edited in a report of ours, or a link put in its place.
+    // An edited file in a report of this program, or a link in its place.
     write_report(small_result("old"), "result.json", folder.path / "r");
     std::ofstream(folder.path / "r" / "report.md", std::ios::app) << "my remark\n";
     EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: was changed since"))
@@ -392,7 +392,7 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
     EXPECT_EQ(result["reproduce"], "elastocheck report " + scene + " -o " + (folder.path / "out").string());
 }
 
-// Whatever moment it dies at, the folder holds the old report or the new one.
+// Killed at any moment, the folder holds the old report or the new one.
 TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
@@ -429,7 +429,7 @@ TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
     Contents before = expected[1];
     for (int round = 0; round < 25; ++round) {
         const pid_t child = draw(documents[round % 2]);
-        // Half of them late, where files are renamed and removed.
+        // Half of them late, while files are renamed and removed.
         const double share = round % 2 == 0 ? std::uniform_real_distribution(0.0, 1.05)(random)
                                             : std::uniform_real_distribution(0.8, 1.05)(random);
         std::this_thread::sleep_for(std::chrono::duration<double>(share * whole));

@@ -1,4 +1,4 @@
-// A result document with every part, made quickly, to be damaged and drawn.
+// Sample result document with all parts, for tests of readers and pages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace elastocheck::reports {
 
-// As a reader of result.json has it: NaN is null. Made once per scene.
+// As read from result.json: NaN is null. Made once per scene.
 const nlohmann::ordered_json& sample_result(const std::string& scene = "chrono_mcpherson");
 
 }  // namespace elastocheck::reports

@@ -1,4 +1,4 @@
-// What the command makes of a scene before it solves it, and beside: templates, trim, formulations, all of it kept.
+// Commands before solving: templates, trim, inspect, formulations, --keep-all.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,6 +28,27 @@ std::vector<std::string> shipped() {
     return names;
 }
 
+// ---- elastocheck import
+
+// A body whose weight acts along a free slide is imported, and the head of its scene says that no branch begins.
+TEST(Import, SaysWhetherTheDrawnPositionSettles) {
+    const Folder here;
+    const auto head_of = [&](const std::string& sample) {
+        const std::string file = (here.path / "scene.yaml").string();
+        std::filesystem::remove(file);
+        const Said said = elastocheck_says("import " + scenes + "/../../tests/models/import/samples/" +
+                                           sample + " -o " + file);
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_TRUE(contains(said.out, "settle")) << said.out;
+        const std::string text = text_of(file);
+        return text.substr(0, text.find("\nelastocheck: 1"));
+    };
+    EXPECT_TRUE(contains(head_of("chrono_Cylindrical_Case01.adm"),
+                         "# The drawn position does NOT settle, so no branch begins: loaded idle mode: "));
+    EXPECT_TRUE(contains(head_of("chrono_RotSpring_Case01.adm"),
+                         "# The drawn position settles: bodies go by up to 646 mm"));
+}
+
 // ---- elastocheck new
 
 TEST(New, ListsEverySceneWithALine) {
@@ -44,7 +65,7 @@ TEST(New, PrintsTheSceneAsItIsAndItStandsAlone) {
         const Said said = elastocheck_says("new " + name + " > " + file);
         EXPECT_EQ(said.code, 0) << name << said.err;
         EXPECT_EQ(text_of(file), text_of(scenes + "/" + name + ".yaml")) << name;
-        // Nothing has to lie beside it: it is read (trimmed or not) from a folder of its own.
+        // Self-contained: it is read from its own folder, trimmed or not.
         const Said read = elastocheck_says("inspect " + file);
         EXPECT_NE(read.code, 2) << name << ": " << read.err;
     }
@@ -82,7 +103,7 @@ TEST(TrimCommand, EveryCommandStartsFromTheTrimmedScene) {
          {"trim, found by the equilibrium leg", "confirmed by the energy leg", "springs.coil.preload",
           "+500 N: force 500 N in compression, free length 425 mm", "until top.z"})
         EXPECT_TRUE(contains(inspected.out, part)) << part << "\n" << inspected.out;
-    // Without the trim the block would begin 25 mm lower.
+    // Without the trim the block would start 25 mm lower.
     const Said solved = elastocheck_says("solve " + scene + " --method equilibrium");
     EXPECT_TRUE(contains(solved.out, "up,equilibrium,0,")) << solved.out;
     EXPECT_FALSE(contains(solved.out, ",375,")) << solved.out;
@@ -108,7 +129,7 @@ TEST(TrimCommand, QuestionThatIsIllPosedIsBadInputWithItsLine) {
 
 TEST(TrimCommand, WhatIsNotReachedLeavesNothingToJudge) {
     const Folder folder;
-    // The rod stops the block 0.5 m above where it hangs.
+    // The rod stops the block 0.5 m above its hanging position.
     const auto scene = folder.write(
         "block.yaml",
         "elastocheck: 1\nname: rod\nunits: {length: m, angle: rad, force: N}\n"
@@ -143,7 +164,7 @@ TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
     const Said said = elastocheck_says("compare " + folder.write("my_arm.yaml", lines));
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(contains(said.out, "roll_centre_height")) << said.out;
-    // The sentence that it quotes, whatever its lines.
+    // The quoted sentence, independent of line breaks.
     std::string flat = page, sentence = parts_of(said.out, '\n').back();
     std::ranges::replace(flat, '\n', ' ');
     for (const std::string space : {"\u00a0", "\u202f"})
@@ -266,7 +287,7 @@ TEST(FormulationsCommand, SceneWithoutAChoiceCouldNotBeJudged) {
         << said.out;
 }
 
-// ---- no energy
+// ---- No energy
 
 TEST(NoEnergy, IsSaidAndTheSeriesJudges) {
     const Folder folder;
@@ -292,7 +313,7 @@ TEST(NoEnergy, IsSaidAndTheSeriesJudges) {
 
 // ---- too large for the energy leg
 
-// A cantilever of so many bushings.
+// A cantilever of n bushings.
 std::string chain(int n) {
     std::string points, bodies, bushings;
     for (int k = 0; k <= n; ++k) points += fmt::format("  p{}: [{:.6f}, 0.0, 0.0]\n", k, 1.0 * k / n);

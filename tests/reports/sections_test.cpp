@@ -1,4 +1,4 @@
-// What a report says is a function of result.json, and a broken document is told by its broken field.
+// Sections of a report are functions of result.json, and errors name the broken field.
 #include "reports/page/sections/sections.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::string said(const json& result) {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
-// Calls f on every value of the document; of a list only on the first.
+// Calls f on every value of the document; in a list only on the first.
 template <class F>
 void for_each_place(const json& value, const json::json_pointer& place, F&& f) {
     if (!place.empty()) f(place);
@@ -63,7 +63,7 @@ TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
         EXPECT_TRUE(section.id != "price" && section.id != "convergence" && section.id != "arithmetic" &&
                     section.id != "drawing");
     const std::string text = said(result);
-    EXPECT_TRUE(contains(text, " at the end of rebound.")) << text;  // no word on the gap
+    EXPECT_TRUE(contains(text, " at the end of rebound.")) << text;  // no statement about the gap
     EXPECT_FALSE(contains(text, "The method ‘")) << text;
 }
 
@@ -121,7 +121,7 @@ TEST(Verdict, IsMadeOfTheNumbers) {
         << said(result);
 }
 
-// compare decides which of them it is; here each finds its words.
+// compare classifies the role; this tests the text of each.
 TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
     struct Case {
         const char *role, *words;
@@ -141,7 +141,7 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
     }
 }
 
-// Where a motion dictates every position, what is wrong is the force that it takes.
+// Where a motion prescribes every position, the error is in the force.
 TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     const std::string text = said(sample_result("arch_driven"));
     EXPECT_TRUE(contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
@@ -150,7 +150,7 @@ TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
         << said(sample_result("slider_crank"));
 }
 
-// "at equal load" is no word for a branch that a motion drives.
+// "at equal load" does not apply to a branch driven by a motion.
 TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
     const std::string text = said(sample_result("slider_crank"));
     EXPECT_TRUE(contains(text, "at equal parameter")) << text;
@@ -160,13 +160,13 @@ TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
             EXPECT_FALSE(contains(group.caption, "equal load")) << group.caption;
             for (const auto& figure : group.figures) {
                 EXPECT_FALSE(contains(figure.title + figure.x + figure.description, "load")) << figure.id;
-                // Nothing is drawn over what turns back.
+                // No figure has a non-monotonic abscissa.
                 EXPECT_TRUE(section.id != "curves" || figure.x == "parameter [deg]") << figure.id;
             }
         }
 }
 
-// Both ends of a branch that is walked both ways, and the force where the travel is given.
+// Both ends of a two-sided branch, and the force where the travel is prescribed.
 TEST(Verdict, TellsTheWheelRateOfEveryEnd) {
     const json result = sample_result("chrono_mcpherson_travel");
     const std::string text = said(result);

@@ -1,4 +1,5 @@
-// `elastocheck solve`: rows as their points are found, of what is asked for, in no more memory for more steps.
+// `elastocheck solve`: rows written as points are found, only requested outputs, memory independent
+// of the steps.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ using support::Folder;
 using support::Said;
 using support::text_of;
 
-// All rows at once, from the paths with every point in them.
+// All rows at once, from stored paths.
 std::string csv_of_kept_points(const Model& model, const compare::Gait& gait, int steps) {
     const auto channels = compare::channels(model);
     std::string csv = reports::curves_header(channels);
@@ -92,7 +93,7 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
            {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]", "ball_joint.force_z [N]"});
 }
 
-// What elements bear is no column unless it is asked for; the closed form of the scene says how much.
+// Element forces are columns only if requested; checked against the closed form of the scene.
 TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
     const std::string command = "solve " + scenes + "/tyre_on_road.yaml --steps 10 --method equilibrium";
     EXPECT_FALSE(contains(elastocheck_says(command).out, "suspension.force"));
@@ -180,7 +181,8 @@ TEST(CompareCommand, EveryNthStepIsCompared) {
     const std::string scene = scenes + "/bushing_pair.yaml", out = (folder.path / "out").string();
     const Said said = elastocheck_says("compare " + scene + " --steps 40 --every 15 -o " + out);
     EXPECT_EQ(said.code, 0) << said.err;
-    // scene, branch, leg, parameter, its unit, output, unit, value: the recursion's are those that `solve` writes.
+    // scene, branch, leg, parameter, its unit, output, unit, value: those of the recursion equal
+    // the output of `solve`.
     const auto all = cells_of(text_of(out + "/curves.csv"));
     std::vector<std::vector<std::string>> written, expected;
     std::set<std::string> visited;
@@ -198,7 +200,7 @@ TEST(CompareCommand, EveryNthStepIsCompared) {
     EXPECT_EQ(visited.size(), 2u * 4) << "the references are asked for no more";
 }
 
-// One way of the arch passes its limit point, at -211.5 N.
+// One side of the arch passes its limit point, at -211.5 N.
 TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
     const Folder folder;
     const std::string arch = text_of(scenes + "/two_spring_arch.yaml");
@@ -224,6 +226,52 @@ TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
     }
 }
 
+// ADAMS has no statement for the bushing formulation of the double wishbone; the converted model
+// differs, and the command reports by how much.
+TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
+    const Folder folder;
+    const std::string deck = (folder.path / "m.adm").string(),
+                      command = "export " + scenes + "/double_wishbone.yaml ";
+    const Said refused = elastocheck_says(command + "-o " + deck);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(contains(refused.err, "--formulation adams converts it")) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(deck));
+    const Said said = elastocheck_says(command + "--formulation adams -o " + deck);
+    EXPECT_EQ(said.code, 0) << said.err;
+    const std::string effect =
+        "converted to the bushing formulation of adams: the outputs move by up to 6.9e-05 mm (wheel_centre_z "
+        "on "
+        "branch 'vertical' at 3000 N) and 1e-05 deg (toe on branch 'travel' at 80 mm), by the equilibrium "
+        "leg";
+    EXPECT_TRUE(contains(said.err, effect)) << said.err;
+    EXPECT_TRUE(contains(text_of(deck), effect));
+    EXPECT_EQ(elastocheck_says("import " + deck + " -o " + (folder.path / "s.yaml").string()).code, 0);
+    EXPECT_EQ(elastocheck_says(command + "--formulation chrono").code, 2);
+}
+
+// A static load on an unresisted motion: no point is reached, not even a = 0.
+TEST(SolveCommand, StatesOfARunThatReachesNoneAreNoFile) {
+    const Folder folder;
+    const std::string loose = folder.write("loose.yaml", R"(elastocheck: 1
+name: Loose
+units: {length: m, angle: rad, force: N}
+points: {a: [0, 0, 0], b: [1, 0, 0]}
+bodies: {bar: {origin: a}}
+joints: {ball: {type: spherical, bodies: [bar, ground], at: a}}
+static_loads: {weight: {on: bar, at: b, force: [0, 0, -1]}}
+loads: {push: {on: bar, at: b, force: [0, 0, 1]}}
+branches: {up: {load: push, from: 0, to: 10, steps: 4}}
+probes: {tip: {on: bar, at: b}}
+)"),
+                      states = (folder.path / "states.jsonl").string();
+    for (int again = 0; again < 2; ++again) {
+        const Said said = elastocheck_says("solve " + loose + " --method equilibrium --states " + states);
+        EXPECT_EQ(said.code, 3) << said.err;
+        EXPECT_TRUE(contains(said.err, "states.jsonl: not written: no state was reached")) << said.err;
+        EXPECT_FALSE(std::filesystem::exists(states));
+    }
+}
+
 TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
     const Folder folder;
     const auto file = (folder.path / "rates.csv").string();
@@ -242,7 +290,7 @@ TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
 TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
     const std::string command =
         std::string(ELASTOCHECK_COMMAND) + " solve " + scenes + "/pinned_bar.yaml --steps 20000";
-    // As a shell says that a filter was ended by SIGPIPE, whether that signal is ignored or not.
+    // Exit code of a shell for a filter ended by SIGPIPE, also where the signal is ignored.
     for (const char* shell : {"bash -o pipefail -c '", "bash -o pipefail -c 'trap \"\" PIPE; "}) {
         const Said said = support::says(shell + command + " | head -1'");
         EXPECT_EQ(said.code, 141);
@@ -251,7 +299,7 @@ TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
     }
 }
 
-// [kB] at most resident, of a command that does as told.
+// Maximum resident memory of a command [kB].
 long memory_of(const std::vector<std::string>& words) {
     std::vector<char*> argv;
     for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
@@ -277,7 +325,7 @@ TEST(SolveCommand, MemoryDoesNotGrowWithTheStepsItTakes) {
     for (const char* method : {"published", "series"}) {
         const long few = memory(method, "10000"), many = memory(method, "300000");
         EXPECT_GT(few, 1000);
-        EXPECT_LE(many, few + 1000) << method;  // a point a step would be 60 MB
+        EXPECT_LE(many, few + 1000) << method;  // storing a point per step would take 60 MB
     }
 }
 

@@ -1,4 +1,4 @@
-// The survival map on its way out, and the scenes that are extreme by their making.
+// Survival map in all output formats, and the extreme scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using support::Folder;
 using support::text_of;
 using json = nlohmann::ordered_json;
 
-// Small: no figures but two.
+// Small: only two figures.
 json small_result() {
     json result = sample_result("pinned_bar");
     for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
@@ -78,7 +78,7 @@ TEST(Survival, WhatIsLostIsAskedOfEveryArithmetic) {
     result["stress"] = json::parse(map);
     result["stress"]["arithmetic"]["rows"][0]["lost"].push_back({"0.0", "0.0"});
     EXPECT_THROW(write_report(result, "result.json", folder.path / "r"), ResultError);
-    result["stress"].erase("arithmetic");  // of an older one
+    result["stress"].erase("arithmetic");  // as in an older document
     write_report(result, "result.json", folder.path / "r");
     EXPECT_FALSE(contains(text_of(folder.path / "r" / "report.html"), "other arithmetic"));
 }

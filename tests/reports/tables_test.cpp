@@ -1,4 +1,4 @@
-// A study's table says the same in every format.
+// Tables of studies are the same in every format.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
     damaged = table;
     damaged["columns"][3]["name"] = "number";
     EXPECT_EQ(refused(damaged), "result.json: t.columns: no column 'count'");
-    damaged = table;  // a column more, in front
+    damaged = table;  // an additional column in front
     damaged["columns"].insert(damaged["columns"].begin(), json::object({{"name", "new"}, {"unit", ""}}));
     for (auto& row : damaged["rows"]) row.insert(row.begin(), 7);
     EXPECT_EQ(refused(damaged), "read");
@@ -179,7 +179,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     }
     EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
 
-    // Error to the truth is step error and gap; a gap is its parts, and their shares are of it.
+    // The error to the truth is step error plus gap; the contributions add up to the gap.
     const auto steps = step_table(study);
     const double gap = number(outputs, 0, "gap");
     EXPECT_EQ(number(steps, 0, "error"), number(steps, 0, "end") + gap);
@@ -212,7 +212,7 @@ TEST(Tables, NumbersStandSideBySideToo) {
 
 TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     Scene scene = support::scene("pendulum");
-    for (auto& branch : scene.branches) branch.to *= 2;  // far enough for a row that diverges
+    for (auto& branch : scene.branches) branch.to *= 2;  // large enough for a diverging row
     const Model model = compile(scene);
     const auto trade = compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
     ASSERT_TRUE(trade.recommendation);

@@ -1,4 +1,4 @@
-// The committed report in reports/validation/ says what the code says today.
+// The committed report in reports/validation/ agrees with the present code.
 #include <gtest/gtest.h>
 
 #include <charconv>
@@ -21,7 +21,7 @@ struct Number {
 };
 using Numbers = std::map<std::string, Number>;
 
-// The last two cells are the value and its tolerance, what is before them is its name.
+// The last two cells are the value and its tolerance, the others are its name.
 Numbers numbers_in(const std::string& csv) {
     Numbers numbers;
     std::istringstream lines(csv);
@@ -55,7 +55,7 @@ std::vector<std::string> drift(const Numbers& committed, const Numbers& now) {
 
 TEST(Validation, TheCommittedNumbersAreTheCodes) {
     nlohmann::ordered_json result = document("", provenance());
-    auto names = support::small_scene_names();  // what ./dev validation takes
+    auto names = support::small_scene_names();  // as in ./dev validation
     names.push_back("double_wishbone");
     for (const auto& name : names) {
         const Scene scene = compare::trim(support::scene(name)).scene;

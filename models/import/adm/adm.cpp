@@ -1,4 +1,4 @@
-// ADAMS datasets: what is said in adm/ put together.
+// Imports an ADAMS dataset: combines the parts of adm/.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,10 +51,12 @@ std::string Conversion::point(const Marker& marker) {
                            s.place());
 }
 
-Value Conversion::function(const std::string& text, double time) {
+Value Conversion::function(const std::string& text, double time, std::vector<double>* events) {
     std::vector<int> open;  // VARIABLEs within VARIABLEs
     Context context;
     context.time = time;
+    context.drop_friction = options.drop_dynamics;
+    context.events = events;
     context.variable = [&](int id) {
         Value unknown;
         const auto found = variables.find(id);
@@ -66,19 +68,70 @@ Value Conversion::function(const std::string& text, double time) {
             unknown.unknown = fmt::format("VARVAL({}): it depends on itself", id);
             return unknown;
         }
-        static const Shape shape{{}, {"IC", "ROUTINE", "AUTOSCALE"}, {"FUNCTION"}};
-        const Arguments at(data.file, *found->second, shape);
-        const std::string* function = at.expression("FUNCTION");
-        if (!function || at.has("ROUTINE")) {
+        const auto [function, is_new] = variable_functions.try_emplace(id);
+        if (is_new) {
+            static const Shape shape{{}, {"IC", "ROUTINE", "AUTOSCALE"}, {"FUNCTION"}};
+            const Arguments at(data.file, *found->second, shape);
+            const std::string* given = at.expression("FUNCTION");
+            if (given && !at.has("ROUTINE")) function->second = *given;
+        }
+        if (!function->second) {
             unknown.unknown = fmt::format("VARVAL({}): a function of the user's", id);
             return unknown;
         }
         open.push_back(id);
-        const Value value = evaluate(*function, context);
+        const Value value = evaluate(*function->second, context);
         open.pop_back();
         return value;
     };
     return evaluate(text, context);
+}
+
+// Evaluates the FUNCTION at every time. The smallest and largest values are refined by golden
+// section search between the two neighbouring times.
+Programme Conversion::programme(const std::string& text) {
+    Programme result{.first = function(text, 0)};
+    const double start = result.first.constant;
+    result.path = {start};
+    result.least = result.most = start;
+    if (!result.first.is_known() || !result.first.of_time) return result;
+    characters_left -= static_cast<double>(text.size()) * static_cast<double>(times.size());
+    if (characters_left < 0) {
+        result.first.unknown = "more functions of TIME than are followed";
+        return result;
+    }
+    const auto at = [&](double time) {
+        const Value value = function(text, time);
+        if (!value.is_known() && result.first.is_known()) result.first = value;
+        if (value.is_known() &&
+            (value.linear != result.first.linear || value.curves != result.first.curves) &&
+            result.first.is_known())
+            result.first.unknown = "a force of displacements that changes with time";
+        return value.constant;
+    };
+    for (std::size_t k = 1; k < times.size() && result.first.is_known(); ++k)
+        result.path.push_back(at(times[k]));
+    if (!result.first.is_known()) return result;
+    const auto extremum = [&](double sign, auto found) {
+        const auto k = static_cast<std::size_t>(found - result.path.begin());
+        double low = times[k == 0 ? 0 : k - 1], high = times[std::min(k + 1, times.size() - 1)],
+               best = *found;
+        for (int n = 0; n < 50 && result.first.is_known(); ++n) {
+            const double a = low + 0.381966 * (high - low), b = high - 0.381966 * (high - low);
+            const double f_a = at(a), f_b = at(b);
+            best = sign * std::max({sign * best, sign * f_a, sign * f_b});
+            (sign * f_a > sign * f_b ? high : low) = sign * f_a > sign * f_b ? b : a;
+        }
+        return best;
+    };
+    const auto [least, most] = std::ranges::minmax_element(result.path);
+    result.least = extremum(-1, least);
+    result.most = extremum(+1, most);
+    if (result.most - result.least <= 1e-12 * std::max(std::abs(result.most), std::abs(result.least))) {
+        result.least = result.most = start;
+        result.path = {start};
+    }
+    return result;
 }
 
 namespace {
@@ -89,7 +142,8 @@ constexpr std::string_view converted[] = {"JOINT",   "JPRIM",   "GCON",    "COUP
                                           "BUSHING", "FIELD",   "BEAM",    "SPRINGDAMPER", "SFORCE",
                                           "VFORCE",  "VTORQUE", "GFORCE",  "PART",         "POINT_MASS",
                                           "MARKER",  "UNITS",   "ACCGRAV", "SPLINE"};
-// Pictures, results, settings of a solver, and what only a force or a motion that uses it gives a meaning.
+// Keywords without effect in statics (graphics, results, solver settings), then keywords with an
+// effect only through a force or motion that uses them.
 constexpr std::string_view told_nothing[] = {
     "GRAPHICS",   "REQUEST", "OUTPUT", "RESULTS",  "PREFERENCES", "INTEGRATOR", "EQUILIBRIUM",
     "KINEMATICS", "DEBUG",   "STRING", "MATERIAL", "ADAMS",       "IC",         "LSSOLVER",
@@ -121,7 +175,7 @@ bool is_in(const List& list, std::string_view word) {
     return std::ranges::find(list, word) != std::end(list);
 }
 
-// Everything that is not converted says so.
+// Notes every statement that is not converted.
 void sort_out(Conversion& c) {
     Notes& notes = c.draft.notes;
     for (const Statement& s : c.data.statements) {
@@ -160,29 +214,109 @@ void sort_out(Conversion& c) {
     }
 }
 
-// The end of the programme: of the latest STEP in TIME, else one second.
-double last_event(const Conversion& c) {
-    double last = 0;
+constexpr std::size_t fine_steps = 1000, most_events = 1000;
+
+// Sets Conversion::times, from 0 to the last event of all functions of TIME, or to one second if
+// there is none: the events, the midpoints between them, and equal steps.
+void read_times(Conversion& c) {
+    std::vector<double> events;
     for (const Statement& s : c.data.statements) {
-        if (s.keyword == "REQUEST" || s.keyword == "GRAPHICS") continue;
-        std::string text;
-        for (const char letter : capitals(s.rest))
-            if (letter != ' ' && letter != '\n' && letter != '\t') text += letter;
-        for (auto at = text.find("STEP(TIME,"); at != text.npos; at = text.find("STEP(TIME,", at + 1)) {
-            std::string_view rest = std::string_view(text).substr(at + 10);
-            std::array<double, 3> numbers{};  // x0, h0, x1
-            bool fine = true;
-            for (double& x : numbers) {
-                bool degrees = false;
-                const std::size_t n = number_at(rest, x, degrees);
-                fine = fine && n > 0 && n < rest.size() && rest[n] == ',';
-                if (!fine) break;
-                rest.remove_prefix(n + 1);
+        const bool is_vector = s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE";
+        const Shape* shape = s.keyword == "MOTION"   ? &motion_shape()
+                             : s.keyword == "SFORCE" ? &sforce_shape()
+                             : is_vector             ? &vector_shape()
+                                                     : nullptr;
+        if (!shape) continue;
+        const Arguments at(c.data.file, s, *shape);
+        for (const std::string_view name : shape->expressions)
+            if (const std::string* text = at.expression(name)) c.function(*text, 0, &events);
+        s.arguments.clear();  // this access does not count as use of the arguments
+    }
+    std::ranges::sort(events);
+    events.erase(std::unique(events.begin(), events.end()), events.end());
+    c.has_events = !events.empty();
+    const double end = events.empty() ? 1 / c.geometry.units.second : events.back();
+    c.times = {0, end};
+    for (std::size_t k = 0; k < events.size(); k += 1 + events.size() / most_events) {
+        c.times.push_back(events[k]);
+        c.times.push_back(0.5 * (events[k] + (k == 0 ? 0 : events[k - 1])));
+    }
+    for (std::size_t k = 1; k < fine_steps; ++k) c.times.push_back(end * static_cast<double>(k) / fine_steps);
+    std::ranges::sort(c.times);
+    c.times.erase(std::unique(c.times.begin(), c.times.end()), c.times.end());
+}
+
+// Arguments that have no influence at rest, by their name in any statement.
+struct WithoutInfluence {
+    std::string_view argument, called, why;
+};
+constexpr std::string_view of_motion = "being of motion alone";
+constexpr WithoutInfluence without_influence[] = {{"C", "damping", of_motion},
+                                                  {"CT", "damping", of_motion},
+                                                  {"CMATRIX", "damping", of_motion},
+                                                  {"CRATIO", "damping", of_motion},
+                                                  {"IM", "inertia", "being inertia alone"},
+                                                  {"IP", "inertia", "being inertia alone"},
+                                                  {"VX", "initial velocity", of_motion},
+                                                  {"VY", "initial velocity", of_motion},
+                                                  {"VZ", "initial velocity", of_motion},
+                                                  {"WX", "initial velocity", of_motion},
+                                                  {"WY", "initial velocity", of_motion},
+                                                  {"WZ", "initial velocity", of_motion},
+                                                  {"VM", "initial velocity", of_motion},
+                                                  {"WM", "initial velocity", of_motion},
+                                                  {"VELOCITY", "initial velocity", of_motion},
+                                                  {"EXACT", "EXACT", "being a hint of the assembly"},
+                                                  {"IC", "IC", of_motion},
+                                                  {"ICTRAN", "ICTRAN", of_motion},
+                                                  {"ICROT", "ICROT", of_motion},
+                                                  {"ICDISP", "ICDISP", of_motion},
+                                                  {"ICVEL", "ICVEL", of_motion},
+                                                  {"TYPE", "TYPE", "as the joints themselves say it"},
+                                                  {"NODE_ID", "NODE_ID", "being of flexible bodies"},
+                                                  {"NODE_LABEL", "NODE_LABEL", "being of flexible bodies"}};
+
+// Reports the arguments of converted statements that were not read: as left out if they have no
+// influence at rest, else as missing.
+void report_unread(Conversion& c) {
+    Notes& notes = c.draft.notes;
+    std::set<std::pair<int, std::string>> left_out;
+    for (const auto& [why, places] : notes.left_out)
+        for (const Place& place : places) left_out.emplace(place.line, place.what);
+    std::set<int> missing;
+    for (const auto& [place, why] : notes.missing) missing.insert(place.line);
+    for (const Statement& s : c.data.statements) {
+        if (missing.contains(s.line) || left_out.contains({s.line, s.place().what})) continue;
+        std::set<std::string_view> told;
+        for (const auto& [argument, is_read] : s.arguments) {
+            if (is_read) continue;
+            if (s.keyword == "PART" && c.is_ground(s.id)) {
+                notes.leave_out("as ground stands still",
+                                {s.line, std::string(argument) + " of " + s.place().what});
+                continue;
             }
-            if (fine) last = std::max(last, numbers[2]);
+            const auto known = std::ranges::find(without_influence, argument, &WithoutInfluence::argument);
+            if (known == std::end(without_influence))
+                notes.miss(s.place(),
+                           fmt::format("{}: given, but not used with what else is given", argument));
+            else if (told.insert(known->called).second)
+                notes.leave_out(std::string(known->why),
+                                {s.line, fmt::format("{} of {}", known->called, s.place().what)});
         }
     }
-    return last > 0 ? last : 1 / c.geometry.units.second;
+}
+
+// Checks that every statement that others may refer to has a unique id, and that the file ends with
+// END.
+void require_ids(const Dataset& data) {
+    std::map<std::pair<std::string_view, int>, int> lines;
+    for (const Statement& s : data.statements) {
+        if (s.keyword == "UNITS" || s.keyword == "ACCGRAV" || !is_in(converted, s.keyword)) continue;
+        if (s.id == 0) fail(data.file, s, "has no id");
+        const auto [first, is_new] = lines.try_emplace({s.keyword, s.id}, s.line);
+        if (!is_new)
+            fail(data.file, s, fmt::format("there is one with this id already, in line {}", first->second));
+    }
 }
 
 void name_bodies(Conversion& c) {
@@ -222,7 +356,7 @@ void write_bodies(Conversion& c) {
     if (!any_mass) c.draft.gravity.reset();
     std::set<std::string> there{"ground"};
     for (const Entry& body : c.draft.bodies) there.insert(body.name);
-    // A damper holds nothing, and is measured where both its parts are there.
+    // A damper does not hold a part at rest; it is kept if both its parts exist.
     std::erase_if(c.draft.dampers, [&](const Entry& damper) {
         const auto begin = damper.fields.find('[') + 1, comma = damper.fields.find(", ", begin);
         const std::string names[] = {damper.fields.substr(begin, comma - begin),
@@ -247,13 +381,13 @@ void read_gravity(Conversion& c) {
     }
 }
 
-// ---- What is asked of the scene: outputs, and a branch.
+// ---- Outputs and a branch for the scene.
 
 bool is_called(const Statement& s, const std::string& wanted) {
     return s.name == wanted || fmt::format("{}", s.id) == wanted || capitals(s.name) == capitals(wanted);
 }
 
-// The wheel: a body, or a marker on it, whose axis nearest to y is the spin axis.
+// The wheel: a body, or a marker on it, whose axis closest to y is the spin axis.
 void write_wheel(Conversion& c) {
     const std::string& wanted = c.options.wheel;
     const Part* part = nullptr;
@@ -318,7 +452,8 @@ void write_wheel(Conversion& c) {
     c.draft.branches.push_back({"travel", "{drive: travel" + range, {}});
 }
 
-// Where every part is. Where the file has no motion: what its weight does, or a push.
+// Probes on every part. write_drives() below adds a branch with the motions of the file; without
+// motions, one with added weight or a unit force.
 void write_probes(Conversion& c) {
     for (const Entry& body : c.draft.bodies) {
         const std::string_view fields = body.fields;
@@ -330,30 +465,88 @@ void write_probes(Conversion& c) {
     }
 }
 
+// Ratio of two drives whose paths are proportional at all times; none if they are not.
+std::optional<double> ratio(const Drive& drive, const Drive& first) {
+    if (drive.kind != first.kind) return std::nullopt;
+    const auto size = [](double x) { return std::abs(x); };
+    const auto k =
+        static_cast<std::size_t>(std::ranges::max_element(first.path, {}, size) - first.path.begin());
+    const double r = drive.path[k] / first.path[k],
+                 largest = std::max(std::abs(drive.least), std::abs(drive.most));
+    for (std::size_t n = 0; n < drive.path.size(); ++n)
+        if (!(std::abs(drive.path[n] - r * first.path[n]) <= 1e-9 * largest)) return std::nullopt;
+    return r;
+}
+
+// Writes one branch for each group of proportional motions, or of proportional loads, over their
+// whole range on both sides of zero. The other motions are held at their positions at time 0.
 void write_drives(Conversion& c) {
-    std::string rates, holds;
-    double first = 0;
+    struct Group {
+        const Drive* first;
+        std::vector<std::pair<const Drive*, double>> members;
+    };
+    std::vector<Group> groups;
     for (const Drive& drive : c.drives) {
-        if (drive.moves()) {
-            if (drive.start != 0 && drive.end == 0) continue;
-            const double change = drive.end - (std::abs(drive.start) > 0 ? 0 : drive.start);
-            if (first == 0) first = change;
-            rates +=
-                fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive.quantity, computed(change / first));
-        } else if (drive.start != 0) {
-            holds +=
-                fmt::format("{}{}: {}", holds.empty() ? "" : ", ", drive.quantity, computed(drive.start));
-        }
+        if (!drive.moves()) continue;
+        const auto joins = [&](Group& group) {
+            const auto r = ratio(drive, *group.first);
+            if (r) group.members.emplace_back(&drive, *r);
+            return r.has_value();
+        };
+        if (std::ranges::none_of(groups, joins)) groups.push_back({&drive, {{&drive, 1.0}}});
     }
-    if (!rates.empty())
+    const double at_rest = 1e-12;
+    const auto stands = [&](const Drive& drive) {
+        return drive.kind == Drive::Kind::joint && std::abs(drive.path[0]) > at_rest * c.geometry.size;
+    };
+    const auto held = [&](const Group* moving) {
+        std::string holds;
+        for (const Drive& drive : c.drives) {
+            const bool is_moving =
+                moving && std::ranges::find(moving->members, &drive,
+                                            &std::pair<const Drive*, double>::first) != moving->members.end();
+            if (!is_moving && stands(drive))
+                holds += fmt::format("{}{}: {}", holds.empty() ? "" : ", ", drive.quantity,
+                                     computed(drive.path[0]));
+        }
+        return holds.empty() ? std::string("}") : fmt::format(", hold: {{{}}}}}", holds);
+    };
+    for (Entry& branch : c.draft.branches) branch.fields += held(nullptr);
+    Names branch_names;
+    for (const Group& group : groups) {
+        const Drive& first = *group.first;
+        const bool is_motion = first.kind == Drive::Kind::joint;
+        std::string rates;
+        for (const auto& [drive, r] : group.members)
+            rates += fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive->quantity, computed(r));
+        const double least = std::min(0.0, first.least), most = std::max(0.0, first.most);
+        const double to = most > 0 ? most : least;
+        const std::string from = most > 0 && least < 0 ? fmt::format("from: {}, ", computed(least)) : "";
         c.draft.branches.push_back(
-            {"motion", fmt::format("{{drive: {{{}}}, to: {}, steps: 100", rates, computed(first)), {}});
+            {branch_names.take(is_motion ? "motion" : "load"),
+             fmt::format("{{{}: {{{}}}, {}to: {}, steps: 100{}", is_motion ? "drive" : "load", rates, from,
+                         computed(to), held(&group)),
+             {}});
+    }
+    if (!groups.empty())
+        c.draft.remarks.push_back(fmt::format(
+            "Functions of TIME are followed from 0 to {:g}, {}: a branch goes over all that they cover.",
+            c.times.back(),
+            c.has_events ? "where the last STEP or IF is over"
+                         : "one second, as the dataset does not say how long it is simulated"));
+    if (groups.size() > 1)
+        c.draft.notes.warn(
+            {0, "MOTION, loads"},
+            fmt::format("{} of them do not go in proportion: each has a branch of its own, while the "
+                        "others stand as at time 0",
+                        groups.size()));
     for (const Drive& drive : c.drives)
-        if (drive.start != 0)
+        if (stands(drive))
             c.draft.notes.warn(
-                {0, drive.quantity},
-                fmt::format("the file's motion starts {:.4g} from where the parts are drawn{}", drive.start,
-                            drive.moves() ? "; the branch begins as drawn" : "; the branches hold it there"));
+                drive.from,
+                fmt::format("{}: the file's motion starts {:.4g} from where the parts are drawn{}",
+                            drive.quantity, drive.path[0],
+                            drive.moves() ? "; its branch begins as drawn" : "; the branches hold it there"));
     if (c.draft.branches.empty()) {
         if (c.draft.gravity) {
             double mass = 0;
@@ -392,8 +585,8 @@ void write_drives(Conversion& c) {
                 "The file drives nothing: the branch pushes its first part. Put your own in its place.");
         }
     }
-    for (Entry& branch : c.draft.branches)
-        branch.fields += holds.empty() ? "}" : fmt::format(", hold: {{{}}}}}", holds);
+    if (groups.empty() && c.options.wheel.empty())
+        for (Entry& branch : c.draft.branches) branch.fields += held(nullptr);
 }
 
 }  // namespace
@@ -404,6 +597,7 @@ namespace elastocheck::importer {
 Draft import_adm(std::string_view text, const std::string& file, const Options& options) {
     using namespace adm;
     const Dataset data = read_statements(text, file);
+    require_ids(data);
     const Geometry geometry = read_geometry(data);
     Draft draft;
     // "Adams View model name: sla_front" is called sla_front.
@@ -423,9 +617,9 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     for (const Statement& s : data.statements)
         if (s.keyword == "VARIABLE") c.variables[s.id] = &s;
     draft.notes.understood["MARKER"] = static_cast<int>(geometry.markers.size());
-    c.end_time = last_event(c);
     read_gravity(c);
     sort_out(c);
+    read_times(c);
     read_splines(c);
     convert_joints(c);
     convert_forces(c);
@@ -435,6 +629,10 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     else
         write_wheel(c);
     write_drives(c);
+    report_unread(c);
+    if (!data.has_end)
+        draft.notes.miss({data.last_line, "END"},
+                         "the dataset does not end with END: it may have been cut off, and more is missing");
     return draft;
 }
 

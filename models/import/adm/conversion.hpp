@@ -1,7 +1,8 @@
-// What the parts of the .adm importer share while a dataset becomes a draft.
+// State shared by the parts of the .adm importer.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,23 +13,37 @@
 
 namespace elastocheck::importer::adm {
 
-// A joint that a MOTION or a COUPLER may speak of.
+// A joint that a MOTION or a COUPLER may refer to.
 struct WrittenJoint {
-    std::string kind;       // ADAMS': "REVOLUTE"
+    std::string kind;       // as in ADAMS: "REVOLUTE"
     std::size_t entry = 0;  // in Draft::joints
     int i = 0, j = 0;       // markers
 };
 
-// What moves or is held along an offset of a joint, counted from the design position [length of the scene, rad].
+// A FUNCTION over Conversion::times.
+struct Programme {
+    Value first;  // at time 0; unknown, with the reason, if it is unknown at any time
+    // its constant at each of Conversion::times; one value if it does not vary
+    std::vector<double> path = {};
+    double least = 0, most = 0;  // of the constant over all times
+    bool varies() const { return path.size() > 1; }
+};
+
+// A motion or load of the file over Conversion::times, which a branch drives or holds: the offset
+// of a joint from the design position [length of the scene, rad], or the change of a load from its
+// value at time 0.
 struct Drive {
-    std::string quantity;  // "joints.crank"
-    double start = 0, end = 0;
-    bool moves() const { return start != end; }
+    enum class Kind { joint, force, moment } kind = Kind::joint;
+    std::string quantity;           // "joints.crank", or the name of the load
+    std::vector<double> path = {};  // one value if it does not move
+    double least = 0, most = 0;
+    Place from = {};
+    bool moves() const { return least != most; }
 };
 
 struct Table {
     std::vector<double> x, y;
-    bool goes_on = false;  // straight beyond its ends
+    bool goes_on = false;  // linear beyond its ends
     const Statement* statement = nullptr;
 };
 
@@ -40,15 +55,19 @@ struct Conversion {
 
     Names body_names = {}, joint_names = {}, element_names = {}, load_names = {};
     std::map<int, std::string> bodies = {};  // by part; ground is "ground"
-    std::set<int> held = {};                 // parts that something holds
+    std::set<int> held = {};                 // parts attached to a joint or element
     std::map<int, WrittenJoint> joints = {};
     std::map<int, Table> splines = {};
     std::vector<Drive> drives = {};
     std::map<int, const Statement*> variables = {};
-    double end_time = 0;          // of the programme that the file's functions of TIME run through
-    int variables_left = 10'000;  // to be put into functions, over the whole file
+    // from 0 to the end of the functions of TIME: their events, and fine steps between
+    std::vector<double> times = {};
+    bool has_events = false;         // the end is that of the last STEP or IF in TIME; else one second
+    int variables_left = 1'000'000;  // limit of substitutions of a VARIABLE, over the whole file
+    double characters_left = 2e8;    // limit of evaluated characters of functions of TIME
+    std::map<int, std::optional<std::string>> variable_functions = {};
 
-    // ---- Looking up. Throw SceneError where there is none.
+    // ---- Look-up functions; throw SceneError for an undefined reference.
     const Marker& marker(const Arguments& at, std::string_view name) const;
     const Marker& marker(const Arguments& at, int id) const;
     bool is_ground(int part) const { return geometry.parts.at(part).is_ground; }
@@ -61,16 +80,22 @@ struct Conversion {
     std::string name(Names& names, const Statement& statement) const;
     bool is_flexible(const Marker& marker) const { return !geometry.parts.contains(marker.part); }
 
-    // A function at a time, VARIABLEs put in. Numbers are the file's.
-    Value function(const std::string& text, double time);
-    Value function(const std::string& text) { return function(text, 0); }
+    // Value of a function at a time, with VARIABLEs substituted, in units of the file.
+    Value function(const std::string& text, double time = 0, std::vector<double>* events = nullptr);
+    Programme programme(const std::string& text);
 };
 
-// Whether it is worth converting: on parts that are there, and on two of them; else it is noted why not.
+// Whether both parts exist and differ; else notes why the statement is not converted.
 bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Arguments& at);
+
+// Allowed arguments of the statements with functions.
+const Shape& motion_shape();
+const Shape& sforce_shape();
+const Shape& vector_shape();
 
 void read_splines(Conversion& c);
 void convert_joints(Conversion& c);  // JOINT, JPRIM, GCON, COUPLER, MOTION
-void convert_forces(Conversion& c);  // BUSHING, FIELD, BEAM, SPRINGDAMPER, SFORCE, VFORCE, VTORQUE, GFORCE
+// BUSHING, FIELD, BEAM, SPRINGDAMPER, SFORCE, VFORCE, VTORQUE, GFORCE
+void convert_forces(Conversion& c);
 
 }  // namespace elastocheck::importer::adm

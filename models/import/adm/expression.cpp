@@ -34,7 +34,7 @@ void inherit(Value& to, const Value& from) {
     to.of_velocity |= from.of_velocity;
 }
 
-// 0 · x is 0 whatever x is.
+// 0 · x is 0 for any x.
 Value scaled(Value a, double factor) {
     if (factor == 0) {
         Value zero;
@@ -42,6 +42,7 @@ Value scaled(Value a, double factor) {
         return zero;
     }
     a.constant *= factor;
+    a.per_time *= factor;
     for (auto& [measure, k] : a.linear) k *= factor;
     for (CurveTerm& curve : a.curves) curve.factor *= factor;
     return a;
@@ -51,6 +52,7 @@ Value sum(Value a, const Value& b) {
     if (!a.is_known()) return a;
     if (!b.is_known()) return b;
     a.constant += b.constant;
+    a.per_time += b.per_time;
     for (const auto& [measure, k] : b.linear)
         if ((a.linear[measure] += k) == 0) a.linear.erase(measure);
     a.curves.insert(a.curves.end(), b.curves.begin(), b.curves.end());
@@ -62,11 +64,13 @@ Value sum(Value a, const Value& b) {
 Value product(const Value& a, const Value& b) {
     if (a.is_constant()) {
         Value result = scaled(b, a.constant);
+        if (a.of_time) result.per_time = b.of_time ? NAN : a.per_time * b.constant;
         inherit(result, a);
         return result;
     }
     if (b.is_constant()) {
         Value result = scaled(a, b.constant);
+        if (b.of_time) result.per_time = a.of_time ? NAN : a.constant * b.per_time;
         inherit(result, b);
         return result;
     }
@@ -180,6 +184,7 @@ class Parser {
                     value = unknown("a division by zero");
                 else {
                     value = scaled(std::move(value), 1 / by.constant);
+                    if (by.of_time) value.per_time = NAN;
                     inherit(value, by);
                 }
             } else
@@ -209,6 +214,7 @@ class Parser {
                 Value result = constant(std::pow(base.constant, exponent.constant));
                 inherit(result, base);
                 inherit(result, exponent);
+                if (result.of_time) result.per_time = NAN;
                 base = result;
             } else if (exponent.constant != 1)
                 return unknown("a power of a displacement");
@@ -244,6 +250,7 @@ class Parser {
         if (name == "TIME") {
             Value value = constant(context_.time);
             value.of_time = true;
+            value.per_time = 1;
             return value;
         }
         return unknown(fmt::format("{} is no constant that is known here", reader::quote(name)));
@@ -292,6 +299,7 @@ class Parser {
         if (name == "IF") return choose(p);
         if (name == "AKISPL" || name == "CUBSPL") return spline(name, p);
         if (name == "IMPACT") return impact(p);
+        if (name == "DIM" && p.size() == 2 && p[0].is_constant() != p[1].is_constant()) return penetration(p);
         if (name == "BISTOP") return bistop(p);
         if (name == "VARVAL") {
             const auto variable = p.size() == 1 ? id(p[0]) : std::nullopt;
@@ -309,6 +317,17 @@ class Parser {
             numbers.push_back(value.constant);
             inherit(result, value);
         }
+        if (name == "SIGN" && p.size() == 2 && p[1].of_velocity) {
+            if (context_.drop_friction) return scaled(result, 0);
+            return unknown(
+                "SIGN of a velocity: friction, which holds at rest, and a scene has none (--drop "
+                "dynamics leaves it out)");
+        }
+        if (name == "STEP" && p.size() == 5) {
+            note_event(p[0], p[1].constant);
+            note_event(p[0], p[3].constant);
+        }
+        if (result.of_time) result.per_time = NAN;
         if (numbers.size() < found->least || numbers.size() > found->most)
             return unknown(fmt::format("{} of {} arguments", name, numbers.size()));
         result.constant = found->f(numbers);
@@ -316,10 +335,18 @@ class Parser {
         return result;
     }
 
+    // The time when x, linear in TIME, is `at`.
+    void note_event(const Value& x, double at) const {
+        if (!context_.events || !x.of_time || !std::isfinite(x.per_time) || x.per_time == 0) return;
+        const double time = context_.time + (at - x.constant) / x.per_time;
+        if (time > 0 && std::isfinite(time)) context_.events->push_back(time);
+    }
+
     // IF(e: a, b, c): a where e < 0, b where it is 0, c above.
-    static Value choose(const std::vector<Value>& p) {
+    Value choose(const std::vector<Value>& p) const {
         if (p.size() != 4) return unknown("IF of other than four arguments");
         if (!p[0].is_known()) return p[0];
+        note_event(p[0], 0);
         const auto is_zero = [](const Value& value) { return value.is_constant() && value.constant == 0; };
         Value result;
         if (p[0].is_constant())
@@ -330,7 +357,7 @@ class Parser {
         return result;
     }
 
-    // One measure, scaled and shifted; what else the value is says why it is none.
+    // Extracts one measure with scale and offset; returns the reason if the value has another form.
     static std::string only_measure(const Value& x, CurveTerm& term) {
         if (!x.is_known()) return x.unknown;
         if (!x.curves.empty() || x.linear.size() != 1) return "a curve of other than one displacement";
@@ -348,6 +375,15 @@ class Parser {
         const auto number = id(p[2]);
         if (!number) return unknown(name + " of what is no spline");
         CurveTerm term;
+        if (is_penetration(p[0])) {
+            term = p[0].curves.front();
+            term.is_akima = name == "AKISPL";
+            term.spline = *number;
+            Value value;
+            inherit(value, p[0]);
+            value.curves.push_back(term);
+            return value;
+        }
         term.kind = name == "AKISPL" ? CurveTerm::Kind::akima : CurveTerm::Kind::cubic;
         term.spline = *number;
         if (const std::string why = only_measure(p[0], term); !why.empty())
@@ -358,12 +394,28 @@ class Parser {
         return value;
     }
 
-    // IMPACT(x, v, x1, k, e, c, d): k (x1 - x)^e below x1, and its damping, which is none at rest.
+    // DIM(a, b) = max(a - b, 0) of a displacement and a constant: a contact of rate 1 without
+    // damping.
+    static Value penetration(const std::vector<Value>& p) {
+        const Value one = constant(1);
+        Value value = p[0].is_constant() ? contact(p[1], p[0], one, one, 1)
+                                         : contact(scaled(p[0], -1), scaled(p[1], -1), one, one, 1);
+        value.of_velocity = p[0].of_velocity || p[1].of_velocity;
+        return value;
+    }
+    static bool is_penetration(const Value& x) {
+        if (!x.is_known() || x.constant != 0 || !x.linear.empty() || x.curves.size() != 1) return false;
+        const CurveTerm& term = x.curves.front();
+        return term.kind == CurveTerm::Kind::impact && term.factor == 1 && term.rate == 1 &&
+               term.exponent == 1 && term.spline == 0;
+    }
+
+    // IMPACT(x, v, x1, k, e, c, d): k (x1 - x)^e below x1; its damping is zero at rest.
     static Value impact(const std::vector<Value>& p) {
         if (p.size() != 7) return unknown("IMPACT of other than seven arguments");
         return contact(p[0], p[2], p[3], p[4], 1);
     }
-    // BISTOP(x, v, lo, hi, k, e, c, d): the same below lo, and its negative above hi.
+    // BISTOP(x, v, lo, hi, k, e, c, d): the same below lo, and its mirror image above hi.
     static Value bistop(const std::vector<Value>& p) {
         if (p.size() != 8) return unknown("BISTOP of other than eight arguments");
         return sum(contact(p[0], p[2], p[4], p[5], 1),

@@ -1,9 +1,9 @@
-// A FUNCTION of a dataset, as far as statics knows it: a sum of a constant, multiples of displacements, and curves of one
-// displacement,
+// Static part of a FUNCTION expression in an ADAMS dataset.
+// It is a sum of a constant, multiples of displacements, and curves of one displacement,
 //
 //   f = c + Σ k_m x_m + Σ s_n g_n(x_n),
 //
-// at one time, with everything at rest. What is not of this form says why.
+// at one time, at rest. For other functions the reason is stored.
 #pragma once
 
 #include <compare>
@@ -16,7 +16,8 @@
 
 namespace elastocheck::importer::adm {
 
-// DX(i, j, rm), ...: how marker i stands against j, in the axes of rm. j or rm 0 is the global frame.
+// DX(i, j, rm), ...: displacement of marker i relative to j, in the axes of rm. j or rm 0: global
+// frame.
 struct Measure {
     enum class Kind { DM, DX, DY, DZ, AX, AY, AZ } kind = Kind::DM;
     int i = 0, j = 0, rm = 0;
@@ -29,9 +30,12 @@ struct CurveTerm {
     double factor = 1;  // of the curve
     Measure of;
     double scale = 1, offset = 0;
-    int spline = 0;  // its id
+    // Its id. For an impact: replaces the power, over the penetration; 0 if there is none.
+    int spline = 0;
+    bool is_akima = true;  // spline of an impact: Akima's interpolant, else a cubic spline
     double contact = 0, rate = 0,
            exponent = 1;  // of an impact: rate · (contact - x)^exponent below contact, else 0
+    bool operator==(const CurveTerm&) const = default;
 };
 
 struct Value {
@@ -39,7 +43,8 @@ struct Value {
     std::map<Measure, double> linear = {};
     std::vector<CurveTerm> curves = {};
     bool of_time = false, of_velocity = false;
-    std::string unknown = {};  // why statics cannot know it; empty where it does
+    double per_time = 0;       // d constant / d TIME where the constant is linear in TIME, else NaN
+    std::string unknown = {};  // why the value is not known at rest; empty if it is known
 
     bool is_known() const { return unknown.empty(); }
     bool is_constant() const { return is_known() && linear.empty() && curves.empty(); }
@@ -47,10 +52,13 @@ struct Value {
 
 struct Context {
     double time = 0;
+    bool drop_friction = false;  // a SIGN of a velocity is zero instead of unknown
+    std::vector<double>* events =
+        nullptr;  // if not null, collects the times at which a STEP begins or ends or an IF changes
     std::function<Value(int id)> variable = {};  // VARVAL
 };
 
-// Never throws: what cannot be read is unknown.
+// Never throws: unreadable text gives an unknown value.
 Value evaluate(std::string_view text, const Context& context);
 
 }  // namespace elastocheck::importer::adm

@@ -1,17 +1,20 @@
-// Elastic elements and forces.
+// Converts ADAMS elastic elements and forces.
 //
 // A BUSHING, FIELD or BEAM exerts on the part of I, at I's origin and in the moving axes of J,
 //
-//   F = FORCE - K (x - x_0),    x = (δ; a, b, c),   δ = A_Jᵀ (p_I - p_J),   a, b, c the projected angles of I in J,
+//   F = FORCE - K (x - x_0),   x = (δ; a, b, c),   δ = A_Jᵀ (p_I - p_J),   a, b, c projected angles
+//                                                                          of I in J,
 //
-// and the opposite wrench at the same place on the part of J. In a scene that is a bushing whose first body is J's, whose
-// second is I's, at I's origin, with `angles: projected` and `conjugate: false`: its d is δ - δ_drawn, so that its
-// undeformed position is x_0 - δ_drawn; and where I is turned against J as drawn, its frame on I's body is I's own.
+// and the opposite wrench at the same point on the part of J. In a scene this is a bushing from J's
+// body to I's body at I's origin, with `angles: projected` and `conjugate: false`. Its d is
+// δ - δ_drawn, so its undeformed position is x_0 - δ_drawn. If I is rotated relative to J as drawn,
+// frame_j is that of I.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "models/import/adm/conversion.hpp"
 #include "models/import/curves.hpp"
@@ -25,8 +28,9 @@ using Eigen::Vector3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double turned = 1e-9;  // beyond, two frames are not parallel [rad]
-constexpr double far = 0.05;     // of the model's size: markers of a bushing that far apart are worth a word
+constexpr double turned = 1e-9;  // larger: two frames are not parallel [rad]
+// of the model's size: larger distances between markers are reported
+constexpr double far = 0.05;
 
 const char* const formulation = "{angles: projected, conjugate: false}";
 
@@ -40,20 +44,18 @@ const Shape beam_shape{{"LINEAR", "STRING", "NONLINEAR"},
 const Shape spring_shape{{"TRANSLATIONAL", "ROTATIONAL"},
                          {"I", "J", "K", "C", "KT", "CT", "LENGTH", "ANGLE", "FORCE", "TORQUE"},
                          {}};
-const Shape sforce_shape{{"TRANSLATIONAL", "ROTATIONAL", "ACTIONONLY"}, {"I", "J", "ROUTINE"}, {"FUNCTION"}};
-const Shape vector_shape{
-    {}, {"I", "JFLOAT", "RM", "ROUTINE"}, {"FX", "FY", "FZ", "TX", "TY", "TZ", "FUNCTION"}};
 
 Vector3d vector(const std::vector<double>& v) {
     return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
 }
 
-// What is understood of one element, in the units of the scene.
+// Laws of one element, in units of the scene.
 struct SixLaws {
     Matrix6 K = Matrix6::Zero();
-    Vector6 x_0 = Vector6::Zero();                                      // length, angles
-    Vector6 preload = Vector6::Zero();                                  // on I at x_0
-    std::array<std::vector<std::pair<double, double>>, 6> curves = {};  // restoring, over x; empty: by K
+    Vector6 x_0 = Vector6::Zero();      // length, angles
+    Vector6 preload = Vector6::Zero();  // on I at x_0
+    // restoring force over x; empty: use K
+    std::array<std::vector<std::pair<double, double>>, 6> curves = {};
     std::array<bool, 6> goes_on = {true, true, true, true, true, true};
 };
 
@@ -63,7 +65,7 @@ struct Element {
     const Arguments& at;
     const Marker& I;
     int part_j;
-    Frame J;  // δ is counted from its origin, in its axes
+    Frame J;  // δ is measured from its origin, in its axes
 
     Place place() const { return s.place(); }
 
@@ -114,16 +116,8 @@ struct Element {
     }
 };
 
-void no_damping(Conversion& c, const Statement& s, const Arguments& at,
-                std::initializer_list<const char*> names) {
-    for (const char* name : names)
-        if (at.has(name)) {
-            c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
-            return;
-        }
-}
-
-// Both by their unit: force/length, force, force · length.
+// Converts a stiffness matrix to units of the scene, by blocks: force/length, force, force ·
+// length.
 Matrix6 in_scene_units(Matrix6 K, const Units& units) {
     K.topLeftCorner<3, 3>() *= units.force / units.length;
     K.topRightCorner<3, 3>() *= units.force;
@@ -137,7 +131,7 @@ Vector6 forces(Vector6 F, const Units& units) {
     return F;
 }
 
-// A stiffness of which a scene has none: not symmetric, or negative. Says why; empty where it is fine.
+// Reason why a scene cannot represent the stiffness: not symmetric, or negative; empty if it can.
 std::string fault(Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int k = 0; k < i; ++k) {
@@ -183,7 +177,6 @@ void convert_bushing(Conversion& c, const Statement& s) {
     F << vector(at.numbers("FORCE", 3, 3)), vector(at.numbers("TORQUE", 3, 3));
     if (K.diagonal().minCoeff() < 0)
         return c.draft.notes.miss(s.place(), "a negative rate, which no element of a scene has");
-    no_damping(c, s, at, {"C", "CT"});
     const double apart = (I.pose.r - J.pose.r).norm();
     if (apart > far * c.geometry.size)
         c.draft.notes.warn(
@@ -205,12 +198,13 @@ void convert_field(Conversion& c, const Statement& s) {
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
     if (k.empty()) at.fail("KMATRIX is missing");
-    const Matrix6 written = in_scene_units(Eigen::Map<const Matrix6>(k.data()), units);  // by columns
+    // by columns
+    const Matrix6 written = in_scene_units(Eigen::Map<const Matrix6>(k.data()), units);
     Matrix6 K = written;
     if (const std::string why = fault(K); !why.empty()) return c.draft.notes.miss(s.place(), why);
     warn_of_asymmetry(c, s, written, K);
     SixLaws laws{.K = K};
-    // The last three are angles, and may have the suffix of degrees.
+    // The last three values are angles, and may have the suffix for degrees.
     if (at.has("LENGTH")) {
         const auto length = at.angles("LENGTH", 6);
         laws.x_0 = Eigen::Map<const Vector6>(length.data());
@@ -218,16 +212,16 @@ void convert_field(Conversion& c, const Statement& s) {
     }
     if (at.has("FORCE"))
         laws.preload = forces(Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
-    no_damping(c, s, at, {"CMATRIX", "CRATIO"});
     c.draft.notes.count("FIELD");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
 }
 
-// From J along its x axis to I: Timoshenko's beam, with P = 12 E I s / (G A L²) of shear.
+// From J along its x axis to I: Timoshenko beam, with the shear term P = 12 E I s / (G A L²).
 void convert_beam(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, beam_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const std::string formulated = at.word("FORMULATION");
+    at.has("LINEAR");
     if (at.has("STRING") || at.has("NONLINEAR") ||
         (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
         return c.draft.notes.miss(s.place(),
@@ -261,33 +255,56 @@ void convert_beam(Conversion& c, const Statement& s) {
         c.draft.notes.warn(s.place(),
                            fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded", apart,
                                        units.length_name));
-    no_damping(c, s, at, {"CMATRIX", "CRATIO"});
     c.draft.notes.count("BEAM");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
 }
 
-// ---- Along a line, and about an axis.
+// ---- Forces along a line, and torques about an axis.
 
-// The laws of one deformation u = scale · x + offset that a Value is made of, as the restoring force f(x) = -value.
+// Laws of one deformation u = scale · x + offset in a Value, as the restoring force f(x) = -value.
 struct OneLaw {
     double rate = 0;                               // of x
     double at_zero = 0;                            // f(0)
-    std::vector<std::pair<double, double>> curve;  // in place of both
+    std::vector<std::pair<double, double>> curve;  // replaces both
     bool goes_on = true;
     struct Stop {
         bool bump = true;
         double touches = 0;                            // x
         std::vector<std::pair<double, double>> curve;  // over the penetration
         double rate = 0;
+        bool goes_on = true;
     };
     std::vector<Stop> stops;
 };
 
 constexpr int rows_of_power = 24;
 
-// All the terms in the one measure; what cannot be is said.
+// Warns if the scene's interpolant of a SPLINE deviates from that of ADAMS. `is_angle`: the law is
+// torsional, and its force is a torque.
+void warn_of_spline(Conversion& c, const Statement& s, const CurveTerm& term, const Rows& rows,
+                    bool is_angle) {
+    const Units& units = c.geometry.units;
+    const bool is_akima =
+        term.kind == CurveTerm::Kind::impact ? term.is_akima : term.kind == CurveTerm::Kind::akima;
+    const Apart apart = is_akima ? off_akima(rows) : off_natural(rows);
+    if (apart.force <= 1e-6 * apart.of) return;
+    c.draft.notes.warn(
+        s.place(),
+        fmt::format("up to {:.3g} {} apart (of {:.4g}), at {:.4g} {}: between the points of "
+                    "SPLINE/{} the file has {}, a scene the monotone interpolant",
+                    apart.force, is_angle ? units.force_name + " " + units.length_name : units.force_name,
+                    apart.of, apart.at, is_angle ? "rad" : units.length_name, term.spline,
+                    is_akima ? "Akima's curve" : "a cubic spline"));
+}
+
+// Converts all terms of `value`, which are in one measure, to `law`. Returns the reason if a scene
+// cannot represent a term; empty if it can.
 std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from, double x_to,
-                    double unit, double force, OneLaw& law) {
+                    double unit, double force, bool is_angle, OneLaw& law) {
+    const Units& units = c.geometry.units;
+    const std::string unit_of_x = is_angle ? "rad" : units.length_name,
+                      unit_of_force =
+                          is_angle ? units.force_name + " " + units.length_name : units.force_name;
     for (const auto& [measure, k] : value.linear) law.rate += -k * force / unit;
     law.at_zero = -value.constant * force;
     bool has_table = false;
@@ -298,6 +315,21 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
             OneLaw::Stop stop;
             stop.bump = term.scale > 0;
             stop.touches = (term.contact - term.offset) / term.scale * unit;
+            if (term.spline != 0) {
+                const auto found = c.splines.find(term.spline);
+                if (found == c.splines.end())
+                    return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
+                const Table& points = found->second;
+                if (points.x.front() != 0 || points.y.front() != 0)
+                    return fmt::format("SPLINE/{} of a penetration does not begin at 0, 0", term.spline);
+                stop.goes_on = points.goes_on;
+                for (std::size_t n = 0; n < points.x.size(); ++n)
+                    stop.curve.emplace_back(points.x[n] / std::abs(term.scale) * unit,
+                                            std::abs(term.factor) * points.y[n] * force);
+                warn_of_spline(c, s, term, stop.curve, is_angle);
+                law.stops.push_back(stop);
+                continue;
+            }
             // Over the penetration p of x: factor · rate · (|scale| p)^e.
             const double factor = std::abs(term.factor) * term.rate *
                                   std::pow(std::abs(term.scale) / unit, term.exponent) * force;
@@ -311,13 +343,13 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
                     const double p = depth * n * n / (rows_of_power * rows_of_power);
                     stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
                 }
+                const Apart apart = off_power(stop.curve, factor, term.exponent);
                 c.draft.notes.warn(
                     s.place(),
-                    fmt::format(
-                        "a contact with exponent {:g} is a table of {} rows up to {:.4g}; between them off "
-                        "by up to {:.2g} of its largest force",
-                        term.exponent, rows_of_power + 1, depth,
-                        off_power(stop.curve, factor, term.exponent)));
+                    fmt::format("up to {:.2g} {} apart (of {:.4g}): a contact with exponent {:g} is a table "
+                                "of {} rows up to {:.4g} {}",
+                                apart.force, unit_of_force, apart.of, term.exponent, rows_of_power + 1, depth,
+                                unit_of_x));
             }
             law.stops.push_back(stop);
             continue;
@@ -333,15 +365,7 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
             law.curve.emplace_back((points.x[n] - term.offset) / term.scale * unit,
                                    -term.factor * points.y[n] * force);
         if (term.scale < 0) std::ranges::reverse(law.curve);
-        const double off =
-            term.kind == CurveTerm::Kind::akima ? off_akima(law.curve) : off_natural(law.curve);
-        if (off > 1e-6)
-            c.draft.notes.warn(
-                s.place(),
-                fmt::format("between the points of SPLINE/{} the file has {}, a scene the monotone "
-                            "interpolant: up to {:.2g} of the largest force apart",
-                            term.spline,
-                            term.kind == CurveTerm::Kind::akima ? "Akima's curve" : "a cubic spline", off));
+        warn_of_spline(c, s, term, law.curve, is_angle);
     }
     if (has_table)
         for (auto& [x, f] : law.curve) f += law.rate * x + law.at_zero;
@@ -361,11 +385,12 @@ Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
     if (stop.curve.empty())
         fields.add("rate", stop.rate);
     else
-        fields.add("curve", "{table: " + table(stop.curve) + "}");
+        fields.add("curve", fmt::format("{{table: {}{}}}", table(stop.curve),
+                                        stop.goes_on ? "" : ", outside: unknown"));
     return fields;
 }
 
-// A force along the line from I to J, positive apart; `value` is of DM(I, J).
+// A force along the line from I to J, positive if repulsive; `value` is a function of DM(I, J).
 void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Value& value,
                 bool is_damper) {
     const Units& units = c.geometry.units;
@@ -377,7 +402,7 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     if (!(drawn > 1e-9 * c.geometry.size))
         return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
     OneLaw law;
-    const std::string why = one_law(c, s, value, 0, 2 * drawn, units.length, units.force, law);
+    const std::string why = one_law(c, s, value, 0, 2 * drawn, units.length, units.force, false, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (law.stops.size() > 2 || (law.stops.size() == 2 && law.stops[0].bump == law.stops[1].bump))
         return c.draft.notes.miss(s.place(), "more than one stop a way");
@@ -385,7 +410,7 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     if (is_nothing) {
         if (!is_damper || c.options.drop_dynamics)
             return c.draft.notes.leave_out("exerting nothing at rest", s.place());
-        // A damper holds nothing: it is drawn where both its parts are held by something else.
+        // A damper does not hold a part: it is written if something else holds both its parts.
         c.draft.dampers.push_back(
             {name,
              "{" +
@@ -399,11 +424,12 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         return;
     }
     Fields fields = ends();
-    // ℓ_0, where the law has its zero; of a curve where the file counts from, if that is a length.
+    // ℓ₀ where the law is zero; for a curve the file's reference length, if there is one.
     if (law.curve.empty() && law.rate > 0) {
         const double free = -law.at_zero / law.rate;
         if (!(free > 0)) {
-            // No spring has no length: the same straight line as a table over the drawn length.
+            // A spring needs a positive length: write the same straight line as a table over the
+            // drawn length.
             const double h = 0.5 * drawn, f = law.at_zero + law.rate * drawn;
             fields.add("curve", "{table: " + table({{-h, f - law.rate * h}, {h, f + law.rate * h}}) + "}");
         } else {
@@ -429,17 +455,18 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     c.draft.springs.push_back({name, "{" + fields.text() + "}", s.place()});
 }
 
-// A torque about z, positive on I; `value` is of AZ(I, J).
+// A torque about z, positive on I; `value` is a function of AZ(I, J).
 void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J,
                  const Value& value) {
     const Units& units = c.geometry.units;
     const Vector3d z = J.pose.A.col(2);
     if (const double off = z.cross(Vector3d(I.pose.A.col(2))).norm(); off > 1e-2)
-        at.fail(fmt::format("the axes z of I and J are {:.3g} rad apart; a torque needs one axis", off));
+        at.fail(fmt::format("the axes z of I and J are {:.3g} deg apart; a torque needs one axis",
+                            off * 180 / std::numbers::pi));
     const double drawn =
         std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
     OneLaw law;
-    const std::string why = one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, law);
+    const std::string why = one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, true, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (!law.stops.empty())
         return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
@@ -476,7 +503,8 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     c.draft.notes.count("SPRINGDAMPER");
     const double k = at.number(rotates ? "KT" : "K", 0);
     const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
-    if (damps && k != 0) no_damping(c, s, at, {rotates ? "CT" : "C"});
+    if (damps && k != 0)
+        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
     if (rotates)
         put_torsion(c, s, at, I, J,
                     linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
@@ -485,52 +513,80 @@ void convert_springdamper(Conversion& c, const Statement& s) {
                    damps);
 }
 
-// ---- Forces by expressions.
+// ---- Forces given by expressions.
 
-// A force or a torque that is the same wherever the parts are, in the axes of `axes`, which the part turns with, or stand
-// still: on I alone.
-void put_load(Conversion& c, const Statement& s, const Marker& I, const Vector3d& force,
-              const Vector3d& moment, bool follows, const char* suffix = "") {
+// One component of a force or torque on I that does not depend on displacements, along an axis
+// fixed to the part (a follower) or to ground. Its value at time 0 is a static load; its change
+// over time becomes a branch.
+struct LoadComponent {
+    Vector3d axis;
+    bool is_moment = false;
+    Programme value;  // [unit of the file]
+};
+
+void put_load(Conversion& c, const Statement& s, const Marker& I,
+              const std::vector<LoadComponent>& components, bool follows) {
+    const Units& units = c.geometry.units;
     const std::string name = c.name(c.load_names, s);
     const std::string ending = follows ? ", follows: true}" : "}";
-    if (!force.isZero(0))
-        c.draft.static_loads.push_back(
-            {name + suffix,
-             fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(force), ending),
-             s.place()});
+    const auto load = [&](const Vector3d& v, bool is_moment) {
+        return is_moment ? fmt::format("{{on: {}, moment: {}{}", c.body(I.part), triple(v), ending)
+                         : fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(v),
+                                       ending);
+    };
+    Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
+    for (const auto& [axis, is_moment, value] : components) {
+        const double unit = units.force * (is_moment ? units.length : 1);
+        (is_moment ? moment : force) += axis * value.first.constant * unit;
+        if (!value.varies()) continue;
+        Drive drive{.kind = is_moment ? Drive::Kind::moment : Drive::Kind::force,
+                    .quantity = c.load_names.take(name + ".change"),
+                    .from = s.place()};
+        for (const double x : value.path) drive.path.push_back((x - value.path[0]) * unit);
+        drive.least = (value.least - value.path[0]) * unit;
+        drive.most = (value.most - value.path[0]) * unit;
+        c.draft.loads.push_back({drive.quantity, load(axis, is_moment), s.place()});
+        c.drives.push_back(std::move(drive));
+    }
+    if (!force.isZero(0)) c.draft.static_loads.push_back({name, load(force, false), s.place()});
     if (!moment.isZero(0))
-        c.draft.static_loads.push_back(
-            {c.load_names.take(name + suffix + ".moment"),
-             fmt::format("{{on: {}, moment: {}{}", c.body(I.part), triple(moment), ending), s.place()});
+        c.draft.static_loads.push_back({c.load_names.take(name + ".moment"), load(moment, true), s.place()});
 }
 
-// The value at the start of the programme; a load that changes is warned of.
-std::string settled(Conversion& c, const Statement& s, const std::string& text, Value& value) {
-    value = c.function(text, 0);
-    if (!value.is_known()) return value.unknown;
-    if (!value.of_time) return {};
-    const Value last = c.function(text, c.end_time);
-    if (last.is_known() && last.constant == value.constant && last.linear == value.linear) return {};
-    if (!last.is_constant() || !value.is_constant()) return "a force of displacements that changes with time";
-    c.draft.notes.warn(
-        s.place(), fmt::format("a load that goes from {:g} to {:g} over {:g} of time; held here at its end",
-                               value.constant, last.constant, c.end_time));
-    value = last;
+// A scene has no branch for a force between two parts that changes with time. If all its values lie
+// between the first and the last, it is held at the last, with a warning. Returns the reason if
+// that is not possible; else empty.
+std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& programme, Value& value) {
+    if (!programme.varies()) return {};
+    const double first = programme.path.front(), last = programme.path.back();
+    const double round_off = 1e-12 * (programme.most - programme.least);
+    const bool goes_one_way = std::min(first, last) <= programme.least + round_off &&
+                              std::max(first, last) >= programme.most - round_off;
+    if (!goes_one_way || !value.is_constant())
+        return fmt::format(
+            "a force between two parts that changes with time, {:g} to {:g}, which no branch "
+            "of a scene does",
+            programme.least, programme.most);
+    c.draft.notes.warn(s.place(),
+                       fmt::format("a force between two parts that goes from {:g} to {:g} over {:g} "
+                                   "of time; held here at its end",
+                                   first, last, c.times.back()));
+    value.constant = last;
     return {};
 }
 
 void convert_sforce(Conversion& c, const Statement& s) {
-    const Arguments at(c.data.file, s, sforce_shape);
+    const Arguments at(c.data.file, s, sforce_shape());
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
     if (at.has("ROUTINE")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
-    Value value;
-    if (const std::string why = settled(c, s, *text, value); !why.empty())
-        return c.draft.notes.miss(s.place(), why);
-    if (value.is_constant() && value.constant == 0 && !value.of_velocity) {
+    const Programme programme = c.programme(*text);
+    Value value = programme.first;
+    if (!value.is_known()) return c.draft.notes.miss(s.place(), value.unknown);
+    if (value.is_constant() && value.constant == 0 && !programme.varies() && !value.of_velocity) {
         c.draft.notes.leave_out("exerting nothing at rest", s.place());
         return;
     }
@@ -539,21 +595,19 @@ void convert_sforce(Conversion& c, const Statement& s) {
             return c.draft.notes.leave_out("acting on ground alone", s.place());
         if (!value.is_constant())
             return c.draft.notes.miss(s.place(), "a force on one part alone that depends on displacements");
-        if (value.constant == 0) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        if (value.constant == 0 && !programme.varies())
+            return c.draft.notes.leave_out("exerting nothing at rest", s.place());
         const bool follows = J.part == I.part;
         if (!follows && !c.is_ground(J.part))
             return c.draft.notes.miss(s.place(),
                                       "a force on one part alone along an axis of another that moves");
-        const Vector3d z = J.pose.A.col(2) * value.constant * c.geometry.units.force;
         c.draft.notes.count("SFORCE");
-        if (rotates)
-            put_load(c, s, I, Vector3d::Zero(), z * c.geometry.units.length, follows);
-        else
-            put_load(c, s, I, z, Vector3d::Zero(), follows);
-        return;
+        return put_load(c, s, I, {{J.pose.A.col(2), rotates, programme}}, follows);
     }
+    if (const std::string why = held_at_its_end(c, s, programme, value); !why.empty())
+        return c.draft.notes.miss(s.place(), why);
     if (!is_between_two(c, s, I, J, at)) return;
-    // Of this pair of markers, whichever is named first: DM is the same both ways, AZ turns its sign.
+    // Whichever marker is named first: DM is symmetric in the two, AZ changes its sign.
     Value own;
     own.constant = value.constant;
     const int i = I.statement->id, j = J.statement->id;
@@ -583,9 +637,9 @@ void convert_sforce(Conversion& c, const Statement& s) {
         put_spring(c, s, I, J, own, value.of_velocity);
 }
 
-// Three or six components in the axes of RM, at I, and the opposite at the same place on the part of JFLOAT.
+// Three or six components in the axes of RM, acting at I, and the opposite on the part of JFLOAT.
 void convert_vector(Conversion& c, const Statement& s) {
-    const Arguments at(c.data.file, s, vector_shape);
+    const Arguments at(c.data.file, s, vector_shape());
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
     if (at.has("FUNCTION") || at.has("ROUTINE")) return miss("its force is a function of the user's");
     const Marker &I = c.marker(at, "I"), &floating = c.marker(at, "JFLOAT");
@@ -596,35 +650,46 @@ void convert_vector(Conversion& c, const Statement& s) {
         return miss("it is on a flexible body, which is missing");
     const Units& units = c.geometry.units;
     std::array<Value, 6> component;
+    std::array<Programme, 6> programmes;
     bool is_constant = true, is_zero = true, damps = false;
     const char* const names[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
     for (std::size_t k = 0; k < 6; ++k) {
         const std::string* text = at.expression(names[k]);
         if (!text) continue;
-        if (const std::string why = settled(c, s, *text, component[k]); !why.empty())
-            return miss(fmt::format("{}: {}", names[k], why));
+        programmes[k] = c.programme(*text);
+        component[k] = programmes[k].first;
+        if (!component[k].is_known()) return miss(fmt::format("{}: {}", names[k], component[k].unknown));
         is_constant &= component[k].is_constant();
-        is_zero &= component[k].is_constant() && component[k].constant == 0;
+        is_zero &= component[k].is_constant() && component[k].constant == 0 && !programmes[k].varies();
         damps |= component[k].of_velocity;
     }
     if (is_zero) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
     if (I.part == floating.part) return c.draft.notes.leave_out("as both ends are on one part", s.place());
     SixLaws laws;
     Vector6 F;
-    for (int k = 0; k < 6; ++k) F[k] = component[static_cast<std::size_t>(k)].constant;
-    F = forces(F, units);
     const bool on_ground = c.is_ground(floating.part);
     if (is_constant && (on_ground || c.is_ground(I.part)) &&
         (c.is_ground(RM.part) || RM.part == I.part || RM.part == floating.part)) {
-        // On one moving part: a load that keeps its direction, or turns with it.
+        // On one moving part: a dead or a follower load.
         const bool turns = !c.is_ground(RM.part);
         if (!on_ground) return miss("a constant force on a part at a marker of ground's");
         c.draft.notes.count(s.keyword);
-        return put_load(c, s, I, RM.pose.A * F.head<3>(), RM.pose.A * F.tail<3>(), turns);
+        std::vector<LoadComponent> components;
+        for (std::size_t k = 0; k < 6; ++k)
+            if (!programmes[k].path.empty())
+                components.push_back({RM.pose.A.col(static_cast<int>(k % 3)), k >= 3, programmes[k]});
+        return put_load(c, s, I, components, turns);
     }
+    for (std::size_t k = 0; k < 6; ++k) {
+        if (const std::string why = held_at_its_end(c, s, programmes[k], component[k]); !why.empty())
+            return miss(fmt::format("{}: {}", names[k], why));
+        F[static_cast<int>(k)] = component[k].constant;
+    }
+    F = forces(F, units);
     if (RM.part != floating.part)
         return miss("a force between two parts in the axes of neither the one it reacts on");
-    // Displacements of I from one marker on the other part, in RM's axes, and angles against axes that are RM's.
+    // Displacements of I from one marker on the other part, in the axes of RM, and angles about
+    // axes of RM.
     const Marker* from = nullptr;
     const auto axis_of = [&](const Measure& m, double& sign) -> int {
         const auto at_rm = [&](int id) {
@@ -677,7 +742,7 @@ void convert_vector(Conversion& c, const Statement& s) {
         const double rate = laws.K(row, row);
         const bool angle = r >= 3;
         const std::string why = one_law(c, s, value, -1, 1, angle ? 1 : units.length,
-                                        angle ? units.force * units.length : units.force, law);
+                                        angle ? units.force * units.length : units.force, angle, law);
         if (!why.empty()) return miss(fmt::format("{}: {}", names[r], why));
         for (auto& [x, f] : law.curve) f += rate * x;
         laws.K(row, row) = 0;
@@ -697,13 +762,26 @@ void convert_vector(Conversion& c, const Statement& s) {
 
 }  // namespace
 
+const Shape& sforce_shape() {
+    static const Shape shape{
+        {"TRANSLATIONAL", "ROTATIONAL", "ACTIONONLY"}, {"I", "J", "ROUTINE"}, {"FUNCTION"}};
+    return shape;
+}
+const Shape& vector_shape() {
+    static const Shape shape{
+        {}, {"I", "JFLOAT", "RM", "ROUTINE"}, {"FX", "FY", "FZ", "TX", "TY", "TZ", "FUNCTION"}};
+    return shape;
+}
+
 void read_splines(Conversion& c) {
     static const Shape shape{{"LINEAR_EXTRAPOLATE"}, {"X", "Y", "Z", "FILE", "BLOCK", "CHANNEL"}, {}};
     for (const Statement& s : c.data.statements) {
         if (s.keyword != "SPLINE") continue;
         const Arguments at(c.data.file, s, shape);
-        if (at.has("FILE") || at.has("Z"))
-            continue;  // of points elsewhere, or of two variables: missing where it is used
+        if (at.has("FILE") || at.has("Z")) {  // reported as missing by the statements that use it
+            c.draft.notes.leave_out("being of points elsewhere, or of two variables", s.place());
+            continue;
+        }
         Table table{.x = at.numbers("X", 2, 10'000),
                     .y = at.numbers("Y", 2, 10'000),
                     .goes_on = at.has("LINEAR_EXTRAPOLATE"),

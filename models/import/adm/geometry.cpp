@@ -132,15 +132,15 @@ Units read_units(const Dataset& data) {
 Matrix3d about(int axis, double angle) {
     return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
 }
-// Body-fixed about z, the new x, the new z.
+// Euler angles 3-1-3: body-fixed about z, the new x, the new z.
 Matrix3d euler_313(const std::vector<double>& a) { return about(2, a[0]) * about(0, a[1]) * about(2, a[2]); }
 
 Vector3d vector(const std::vector<double>& v) {
     return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
 }
 
-// Origin and axes from `origin` (QP, QG), REULER, or two points z and x: z is along the first, x in the half plane of the
-// second; with USEXP the other way round.
+// Origin and axes from `origin` (QP, QG), REULER, or two points: z along the first, x in the half
+// plane of the second; with USEXP the roles of x and z are swapped.
 Frame read_frame(const Arguments& at, const char* origin, const char* z_name, const char* x_name,
                  double length) {
     Frame frame;
@@ -214,11 +214,7 @@ Geometry read_geometry(const Dataset& data) {
     Geometry geometry;
     geometry.units = read_units(data);
     const auto add = [&](auto& map, const Statement& statement, auto entry) {
-        if (statement.id == 0) fail(data.file, statement, "has no id");
-        if (!map.emplace(statement.id, std::move(entry)).second)
-            fail(data.file, statement,
-                 fmt::format("there is one with this id already, in line {}",
-                             map.at(statement.id).statement->line));
+        map.emplace(statement.id, std::move(entry));
     };
     int ground = 0;
     for (const Statement& statement : data.statements) {
@@ -231,7 +227,7 @@ Geometry read_geometry(const Dataset& data) {
     }
     if (!ground) reader::fail(data.file, data.last_line, "PART", "none of them is GROUND; one must be");
 
-    // Poses in the part, or in another marker of it.
+    // Poses relative to the part, or to another marker of the part.
     std::map<int, std::pair<Frame, int>> local;
     int last_body = 0;
     std::set<int> flexible;
@@ -256,7 +252,7 @@ Geometry read_geometry(const Dataset& data) {
         local[statement.id] = {read_frame(at, "QP", "ZP", "XP", geometry.units.length), at.id("RM")};
     }
 
-    // Chains of RM, each link once.
+    // Resolves chains of RM references, each link once.
     for (auto& [id, marker] : geometry.markers) {
         std::vector<int> chain;
         for (int at = id; at;) {

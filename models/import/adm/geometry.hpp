@@ -1,7 +1,8 @@
-// Parts and markers of a dataset, where they stand, and in what units.
+// Reads parts and markers of an ADAMS dataset, their poses, and the units.
 //
-// Lengths and forces come out in those of the scene, which are the file's where a scene has them: m or mm, N or kN. The
-// four units of a dataset need not be coherent (kN, kg, m): each quantity is converted by its own.
+// Lengths and forces are converted to the units of the scene, which are the file's if a scene
+// allows them: m or mm, N or kN. The four units of a dataset need not be coherent (kN, kg, m): each
+// quantity has its own factor.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +16,11 @@
 namespace elastocheck::importer::adm {
 
 struct Units {
-    double length = 1;  // of the scene's unit, for one of the file's
+    double length = 1;  // scene units per unit of the file
     double force = 1;
     double mass = 1;          // [kg]
-    double metre = 1;         // for one of the file's lengths
-    double second = 1;        // for one of the file's times
+    double metre = 1;         // per length unit of the file
+    double second = 1;        // per time unit of the file
     std::string length_name;  // of the scene: "mm"
     std::string force_name;
     std::string remark;
@@ -29,7 +30,7 @@ struct Frame {
     Eigen::Vector3d r = Eigen::Vector3d::Zero();      // [length of the scene]
     Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  // its axes as columns
 };
-// a, b in the axes of a
+// The frame b, given in the axes of a, in the axes of a's reference.
 Frame placed(const Frame& a, const Frame& b_in_a);
 
 struct Part {
@@ -51,10 +52,10 @@ struct Geometry {
     Units units;
     std::map<int, Part> parts;
     std::map<int, Marker> markers;
-    double size = 1;  // of the box around all markers
+    double size = 1;  // of the bounding box of all markers
 };
 
-// Throws SceneError for what is missing, twice there, or refers to itself.
+// Throws SceneError for missing, duplicate or circular definitions.
 Geometry read_geometry(const Dataset& data);
 
 }  // namespace elastocheck::importer::adm

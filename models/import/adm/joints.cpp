@@ -1,8 +1,8 @@
-// Joints, and what drives them.
+// Converts ADAMS joints and their motions.
 //
-// I and J of a joint coincide, or stand in line, when the model is assembled. A dataset has its parts as they were drawn, to
-// the digits that were printed: what is off by round-off is drawn where I is, what is off by more is told, and a model that
-// is not assembled is refused.
+// I and J of a joint coincide, or are in line, in the assembled model. A dataset has its parts as
+// drawn, with the printed digits. A misalignment within round-off is removed by using I's position,
+// a larger one is reported, and an unassembled model is rejected.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "models/import/adm/conversion.hpp"
 #include "models/reader/words.hpp"
@@ -19,24 +20,61 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double round_off = 1e-6;  // of the model's size, of a radian: not worth a word
+constexpr double round_off = 1e-6;  // of the model's size, or radians: not reported
 constexpr std::size_t most_motions = 10'000;
-constexpr double assembled = 1e-2;  // beyond, the parts do not meet
+constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
-const Shape joint_shape{
-    {"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE", "UNIVERSAL",
-     "CONVEL", "RACKPIN", "SCREW"},
-    {"I", "J", "IC", "ICTRAN", "ICROT", "PD", "PITCH", "FRICTION", "DELTA_V", "INNER_RADIUS", "OUTER_RADIUS",
-     "MAXFRIC", "MU1", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "IMPLICIT"},
-    {}};
+const Shape joint_shape{{"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE",
+                         "UNIVERSAL", "CONVEL", "RACKPIN", "SCREW"},
+                        {"I",
+                         "J",
+                         "IC",
+                         "ICTRAN",
+                         "ICROT",
+                         "PD",
+                         "PITCH",
+                         "FRICTION",
+                         "DELTA_V",
+                         "INNER_RADIUS",
+                         "OUTER_RADIUS",
+                         "MAXFRIC",
+                         "MU1",
+                         "MU_DYN_ROT",
+                         "MU_STAT_ROT",
+                         "MAX_FRIC_ROT",
+                         "MU_DYN_TRANS",
+                         "MU_STAT_TRANS",
+                         "MAX_FRIC_TRANS",
+                         "MAXIMUM_DEFORMATION",
+                         "HEIGHT",
+                         "WIDTH",
+                         "PRELOAD_RADIAL",
+                         "PRELOAD_AXIAL",
+                         "IMPLICIT"},
+                        {}};
+// Arguments of a joint's friction: coefficients, torques, and the geometry of the contact.
+constexpr const char* of_friction[] = {"FRICTION",
+                                       "MAXFRIC",
+                                       "MU1",
+                                       "MU_DYN_ROT",
+                                       "MU_STAT_ROT",
+                                       "MAX_FRIC_ROT",
+                                       "MU_DYN_TRANS",
+                                       "MU_STAT_TRANS",
+                                       "MAX_FRIC_TRANS",
+                                       "DELTA_V",
+                                       "INNER_RADIUS",
+                                       "OUTER_RADIUS",
+                                       "HEIGHT",
+                                       "WIDTH",
+                                       "PRELOAD_RADIAL",
+                                       "PRELOAD_AXIAL",
+                                       "MAXIMUM_DEFORMATION",
+                                       "IMPLICIT"};
 const Shape jprim_shape{
     {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"}, {"I", "J"}, {}};
 const Shape gcon_shape{{}, {"I"}, {"FUNCTION"}};
 const Shape coupler_shape{{}, {"JOINTS", "TYPE", "SCALES"}, {"FUNCTION"}};
-const Shape motion_shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT",
-                          "VELOCITY", "ACCELERATION"},
-                         {"JOINT", "I", "J", "ICDISP", "ICVEL"},
-                         {"FUNCTION"}};
 
 struct JointConversion {
     Conversion& c;
@@ -57,6 +95,10 @@ struct JointConversion {
                 ": the parts do not meet as they stand in the file; assemble the model before it is written");
         c.draft.notes.warn(place(), told + " in the file; here they meet");
     }
+    void require_small_angle(double angle, const std::string& what) const {
+        const double degree = std::numbers::pi / 180;
+        require_small(angle / degree, 1 / degree, what, "deg");
+    }
     void require_meeting() const {
         require_small((I.pose.r - J.pose.r).norm(), c.geometry.size, "I and J are apart by",
                       c.geometry.units.length_name);
@@ -74,16 +116,16 @@ struct JointConversion {
         const double cosine = axis(I, k).dot(axis(J, k));
         const double angle =
             std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
-        require_small(angle, 1, fmt::format("axes {} of I and J are apart by", "xyz"[k]), "rad");
+        require_small_angle(angle, fmt::format("axes {} of I and J are apart by", "xyz"[k]));
         if (cosine < 0)
             c.draft.notes.warn(
                 place(),
                 fmt::format("axes {} of I and J point opposite ways; here they are one line", "xyz"[k]));
     }
-    // Perpendicular to each other, the second made so to the last digit.
+    // Two perpendicular directions; the second is made exactly perpendicular.
     std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
-        require_small(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))), 1,
-                      "the axes are off the right angle by", "rad");
+        require_small_angle(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))),
+                            "the axes are off the right angle by");
         return {u, (v - u.dot(v) * u).normalized()};
     }
 
@@ -115,12 +157,10 @@ void convert_joint(Conversion& c, const Statement& s) {
     if (!is_between_two(c, s, I, J, at)) return;
     const JointConversion joint{c, s, at, I, J};
     std::string kind;
-    for (const auto& argument : at.all())
-        if (argument.is_flag) {
-            if (!kind.empty())
-                at.fail(fmt::format("is {} and {}; one of them is meant", kind, argument.name));
-            kind = argument.name;
-        }
+    for (const std::string& flag : at.flags()) {
+        if (!kind.empty()) at.fail(fmt::format("is {} and {}; one of them is meant", kind, flag));
+        kind = flag;
+    }
     if (kind.empty()) at.fail("does not say of what kind it is");
     if (kind == "CONVEL" || kind == "RACKPIN" || kind == "SCREW") {
         c.draft.notes.miss(
@@ -133,18 +173,19 @@ void convert_joint(Conversion& c, const Statement& s) {
     }
     const std::string name = c.name(c.joint_names, s);
     c.draft.notes.count("JOINT " + kind);
-    for (const char* field : {"IC", "ICTRAN", "ICROT"})
+    std::string friction;
+    for (const char* field : of_friction)
         if (at.has(field)) {
-            c.draft.notes.leave_out("being of motion alone",
-                                    {s.line, std::string(field) + " of " + s.place().what});
-            break;
+            at.mark_read(field);
+            friction += (friction.empty() ? "" : ", ") + std::string(field);
         }
-    if (at.has("MAXFRIC") || at.has("MU1")) {
+    if (!friction.empty()) {
         if (c.options.drop_dynamics)
-            c.draft.notes.leave_out("by --drop dynamics", {s.line, "friction of " + s.place().what});
+            c.draft.notes.leave_out("by --drop dynamics", {s.line, friction + " of " + s.place().what});
         else
-            c.draft.notes.miss(
-                s.place(), "its friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+            c.draft.notes.miss(s.place(), friction +
+                                              ": its friction holds, too, and a scene has none (--drop "
+                                              "dynamics leaves it out)");
     }
     std::size_t entry = 0;
     if (kind == "REVOLUTE") {
@@ -181,8 +222,10 @@ void convert_jprim(Conversion& c, const Statement& s) {
     if (!is_between_two(c, s, I, J, at)) return;
     const JointConversion joint{c, s, at, I, J};
     std::string kind;
-    for (const auto& argument : at.all())
-        if (argument.is_flag) kind = argument.name;
+    for (const std::string& flag : at.flags()) {
+        if (!kind.empty()) at.fail(fmt::format("is {} and {}; one of them is meant", kind, flag));
+        kind = flag;
+    }
     if (kind.empty()) at.fail("does not say of what kind it is");
     c.draft.notes.count("JPRIM " + kind);
     const std::string name = c.name(c.joint_names, s);
@@ -200,18 +243,19 @@ void convert_jprim(Conversion& c, const Statement& s) {
         joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
     } else if (kind == "PERPENDICULAR") {
         joint.cross_only(name, joint.axis(I, 2), joint.axis(J, 2));
-    } else {  // ORIENTATION: z parallel, and no turn about it
+    } else {  // ORIENTATION: z parallel, and no rotation about it
         joint.require_parallel(2, false), joint.require_parallel(0, false);
         joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
         joint.cross_only(c.joint_names.take(name + ".about"), joint.axis(I, 0), joint.axis(J, 1));
     }
 }
 
-// k DM(i, j) + c = 0 is a rigid link of length -c/k; k D*(i, j, rm) + c = 0 a plane that i stays in.
+// k DM(i, j) + c = 0 is a rigid link of length -c/k; k D*(i, j, rm) + c = 0 keeps i in a plane.
 void convert_gcon(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, gcon_shape);
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
+    at.mark_read("I");  // where ADAMS shows the reaction
     const Value value = c.function(*text);
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
     if (!value.is_known()) return miss(value.unknown);
@@ -249,29 +293,35 @@ void convert_gcon(Conversion& c, const Statement& s) {
     joint.put(name, joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
 }
 
-// ---- Motions. What is prescribed counts from where I and J coincide; a scene counts from the design position.
+// ---- Motions. ADAMS measures from where I and J coincide, a scene from the design position.
 
-// At rest, or at a constant velocity, from 0 to the end of the programme; none where it is neither.
-struct Programme {
-    double start = 0, end = 0;
-    bool from_design = false;  // it is a velocity: it starts where the parts stand
+// The displacement of a MOTION over c.times; none if it is not known.
+struct Displacement {
+    std::vector<double> path = {};  // one value if it does not change
+    double least = 0, most = 0;
+    bool from_design = false;  // given as a velocity: it starts at the design position
 };
 
-std::optional<Programme> programme(Conversion& c, const Statement& s, const Arguments& at) {
+std::optional<Displacement> displacement(Conversion& c, const Statement& s, const Arguments& at) {
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
-    const Value first = c.function(*text, 0), last = c.function(*text, c.end_time);
-    for (const Value* value : {&first, &last})
-        if (!value->is_constant()) {
-            c.draft.notes.miss(s.place(),
-                               value->is_known() ? "a motion that depends on displacements" : value->unknown);
-            return std::nullopt;
-        }
-    if (!at.has("VELOCITY") && !at.has("ACCELERATION"))
-        return Programme{first.constant, last.constant, false};
-    if (first.constant == 0 && last.constant == 0) return Programme{0, 0, true};
-    if (at.has("VELOCITY") && first.constant == last.constant)
-        return Programme{0, first.constant * c.end_time, true};
+    const bool is_velocity = at.has("VELOCITY"), is_acceleration = at.has("ACCELERATION");
+    at.has("DISPLACEMENT");
+    const Programme f = c.programme(*text);
+    if (!f.first.is_constant()) {
+        c.draft.notes.miss(s.place(), f.first.is_known() ? "a motion that depends on displacements"
+                                                         : "its motion: " + f.first.unknown);
+        return std::nullopt;
+    }
+    if (!is_velocity && !is_acceleration) return Displacement{f.path, f.least, f.most, false};
+    if (!f.varies() && f.least == 0) return Displacement{{0}, 0, 0, true};
+    if (is_velocity && !f.varies()) {
+        Displacement result{.from_design = true};
+        for (const double time : c.times) result.path.push_back(f.least * time);
+        result.least = std::min(0.0, result.path.back());
+        result.most = std::max(0.0, result.path.back());
+        return result;
+    }
     if (c.options.drop_dynamics)
         c.draft.notes.leave_out("by --drop dynamics: the coordinate stays free", s.place());
     else
@@ -285,21 +335,23 @@ std::optional<Programme> programme(Conversion& c, const Statement& s, const Argu
 double turn_of(const Marker& I, const Marker& J) {  // AZ
     return std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
 }
-// The angle nearest to zero that is the same.
+// The equivalent angle closest to zero.
 double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
-void drive(Conversion& c, const std::string& quantity, const Programme& by, double scale, double drawn,
-           bool is_angle) {
-    Drive drive{quantity, 0, (by.end - by.start) * scale};
+void drive(Conversion& c, const Statement& s, const std::string& quantity, const Displacement& by,
+           double scale, double drawn, bool is_angle) {
+    double offset = 0;  // from the file's displacement to that from the design position
     if (!by.from_design) {
-        double offset = by.start * scale - drawn;
-        if (is_angle) offset = wrapped(offset);
-        if (std::abs(offset) > 1e-9 * (is_angle ? 1 : c.geometry.size)) {
-            drive.start += offset;
-            drive.end += offset;
-        }
+        offset = -drawn;
+        if (is_angle) offset = wrapped(by.path[0] * scale + offset) - by.path[0] * scale;
+        if (std::abs(by.path[0] * scale + offset) <= 1e-9 * (is_angle ? 1 : c.geometry.size))
+            offset = -by.path[0] * scale;  // the motion begins at the design position
     }
-    c.drives.push_back(drive);
+    Drive drive{.quantity = quantity, .from = s.place()};
+    for (const double x : by.path) drive.path.push_back(x * scale + offset);
+    drive.least = by.least * scale + offset;
+    drive.most = by.most * scale + offset;
+    c.drives.push_back(std::move(drive));
 }
 
 void hold(Conversion& c, std::size_t entry) {
@@ -308,10 +360,11 @@ void hold(Conversion& c, std::size_t entry) {
 }
 
 void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_the_file) {
-    const Arguments at(c.data.file, s, motion_shape);
+    const Arguments at(c.data.file, s, motion_shape());
     if (c.drives.size() >= most_motions) at.fail(fmt::format("more than {} motions", most_motions));
-    const auto by = programme(c, s, at);
+    const auto by = displacement(c, s, at);
     const bool rotates = at.has("ROTATIONAL");
+    if (!rotates) at.has("TRANSLATIONAL");
     const double length = c.geometry.units.length;
     if (at.has("JOINT")) {
         const auto found = c.joints.find(at.id("JOINT"));
@@ -328,15 +381,15 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
         const std::string quantity = "joints." + c.draft.joints[joint.entry].name;
         if (rotates && (joint.kind == "REVOLUTE" || joint.kind == "CYLINDRICAL")) {
             hold(c, joint.entry);
-            drive(c, quantity, *by, 1, turn_of(I, J), true);
+            drive(c, s, quantity, *by, 1, turn_of(I, J), true);
         } else if (!rotates && joint.kind == "TRANSLATIONAL") {
             hold(c, joint.entry);
-            drive(c, quantity, *by, length, axis.dot(I.pose.r - J.pose.r), false);
+            drive(c, s, quantity, *by, length, axis.dot(I.pose.r - J.pose.r), false);
         } else if (!rotates && joint.kind == "CYLINDRICAL") {
             const JointConversion plane{c, s, at, I, J};
             const std::string name = c.name(c.joint_names, s);
             plane.along(name, "in_plane", "normal");
-            drive(c, "joints." + name, *by, length, axis.dot(I.pose.r - J.pose.r), false);
+            drive(c, s, "joints." + name, *by, length, axis.dot(I.pose.r - J.pose.r), false);
         } else {
             at.fail(fmt::format("{} of a {} joint, which has no such coordinate",
                                 rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind));
@@ -358,12 +411,13 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     const std::string name = c.name(c.joint_names, s);
     const Vector3d normal = J.pose.A.col(axis);
     plane.put(name, plane.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
-    drive(c, "joints." + name, *by, length, normal.dot(I.pose.r - J.pose.r), false);
+    drive(c, s, "joints." + name, *by, length, normal.dot(I.pose.r - J.pose.r), false);
     c.draft.notes.count("MOTION");
 }
 
-// Σ scale · displacement = 0 of two or three joints. No joint of a scene says that; but where a MOTION prescribes all of
-// them but one, that one is driven in proportion, which is the same motion. Only the share of the effort is not.
+// COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If
+// MOTIONs prescribe all displacements but one, that one is driven in proportion: the same motion,
+// but without the effort.
 void convert_coupler(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, coupler_shape);
     const auto joints = at.ids("JOINTS");
@@ -371,7 +425,7 @@ void convert_coupler(Conversion& c, const Statement& s) {
     if (joints.size() < 2 || joints.size() > 3) at.fail("JOINTS: two or three are needed");
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
     if (at.has("FUNCTION")) return miss("it couples by a function of the user's");
-    // Of two joints one scale may be left out: that of the first is 1.
+    // For two joints one scale may be missing: that of the first is then 1.
     std::vector<double> scale = scales;
     if (scale.size() == joints.size() - 1) scale.insert(scale.begin(), 1);
     if (scale.size() != joints.size())
@@ -382,19 +436,21 @@ void convert_coupler(Conversion& c, const Statement& s) {
         if (found == c.joints.end()) return miss(fmt::format("JOINT/{} is not in the scene", id));
         written.push_back(&found->second);
     }
-    const auto unit = [&](const WrittenJoint& joint) {  // of the scene, for one of the file's
+    const auto unit = [&](const WrittenJoint& joint) {  // scene units per unit of the file
         return joint.kind == "TRANSLATIONAL" ? c.geometry.units.length : 1;
     };
     const auto quantity = [&](const WrittenJoint& joint) {
         return "joints." + c.draft.joints[joint.entry].name;
     };
     std::size_t free = joints.size();
-    double sum = 0;
+    std::vector<double> sum{0};
     for (std::size_t k = 0; k < joints.size(); ++k) {
         const auto found = std::ranges::find(c.drives, quantity(*written[k]), &Drive::quantity);
-        if (found != c.drives.end())
-            sum += scale[k] * found->end / unit(*written[k]);
-        else if (free == joints.size())
+        if (found != c.drives.end()) {
+            if (sum.size() < found->path.size()) sum.resize(found->path.size(), sum[0]);
+            for (std::size_t n = 0; n < sum.size(); ++n)
+                sum[n] += scale[k] * found->path[std::min(n, found->path.size() - 1)] / unit(*written[k]);
+        } else if (free == joints.size())
             free = k;
         else
             return miss("it couples joints that no MOTION prescribes; a scene has no joint that does");
@@ -405,7 +461,10 @@ void convert_coupler(Conversion& c, const Statement& s) {
         return miss(fmt::format("it couples a {} joint, which has no coordinate or two", joint.kind));
     if (scale[free] == 0) at.fail("SCALES: zero for a joint that nothing else moves");
     hold(c, joint.entry);
-    c.drives.push_back({quantity(joint), 0, -sum / scale[free] * unit(joint)});
+    Drive drive{.quantity = quantity(joint), .path = sum, .from = s.place()};
+    for (double& x : drive.path) x *= -unit(joint) / scale[free];
+    std::tie(drive.least, drive.most) = std::pair(std::ranges::min(drive.path), std::ranges::max(drive.path));
+    c.drives.push_back(std::move(drive));
     c.draft.notes.count("COUPLER");
     c.draft.notes.warn(
         s.place(), fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
@@ -414,6 +473,14 @@ void convert_coupler(Conversion& c, const Statement& s) {
 }
 
 }  // namespace
+
+const Shape& motion_shape() {
+    static const Shape shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT",
+                              "VELOCITY", "ACCELERATION"},
+                             {"JOINT", "I", "J", "ICDISP", "ICVEL"},
+                             {"FUNCTION"}};
+    return shape;
+}
 
 void convert_joints(Conversion& c) {
     for (const Statement& s : c.data.statements) {

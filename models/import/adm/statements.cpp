@@ -15,7 +15,7 @@
 namespace elastocheck::importer::adm {
 namespace {
 
-// Every statement that a dataset may have, so that what is cut off is known to be unambiguous.
+// All keywords of a dataset, to resolve abbreviations.
 constexpr std::string_view keywords[] = {
     "ACCGRAV",    "ADAMS",       "ARRAY",       "BEAM",       "BUSHING",    "CONTACT",      "CONTROL",
     "COSIM",      "COUPLER",     "CURVE",       "CVCV",       "DEACTIVATE", "DEBUG",        "DIFF",
@@ -29,7 +29,7 @@ constexpr std::string_view keywords[] = {
     "SURFACE",    "TFSISO",      "TIRE",        "UCON",       "UNITS",      "VARIABLE",     "VFORCE",
     "VTORQUE",    "WHEEL"};
 
-// NUL, too: there are writers that pad their text with it.
+// NUL counts as a blank: some writers pad their text with it.
 bool is_space(char c) { return c == ' ' || c == '\0' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -41,7 +41,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-// The one of these words that the beginning can only mean; none where it means none, or several.
+// Words that an abbreviation can mean: the exact match alone, else all that begin with it.
 std::vector<std::string_view> meant(std::string_view beginning, std::span<const std::string_view> words) {
     std::vector<std::string_view> found;
     for (const std::string_view word : words) {
@@ -55,7 +55,7 @@ std::vector<std::string> strings(const std::vector<std::string_view>& words) {
     return {words.begin(), words.end()};
 }
 
-// What the comment adams_view_name='...' says.
+// The name in a comment adams_view_name='...'.
 std::optional<std::string> view_name(std::string_view comment) {
     constexpr std::string_view key = "adams_view_name='";
     const auto begin = comment.find(key);
@@ -160,8 +160,9 @@ Dataset read_statements(std::string_view text, const std::string& file) {
         reader::fail(file, 0, "",
                      fmt::format("larger than {} MiB, which no dataset is", largest_dataset >> 20));
     Reading reading{data};
+    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::size_t end = std::min(text.find(line_end), text.size());
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (++data.last_line == 1) {
@@ -170,7 +171,10 @@ Dataset read_statements(std::string_view text, const std::string& file) {
             continue;
         }
         const std::string_view word = trimmed(line.substr(0, line.find('!')));
-        if (capitals(word) == "END" || capitals(word) == "END/") break;
+        if (capitals(word) == "END" || capitals(word) == "END/") {
+            data.has_end = true;
+            break;
+        }
         reading.read(line);
     }
     if (data.statements.empty()) reader::fail(file, data.last_line, "", "no statement: this is no dataset");
@@ -183,7 +187,7 @@ void fail(const std::string& file, const Statement& at, const std::string& what)
 
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees) {
     std::size_t n = 0;
-    std::string digits;  // as from_chars reads them
+    std::string digits;  // in the format of from_chars
     is_in_degrees = false;
     if (n < text.size() && (text[n] == '+' || text[n] == '-')) {
         if (text[n] == '-') digits += '-';
@@ -218,7 +222,7 @@ std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees)
     return n;
 }
 
-// ---- Arguments, from left to right. What is read is behind `at`.
+// ---- Arguments, from left to right; text before `at` is consumed.
 
 namespace {
 
@@ -237,7 +241,7 @@ struct Scanner {
                                  text.front() == '\\'))
             text.remove_prefix(1);
     }
-    // The word at the beginning, and whether "=" is behind it.
+    // The word at the beginning, and whether "=" follows.
     static std::string_view word(std::string_view rest, bool& assigns) {
         std::size_t n = 0;
         if (n < rest.size() && is_letter(rest[n]))
@@ -251,7 +255,8 @@ struct Scanner {
         return !name.empty() && !meant(capitals(name), shape.flags).empty();
     }
 
-    // Whether another argument begins here, behind a comma or on a new line of an expression that is whole.
+    // Whether another argument begins here, after a comma or on a new line of a complete
+    // expression.
     bool is_argument(std::string_view rest) const {
         while (!rest.empty() && (is_space(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
             rest.remove_prefix(1);
@@ -296,7 +301,7 @@ struct Scanner {
                 more = true;
                 continue;
             }
-            // A comma, a new line, or a comma with a new line behind it: what follows is a value if it is a number.
+            // After a comma and/or a new line the following text is a value if it is a number.
             std::string_view rest = text;
             if (rest.front() == ',') rest.remove_prefix(1);
             while (!rest.empty() && (is_space(rest.front()) || rest.front() == '\n')) rest.remove_prefix(1);
@@ -333,7 +338,7 @@ Arguments::Arguments(const std::string& file, const Statement& statement, const 
             fail(fmt::format("{} is no {} of this statement{}", reader::quote(name),
                              assigns ? "argument" : "flag",
                              reader::did_you_mean(name, strings(allowed), "known")));
-        if (has(found[0])) fail(fmt::format("{} is given twice", found[0]));
+        if (find(found[0])) fail(fmt::format("{} is given twice", found[0]));
         Argument argument;
         argument.name = found[0];
         argument.is_flag = !assigns;
@@ -345,6 +350,8 @@ Arguments::Arguments(const std::string& file, const Statement& statement, const 
             else
                 argument.values = scanner.values();
         }
+        if (statement.arguments.size() == arguments_.size())
+            statement.arguments.emplace_back(found[0], false);
         arguments_.push_back(std::move(argument));
     }
 }
@@ -354,6 +361,31 @@ void Arguments::fail(const std::string& what) const { adm::fail(*file_, *stateme
 const Argument* Arguments::find(std::string_view name) const {
     const auto found = std::ranges::find(arguments_, name, &Argument::name);
     return found == arguments_.end() ? nullptr : &*found;
+}
+
+void Arguments::mark_read(std::string_view name) const {
+    for (auto& [argument, is_read] : statement_->arguments) is_read |= argument == name;
+}
+
+const Argument* Arguments::taken(std::string_view name) const {
+    mark_read(name);
+    return find(name);
+}
+
+bool Arguments::has(std::string_view name) const {
+    const Argument* argument = find(name);
+    if (argument && argument->is_flag) mark_read(name);
+    return argument != nullptr;
+}
+
+std::vector<std::string> Arguments::flags() const {
+    std::vector<std::string> result;
+    for (const Argument& argument : arguments_)
+        if (argument.is_flag) {
+            mark_read(argument.name);
+            result.push_back(argument.name);
+        }
+    return result;
 }
 
 double Arguments::read(const Argument& argument, const std::string& text, bool is_angle) const {
@@ -370,13 +402,13 @@ double Arguments::read(const Argument& argument, const std::string& text, bool i
 }
 
 std::string Arguments::word(std::string_view name) const {
-    const Argument* argument = find(name);
+    const Argument* argument = taken(name);
     return argument && !argument->values.empty() ? capitals(argument->values[0]) : "";
 }
 
 std::vector<int> Arguments::ids(std::string_view name) const {
     std::vector<int> result;
-    if (const Argument* argument = find(name))
+    if (const Argument* argument = taken(name))
         for (const std::string& text : argument->values) {
             int id = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
@@ -396,7 +428,7 @@ int Arguments::id(std::string_view name) const {
 
 std::vector<double> Arguments::list(std::string_view name, std::size_t least, std::size_t most,
                                     bool angles) const {
-    const Argument* argument = find(name);
+    const Argument* argument = taken(name);
     std::vector<double> result;
     if (!argument) return result;
     if (argument->values.size() < least || argument->values.size() > most)
@@ -422,7 +454,7 @@ std::vector<double> Arguments::angles(std::string_view name, std::size_t count) 
 }
 
 const std::string* Arguments::expression(std::string_view name) const {
-    const Argument* argument = find(name);
+    const Argument* argument = taken(name);
     return argument && !argument->values.empty() ? &argument->values[0] : nullptr;
 }
 

@@ -1,15 +1,18 @@
 // The lexical rules of an ADAMS/Solver dataset (.adm):
 //
-//   file         := title-line item* [END]         line 1 is the title, whatever it says; what follows END is ignored
+//   file         := title-line item* [END]         line 1 is the title; text after END is ignored
 //   item         := blank | "!" comment | statement
 //   statement    := KEYWORD "/" [id] ["," argument]* (continuation)*
-//   continuation := a line whose first character that is no blank is ",", or the one after a line that ends with "&"
-//   argument     := FLAG | NAME "=" value ("," value)* | NAME "=" value ":" value ... | FNAME "=" expression
+//   continuation := a line whose first non-blank character is ",", or the line after one that ends
+//                   with "&"
+//   argument     := FLAG | NAME "=" value ("," value)* | NAME "=" value ":" value ...
+//                   | FNAME "=" expression
 //
-// The comma that begins a continuation separates values where the line before did not end with one (or with "="), and
-// is no part of an expression at all: so what an argument is must be known before lines are joined. Keywords, names and
-// flags are of any case and may be cut off where what is left is unambiguous. Bytes may be any; NUL is a blank, but for
-// the title, where it tells that this is no text.
+// The comma at the start of a continuation separates values if the line before did not end with one
+// (or with "="), and is not part of an expression. So the kind of an argument must be known before
+// lines are joined. Keywords, names and flags are case-insensitive and may be abbreviated if
+// unambiguous. Any bytes are allowed; NUL counts as a blank except in the title, where it marks a
+// binary file.
 #pragma once
 
 #include <string>
@@ -25,10 +28,12 @@ inline constexpr std::size_t most_statements = 200'000;
 
 struct Statement {
     std::string keyword;  // in full: "SPRINGDAMPER"
-    int id = 0;           // 0 where there is none
-    std::string rest;     // behind the id; where a line is continued, '\n' stands for the comma
-    std::string name;     // of the comment adams_view_name='...' above it; empty where there is none
+    int id = 0;           // 0: none
+    std::string rest;     // text after the id; '\n' replaces the comma of a continuation
+    std::string name;     // from the comment adams_view_name='...' above it; or empty
     int line = 0;
+    // The arguments found by Arguments, and whether each has been read.
+    mutable std::vector<std::pair<std::string_view, bool>> arguments = {};
 
     Place place() const;  // "JOINT/1 'knuckle'"
 };
@@ -37,9 +42,10 @@ struct Dataset {
     std::string file, title;
     std::vector<Statement> statements;
     int last_line = 0;
+    bool has_end = false;
 };
 
-// Throws SceneError for what is no dataset.
+// Throws SceneError if the text is not a dataset.
 Dataset read_statements(std::string_view text, const std::string& file);
 
 [[noreturn]] void fail(const std::string& file, const Statement& at, const std::string& what);
@@ -47,25 +53,31 @@ Dataset read_statements(std::string_view text, const std::string& file);
 // ---- Arguments.
 
 struct Argument {
-    std::string name;                 // as written, in capitals
-    bool is_flag = false;             // no "="
-    std::vector<std::string> values;  // of an assignment; of an expression its one text, lines joined
+    std::string name;      // as written, in capitals
+    bool is_flag = false;  // no "="
+    // of an assignment; an expression has one text, with lines joined
+    std::vector<std::string> values;
 };
 
-// What a statement may have. A name is an expression, or values.
+// Arguments that a statement may have: flags, names with values, names with an expression.
 struct Shape {
     std::vector<std::string_view> flags, values, expressions;
 };
 
-// The arguments, their names in full. Throws SceneError for one that the shape does not have, or that is there twice.
+// The arguments of a statement by their full names. Throws SceneError for an argument that the
+// shape does not have, and for a duplicate. `has` and `flags` count as reading a flag, the
+// functions that return a value as reading it; Statement::arguments records which arguments were
+// read.
 class Arguments {
   public:
     Arguments(const std::string& file, const Statement& statement, const Shape& shape);
 
-    bool has(std::string_view name) const { return find(name) != nullptr; }
-    const std::vector<Argument>& all() const { return arguments_; }
+    bool has(std::string_view name) const;
+    std::vector<std::string> flags() const;
+    void mark_read(std::string_view name) const;    // for an argument used in another way
     std::string word(std::string_view name) const;  // one value, in capitals
-    int id(std::string_view name) const;            // one value, of another statement; 0 where there is none
+    // one value, the id of another statement; 0 if missing
+    int id(std::string_view name) const;
     std::vector<int> ids(std::string_view name) const;
     double number(std::string_view name, double missing) const;
     double angle(std::string_view name, double missing) const;  // [rad]; the suffix D means degrees
@@ -76,6 +88,7 @@ class Arguments {
 
   private:
     const Argument* find(std::string_view name) const;
+    const Argument* taken(std::string_view name) const;  // find(), marked as read
     double read(const Argument& argument, const std::string& text, bool is_angle) const;
     std::vector<double> list(std::string_view name, std::size_t least, std::size_t most, bool angles) const;
 
@@ -84,7 +97,8 @@ class Arguments {
     std::vector<Argument> arguments_;
 };
 
-// "1", "-.4", "1.0E+05", "5.0D-02", "90D" (degrees: sets the flag), or not a number at all. Returns its length.
+// Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0
+// if none.
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees);
 
 std::string capitals(std::string_view text);

@@ -1,5 +1,6 @@
-// Suspensions of Chrono::Vehicle: its templates, part by part. Points and joints as the templates have them; chassis,
-// subchassis and steering stand still, so all three are ground.
+// Imports Chrono::Vehicle suspension templates.
+// Points and joints as in the templates; chassis, subchassis and steering do not move, so all three
+// become ground.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -22,7 +23,8 @@ std::optional<Cursor> bushing_of(const Suspension& s, const char* path) {
     return s.at(path);
 }
 
-// An arm on an axis through two points: chassis | arm at their middle, arm | upright at its ball joint.
+// An arm on an axis through two points: chassis to arm at their middle, arm to upright at its ball
+// joint.
 void arm(Suspension& s, const std::string& name, const char* part, const char* front, const char* back,
          const char* ball, const std::string& upright) {
     const std::string p(part);
@@ -30,9 +32,10 @@ void arm(Suspension& s, const std::string& name, const char* part, const char* f
     const std::string of = s.sided(name), data = path("Bushing Data");
     s.body(of, s.point(path("COM").c_str()), part);
     const Vector3d f = s.point(path(front).c_str()), b = s.point(path(back).c_str());
-    s.joint_or_bushing(Kind::revolute, s.sided(name + ".axis"), "ground", of, 0.5 * (f + b),
-                       frame_along(f - b, Vector3d::UnitZ()), path(front).c_str(),
-                       bushing_of(s, data.c_str()));
+    const Vector3d middle =
+        s.midpoint(name + ".axis", "front", path(front).c_str(), "rear", path(back).c_str());
+    s.joint_or_bushing(Kind::revolute, s.sided(name + ".axis"), "ground", of, middle,
+                       frame_along(f - b, Vector3d::UnitZ()), part, bushing_of(s, data.c_str()));
     if (ball)
         s.spherical(s.sided(name + ".ball_joint"), of, upright, s.point(path(ball).c_str()),
                     path(ball).c_str());
@@ -50,7 +53,7 @@ void spring_and_shock(Suspension& s, const char* end, const std::string& on, con
     }
 }
 
-// ---- Independent suspensions: one side, which a mirror turns round.
+// ---- Independent suspensions: one side, mirrored by the scene.
 
 void double_wishbone(Suspension& s) {
     upright_body(s);
@@ -72,8 +75,8 @@ void double_wishbone_reduced(Suspension& s) {
              {std::pair{"front", "Location Chassis Front"}, {"rear", "Location Chassis Back"}}) {
             const std::string from = std::string(part) + "/" + key,
                               to = std::string(part) + "/Location Upright";
-            s.distance(s.sided(fmt::format("{}_{}", name, way)), "ground", s.point(from.c_str()), upright,
-                       s.point(to.c_str()), from.c_str());
+            s.distance(s.sided(fmt::format("{}_{}", name, way)), "ground", s.point(from.c_str()),
+                       from.c_str(), upright, s.point(to.c_str()), to.c_str());
         }
     s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
     spring_and_shock(s, "Location Upright", upright);
@@ -168,7 +171,7 @@ void single_wishbone(Suspension& s) {
     s.spindle(upright);
 }
 
-// ---- Axles: both sides written out, as what they share is not symmetric.
+// ---- Axles: both sides written out, since their shared parts are not symmetric.
 
 void both(Suspension& s, const std::function<void()>& make) {
     for (const int side : {+1, -1}) {
@@ -184,8 +187,9 @@ void axle_tube(Suspension& s) { s.body("axle", s.left("Axle Tube/COM"), "Axle Tu
 void knuckle(Suspension& s, const char* lower = "Knuckle/Location Lower",
              const char* upper = "Knuckle/Location Upper") {
     s.body(s.sided("knuckle"), s.point("Knuckle/COM"), "Knuckle");
-    const Vector3d l = s.point(lower), u = s.point(upper);
-    s.revolute(s.sided("king_pin"), "axle", s.sided("knuckle"), 0.5 * (l + u), l - u, lower);
+    const Vector3d middle = s.midpoint("king_pin", "lower", lower, "upper", upper);
+    s.revolute(s.sided("king_pin"), "axle", s.sided("knuckle"), middle, s.point(lower) - s.point(upper),
+               "Knuckle");
 }
 
 // The track rod between both knuckles, and the drag link from ground to one of them.
@@ -202,7 +206,7 @@ void shared_tierod(Suspension& s) {
 
 void draglink(Suspension& s, bool universal) {
     const Vector3d chassis = s.left("Draglink/Location Chassis");
-    const Vector3d end = s.left("Knuckle/Location Draglink");  // y says on which knuckle it is
+    const Vector3d end = s.left("Knuckle/Location Draglink");  // the sign of y tells the knuckle
     s.link("draglink", "Draglink", 0.5 * (chassis + end), "ground", chassis,
            end.y() > 0 ? "knuckle_left" : "knuckle_right", end, universal, "Draglink/Location Chassis",
            "Knuckle/Location Draglink");
@@ -228,7 +232,7 @@ void solid_axle(Suspension& s) {
         s.spindle(s.sided("knuckle"));
     });
     shared_tierod(s);
-    if (s.has("Trackbar")) {  // the links, which are not parallel, hold the axle sideways already
+    if (s.has("Trackbar")) {  // without it the non-parallel links already hold the axle sideways
         s.one_freedom = true;
         s.draft().notes.warn(s.place("Trackbar"),
                              "links and track bar together leave the axle one freedom, and that hardly: the "
@@ -255,6 +259,8 @@ void solid_axle(Suspension& s) {
 void three_links(Suspension& s) {
     Vector3d c = s.left("Triangular Link/Location Chassis"), a = s.left("Triangular Link/Location Axle");
     c.y() = a.y() = 0;  // the middle of both sides
+    s.draft().points.at(c, "triangle.axis", {0, "Triangular Link/Location Chassis, at y = 0"});
+    s.draft().points.at(a, "triangle.ball_joint", {0, "Triangular Link/Location Axle, at y = 0"});
     s.body("triangle", 0.5 * (c + a), "Triangular Link");
     s.revolute("triangle.axis", "triangle", "ground", c, Vector3d::UnitY(),
                "Triangular Link/Location Chassis");
@@ -299,16 +305,19 @@ void solid_bellcrank_three_link(Suspension& s) {
     });
 }
 
-// The axle's ball on the chassis, and the linkage of Watt that guides it sideways.
+// De Dion axle: ball joint on the chassis, and a Watt linkage for lateral guidance.
 void dedion(Suspension& s) {
     axle_tube(s);
     s.spherical("axle.ball_joint", "axle", "ground", s.left("Axle Tube/Location Connector Chassis"),
                 "Axle Tube/Location Connector Chassis");
     const Vector3d left = s.left("Watt Mechanism/Location Left Link to Center"),
                    right = s.left("Watt Mechanism/Location Right Link to Center");
+    s.draft().points.at(
+        0.5 * (left + right), "watt_centre.pivot",
+        {0, "midpoint of Watt Mechanism/Location Left Link to Center and Right Link to Center"});
     s.body("watt_centre", 0.5 * (left + right), "Watt Mechanism", "Center Link Mass");
     s.revolute("watt_centre.pivot", "watt_centre", "axle", 0.5 * (left + right), Vector3d::UnitX(),
-               "Watt Mechanism/Location Left Link to Center");
+               "Watt Mechanism");
     for (const auto& [name, centre, chassis] :
          {std::tuple{"watt_link_left", "Watt Mechanism/Location Left Link to Center",
                      "Watt Mechanism/Location Left Link to Chassis"},
@@ -320,7 +329,7 @@ void dedion(Suspension& s) {
     }
 }
 
-// Heave along z and roll about x, nothing else.
+// Allows only heave along z and roll about x.
 void leafspring_guide(Suspension& s) {
     axle_tube(s);
     const Vector3d p = s.left("Axle Tube/COM");
@@ -336,6 +345,9 @@ void panhard_rod(Suspension& s, const char* chassis, const char* axle) {
 
 void push_pipe(Suspension& s) {
     axle_tube(s);
+    if (s.has("Axle Tube/Portal Offset") && s.real("Axle Tube/Portal Offset") != 0)
+        s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
+                             "a portal axle, whose gears are not known here");
     s.spherical("axle.ball_joint", "axle", "ground", s.left("Axle Tube/Location Connector Chassis"),
                 "Axle Tube/Location Connector Chassis");
     panhard_rod(s, "Panhard Rod/Location Connector Chassis", "Panhard Rod/Location Connector Axle");
@@ -349,9 +361,11 @@ void rigid_panhard(Suspension& s) {
                 .add("normal", "x"),
             s.place("Axle Tube"));
     panhard_rod(s, "Panhard Rod/Location Chassis", "Panhard Rod/Location Axle");
-    // Two halves of an anti-roll bar: the left one turns in the chassis, the right one against it.
+    // An anti-roll bar in two halves: the left one rotates in the chassis, the right one relative
+    // to it.
     const Vector3d chassis = s.left("Anti Roll Bar/Location Chassis");
     const Vector3d middle(chassis.x(), 0, chassis.z());
+    s.draft().points.at(middle, "antiroll_bar.bearing", {0, "Anti Roll Bar/Location Chassis, at y = 0"});
     both(s, [&] {
         s.body(s.sided("antiroll_bar"), 0.5 * (s.point("Anti Roll Bar/Location Chassis") + middle),
                "Anti Roll Bar");
@@ -386,7 +400,8 @@ void steered_wheels(Suspension& s, bool universal_draglink) {
     draglink(s, universal_draglink);
 }
 
-// A leaf in two halves (SAE): a spring about y and one about z at each clamp. The preload stands for half the load each.
+// A leaf spring in two halves (SAE): a spring about y and one about z at each clamp. The preload is
+// shared equally.
 void leaf(Suspension& s) {
     const Vector3d hanger = s.point("Leafspring/Location Front Hanger"),
                    a = s.point("Leafspring/Location Clamp A"), b = s.point("Leafspring/Location Clamp B"),
@@ -434,7 +449,8 @@ void leaf(Suspension& s) {
                   half.share * lateral * square, 0, half.path);
         s.joint_or_bushing(Kind::revolute, s.sided(name + ".pitch"), half.clamp, half.leaf, half.p, about_y,
                            half.path, on_leaf);
-        // The moment about y on the leaf whose far end then pushes the chassis up with half the preload: arm × force.
+        // Moment about y on the leaf whose far end then pushes the chassis up with half the
+        // preload: arm × force.
         s.torsion(s.sided(name + ".vertical"), half.clamp, half.leaf, half.p, Vector3d::UnitY(),
                   half.share * vertical * square, -0.5 * preload * half.arm.x(), half.path);
     }
@@ -457,7 +473,7 @@ void sae_leafspring(Suspension& s, bool steered) {
     draglink(s, true);
 }
 
-// Chrono has the lower shock on the housing, and so has this.
+// The lower shock end is on the housing, as in Chrono.
 void hendrickson(Suspension& s) {
     s.one_freedom = true;
     s.draft().notes.warn(
@@ -498,7 +514,7 @@ Vector3d vector(const Cursor& at) {
     return {items[0].number(), items[1].number(), items[2].number()};
 }
 
-// x and z of the frame have y turned round on the right; y completes it.
+// On the right side the y components of the frame's x and z change sign; y completes the frame.
 Matrix3d rotation(const Suspension& s, const Cursor& at) {
     const auto q = at.list(4, "numbers, a quaternion");
     const Eigen::Quaterniond p(q[0].number(), q[1].number(), q[2].number(), q[3].number());
@@ -547,7 +563,7 @@ struct Generic {
         return field && field->yes_or_no();
     }
 
-    // Each entry of a section, on the sides it is on.
+    // Calls `make` for each entry of a section and for each of its sides.
     void each(const char* section, const std::function<void(const Cursor&, const std::string&)>& make) {
         if (!s.has(section)) return;
         for (const Cursor& entry : s.at(section).items()) {
@@ -579,6 +595,8 @@ void generic(Suspension& s) {
         Fields fields;
         fields.add("origin", draft.points.at(g.at(entry, "Position"), name + ".cm", from));
         if (const auto mass = entry.optional("Mass")) fields.add("mass", mass->number());
+        if (const auto turned = entry.optional("Rotation"))
+            s.leave_out(*turned, "being the axes of the inertia");
         draft.bodies.push_back({name, "{" + fields.text() + "}", from});
         draft.notes.count("bodies");
     });
@@ -600,17 +618,18 @@ void generic(Suspension& s) {
         else if (is({"Universal", "UNIVERSAL"}))
             s.joint_or_bushing(Kind::universal, name, i, j, p, A, "Joints", data);
         else if (is({"Lock", "LOCK"})) {
-            if (data) draft.notes.miss(from, "a bushing in place of a lock");
+            if (data) {
+                s.ignore(*data, "a bushing in place of a lock");
+                draft.notes.miss(from, "a bushing in place of a lock");
+            }
             s.joint(name, "fixed", i, j, Fields{}.add("at", at), from);
         } else if (is({"Point Line", "POINTLINE"})) {
             if (data)
-                draft.notes.warn(
-                    from, "Chrono makes nothing of a bushing in place of this joint; here it is a joint");
+                s.ignore(*data, "Chrono makes nothing of a bushing in place of this joint; here a joint");
             s.joint(name, "in_line", i, j, Fields{}.add("at", at).add("axis", direction(A.col(0))), from);
         } else if (is({"Point Plane", "POINTPLANE"})) {
             if (data)
-                draft.notes.warn(
-                    from, "Chrono makes nothing of a bushing in place of this joint; here it is a joint");
+                s.ignore(*data, "Chrono makes nothing of a bushing in place of this joint; here a joint");
             s.joint(name, "in_plane", i, j, Fields{}.add("at", at).add("normal", direction(A.col(2))), from);
         } else if (is({"Prismatic", "PRISMATIC", "Cylindrical", "CYLINDRICAL"})) {
             entry.require("Type").fail(
@@ -632,14 +651,8 @@ void generic(Suspension& s) {
                g.at(entry, "Point2"), entry);
     });
     g.each("RSDAs", [&](const Cursor& entry, const std::string& name) {
-        const Place from{entry.value->line, "RSDAs/" + name};
-        const auto free = entry.optional("Free Angle");
-        if ((free && free->number() != 0) || !entry.optional("Spring Coefficient"))
-            return draft.notes.miss(from, "a torsion spring with a curve or a free angle");
-        const Vector3d axis = g.at(entry, "Axis");
-        s.torsion(name, g.body(entry.require("Body1")), g.body(entry.require("Body2")),
-                  g.at(entry, "Position"), axis.normalized(), entry.require("Spring Coefficient").number(), 0,
-                  "RSDAs");
+        s.rsda(name, g.body(entry.require("Body1")), g.body(entry.require("Body2")), g.at(entry, "Position"),
+               g.at(entry, "Axis").normalized(), entry);
     });
     both(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
 }
@@ -648,7 +661,7 @@ void generic(Suspension& s) {
 
 struct Template {
     std::string_view name;
-    bool mirrors;  // independent: the left side is written, a mirror makes the right one
+    bool mirrors;  // independent: the left side is written, the scene mirrors it
     void (*make)(Suspension&);
 };
 
@@ -686,7 +699,8 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
     using namespace chrono;
     const reader::Value tree = parse_json(text, file);
     std::vector<Number> numbers;
-    const reader::Cursor root{&tree, "", &file, &numbers};
+    reader::Accesses accesses;
+    const reader::Cursor root{&tree, "", &file, &numbers, {}, &accesses};
     if (tree.kind != reader::Value::Kind::map)
         root.fail("expected an object: this is no suspension of Chrono::Vehicle");
     const std::string type = root.require("Type").text("a type");
@@ -720,7 +734,7 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
     if (found->mirrors) draft.mirror = "left -> right";
     Suspension suspension(root, options, draft);
     found->make(suspension);
-    suspension.note_unused();
+    suspension.report_unread();
     const char* const range = "from: -0.06, to: 0.06, steps: 120}";
     draft.branches.push_back(
         {"travel",

@@ -13,7 +13,8 @@ using reader::Value;
 
 class Parser {
   public:
-    Parser(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+    Parser(std::string_view text, const std::string& file)
+        : text_(text), file_(file), line_end_(text.find('\n') == text.npos ? '\r' : '\n') {}
 
     Value whole() {
         Value root = value(0);
@@ -31,8 +32,8 @@ class Parser {
     }
 
     void advance(std::size_t n) {
-        line_ +=
-            static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(n), '\n'));
+        line_ += static_cast<int>(
+            std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(n), line_end_));
         text_.remove_prefix(n);
     }
 
@@ -41,7 +42,7 @@ class Parser {
             const std::size_t n = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
             advance(n);
             if (text_.starts_with("//")) {
-                advance(std::min(text_.find('\n'), text_.size()));
+                advance(std::min(text_.find(line_end_), text_.size()));
             } else if (text_.starts_with("/*")) {
                 const std::size_t end = text_.find("*/", 2);
                 if (end == text_.npos) fail("a comment /* is left open");
@@ -59,7 +60,7 @@ class Parser {
         return true;
     }
 
-    // Escapes are kept as they are but for the plain ones: no name or number of a suspension has any.
+    // Decodes the simple escapes only; names and numbers of a suspension contain no others.
     std::string string() {
         if (!take('"')) expected("a string in double quotes");
         std::string result;
@@ -120,6 +121,7 @@ class Parser {
         }
         if (c == '"') {
             result.text = string();
+            result.is_string = true;
             return result;
         }
         const std::size_t n = std::min(text_.find_first_of(" \t\r\n,]}/:"), text_.size());
@@ -138,6 +140,7 @@ class Parser {
 
     std::string_view text_;
     const std::string& file_;
+    char line_end_;  // CR alone, LF, or CR LF
     int line_ = 1;
 };
 

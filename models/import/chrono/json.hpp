@@ -1,5 +1,5 @@
-// JSON as Chrono reads it: with // and /* */ comments, else to the letter (RFC 8259). The same tree as of YAML, so that
-// what reads it names file, line and field.
+// JSON parser for Chrono files: RFC 8259 plus // and /* */ comments.
+// The result is the same tree as for YAML, so that error messages name file, line and field.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace elastocheck::importer::chrono {
 inline constexpr std::size_t largest_json = 1 << 20;  // [bytes]
 inline constexpr int deepest_json = 32;
 
-// Throws SceneError "file:line: ..." for what is no JSON, a key given twice, nesting deeper than any suspension's.
+// Throws SceneError "file:line: ..." for invalid JSON, duplicate keys and excessive nesting.
 reader::Value parse_json(std::string_view text, const std::string& file);
 
 }  // namespace elastocheck::importer::chrono

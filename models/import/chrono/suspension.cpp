@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 
 #include "models/import/curves.hpp"
@@ -15,34 +17,56 @@ namespace {
 
 using reader::Cursor;
 
-// The force of a closed stop in Chrono::Vehicle, "from an ADAMS/Car example", over its penetration; constant beyond.
-const Rows stop_table{{0, 0},       {0.002, 200},  {0.004, 400},   {0.006, 600},
-                      {0.008, 800}, {0.01, 1000},  {0.02, 2500},   {0.03, 4500},
-                      {0.04, 7500}, {0.05, 12500}, {0.06, 125000}, {0.07, 125000}};
-
 Vector3d vector(const Cursor& at) {
     const auto items = at.list(3, "numbers");
     return {items[0].number(), items[1].number(), items[2].number()};
 }
 
-const std::set<std::string> of_motion_or_pictures{"Inertia",
-                                                  "Moments of Inertia",
-                                                  "Products of Inertia",
-                                                  "Radius",
-                                                  "Width",
-                                                  "Visualization",
-                                                  "Link Radius",
-                                                  "Center Link Inertia",
-                                                  "Side Link Inertia",
-                                                  "Damping Coefficient",
-                                                  "Damping Curve Data",
-                                                  "Degressivity Compression",
-                                                  "Degressivity Expansion",
-                                                  "Rotational Damping",
-                                                  "Location Stabilizer",
-                                                  "Portal Offset"};
+// Fields that Chrono has and that do not influence an equilibrium, by their name in any object.
+struct WithoutInfluence {
+    std::string_view key, why;
+};
+constexpr std::string_view of_motion = "being of motion alone", of_pictures = "being of pictures alone",
+                           of_nothing = "saying nothing of the mechanism";
+constexpr WithoutInfluence without_influence[] = {
+    {"Inertia", of_motion},
+    {"Moments of Inertia", of_motion},
+    {"Products of Inertia", of_motion},
+    {"Vehicle-Frame Inertia", of_motion},
+    {"Center Link Inertia", of_motion},
+    {"Side Link Inertia", of_motion},
+    {"Damping Coefficient", of_motion},
+    {"Damping Curve Data", of_motion},
+    {"Degressivity Compression", of_motion},
+    {"Degressivity Expansion", of_motion},
+    {"Damping Linear", of_motion},
+    {"Damping Rotational", of_motion},
+    {"Rotational Damping", of_motion},
+    {"Radius", of_pictures},
+    {"Width", of_pictures},
+    {"Link Radius", of_pictures},
+    {"Visualization", of_pictures},
+    {"Name", of_nothing},
+    {"Output", of_nothing},
+    {"Independent", of_nothing},
+    {"Steerable", of_nothing},
+    {"Antiroll Body", "being of an anti-roll bar, which is another file"},
+    {"Location Stabilizer", "being of an anti-roll bar, which is another file"}};
+
+// Linear interpolation between the rows; constant beyond the ends.
+double value_at(const Rows& rows, double x) {
+    const auto above = std::ranges::find_if(rows, [&](const auto& row) { return row.first > x; });
+    if (above == rows.begin()) return rows.front().second;
+    if (above == rows.end()) return rows.back().second;
+    const auto& [x_0, f_0] = *(above - 1);
+    return f_0 + (x - x_0) / (above->first - x_0) * (above->second - f_0);
+}
 
 }  // namespace
+
+const Rows stop_table{{0, 0},       {0.002, 200},  {0.004, 400},   {0.006, 600},
+                      {0.008, 800}, {0.01, 1000},  {0.02, 2500},   {0.03, 4500},
+                      {0.04, 7500}, {0.05, 12500}, {0.06, 125000}, {0.07, 125000}};
 
 Matrix3d frame_along(const Vector3d& w, const Vector3d& towards) {
     Matrix3d A;
@@ -59,13 +83,9 @@ Matrix3d frame_along(const Vector3d& w, const Vector3d& towards) {
 Cursor Suspension::at(const char* path) const {
     Cursor found = file_;
     std::string_view rest(path);
-    std::string prefix;
     for (;;) {
         const std::size_t end = std::min(rest.find('/'), rest.size());
-        const std::string key(rest.substr(0, end));
-        prefix += (prefix.empty() ? "" : "/") + key;
-        used_.insert(prefix);
-        found = found.require(key);
+        found = found.require(std::string(rest.substr(0, end)));
         if (end == rest.size()) return found;
         rest.remove_prefix(end + 1);
     }
@@ -88,42 +108,95 @@ Vector3d Suspension::left(const char* path) const { return vector(at(path)); }
 
 Place Suspension::place(const char* path) const { return {at(path).value->line, path}; }
 
-void Suspension::note_unused() {
-    Notes& notes = draft_.notes;
-    std::map<std::string, std::string> dynamic;
-    for (std::size_t k = 0; k < file_.value->keys.size(); ++k) {
-        const std::string& part = file_.value->keys[k];
-        const auto& item = file_.value->items[k];
-        if (part == "Axle") {
-            notes.leave_out("being of motion alone", {item.line, "Axle (inertia of the drive shaft)"});
-            continue;
-        }
-        if (part == "Vehicle-Frame Inertia" || part == "Independent" || part == "Steerable" ||
-            part == "Antiroll Body" || part == "Output" || part == "Camber Angle (deg)" ||
-            part == "Toe Angle (deg)" || part == "Name" || part == "Type" || part == "Template")
-            continue;
-        if (!used_.contains(part)) {
-            notes.miss({item.line, part}, "not known of this template");
-            continue;
-        }
-        if (item.kind != reader::Value::Kind::map) continue;
-        for (std::size_t n = 0; n < item.keys.size(); ++n) {
-            const std::string& key = item.keys[n];
-            if (used_.contains(part + "/" + key)) continue;
-            if (of_motion_or_pictures.contains(key))
-                dynamic[key] += (dynamic[key].empty() ? "of " : ", ") + part;
-            else if (!key.starts_with("Spring") && !key.starts_with("Free") && !key.ends_with("Length") &&
-                     key != "Preload" && key != "Map Data" && key != "Deformation" &&
-                     !key.ends_with("Bushing Data"))
-                notes.warn({item.items[n].line, part + "/" + key},
-                           "not known of this template, and not used");
-        }
+namespace {
+
+// Calls visit(scalar) for every scalar of a value.
+void visit_scalars(const reader::Value& value, const std::function<void(const reader::Value&)>& visit) {
+    if (value.items.empty()) return visit(value);
+    for (const auto& item : value.items) visit_scalars(item, visit);
+}
+
+// A field of an object that was not read, reported at the outermost level at which nothing was
+// read.
+struct Unread {
+    const reader::Value *object, *value;
+    std::string path, key;
+};
+void find_unread(const reader::Accesses& accesses, const reader::Value& object, const std::string& path,
+                 std::vector<Unread>& unread) {
+    for (std::size_t k = 0; k < object.items.size(); ++k) {
+        const auto& item = object.items[k];
+        const bool has_key = object.kind == reader::Value::Kind::map;
+        const std::string key = has_key ? object.keys[k] : reader::place_in(object, k);
+        const std::string its_path = path.empty() ? key : path + "/" + key;
+        int scalars = 0, read = 0;
+        visit_scalars(item, [&](const reader::Value& scalar) {
+            ++scalars;
+            read += accesses.read.contains(&scalar) ? 1 : 0;
+        });
+        if (read == scalars) continue;
+        if (read > 0 || accesses.looked_for.contains(&item))
+            find_unread(accesses, item, its_path, unread);
+        else
+            unread.push_back({&object, &item, its_path, key});
     }
-    for (const auto& [key, parts] : dynamic)
-        notes.leave_out("being of motion or of pictures alone", {0, key + " " + parts});
+}
+
+}  // namespace
+
+void Suspension::leave_out(const Cursor& field, const std::string& why) {
+    visit_scalars(*field.value, [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+    if (side > 0) draft_.notes.leave_out(why, {field.value->line, field.path});
+}
+
+void Suspension::ignore(const Cursor& field, const std::string& why) {
+    visit_scalars(*field.value, [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+    if (side > 0) draft_.notes.warn({field.value->line, field.path}, "not used: " + why);
+}
+
+void Suspension::report_unread() {
+    Notes& notes = draft_.notes;
+    if (has("Axle/Inertia")) leave_out(at("Axle/Inertia"), std::string(of_motion));
+    std::vector<Unread> unread;
+    find_unread(*file_.accesses, *file_.value, "", unread);
+    // (reason, key) -> " of part, part"
+    std::map<std::pair<std::string_view, std::string>, std::string> left_out;
+    for (const auto& [object, value, path, key] : unread) {
+        const auto known = std::ranges::find(without_influence, key, &WithoutInfluence::key);
+        if (known != std::end(without_influence)) {
+            const std::string of =
+                path.size() > key.size() ? path.substr(0, path.size() - key.size() - 1) : "";
+            std::string& parts = left_out[{known->why, key}];
+            if (!of.empty()) parts += (parts.empty() ? " of " : ", ") + of;
+            continue;
+        }
+        std::vector<std::string> allowed;
+        if (const auto found = file_.accesses->looked_for.find(object);
+            found != file_.accesses->looked_for.end())
+            allowed.assign(found->second.begin(), found->second.end());
+        const bool is_known = std::ranges::find(allowed, key) != allowed.end();
+        std::erase_if(allowed, [&](const std::string& name) {
+            return std::ranges::find(object->keys, name) != object->keys.end();
+        });
+        for (const auto& field : without_influence) allowed.emplace_back(field.key);
+        notes.miss({value->line, path},
+                   is_known ? "given, but not used with what else is given"
+                            : "not known of this template" + reader::did_you_mean(key, allowed, "not given"));
+    }
+    for (const auto& [reason, parts] : left_out)
+        notes.leave_out(std::string(reason.first), {0, reason.second + parts});
 }
 
 // ---- Writing
+
+Vector3d Suspension::midpoint(const std::string& name, const char* first, const char* first_path,
+                              const char* second, const char* second_path) {
+    const Vector3d a = point(first_path), b = point(second_path), middle = 0.5 * (a + b);
+    hardpoint(sided(name + "." + first), a, first_path);
+    hardpoint(sided(name + "." + second), b, second_path);
+    draft_.points.at(middle, sided(name), {0, fmt::format("midpoint of {} and {}", first_path, second_path)});
+    return middle;
+}
 
 std::string Suspension::hardpoint(const std::string& name, const Vector3d& p, const char* path) {
     return draft_.points.at(p, name, path ? place(path) : Place{});
@@ -160,9 +233,9 @@ void Suspension::universal(const std::string& name, const std::string& i, const 
     if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
         draft_.notes.warn(
             place(path),
-            fmt::format("the axes of the universal joint are {:.2g} rad off the right angle; here the "
+            fmt::format("the axes of the universal joint are {:.2g} deg off the right angle; here the "
                         "second is put right",
-                        std::asin(std::min(off, 1.0))));
+                        std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
     joint(
         name, "universal", i, j,
         Fields{}.add("at", hardpoint(name, p, path)).add("axis_i", direction(u)).add("axis_j", direction(v)),
@@ -182,12 +255,12 @@ void Suspension::fixed(const std::string& name, const std::string& i, const std:
 }
 
 void Suspension::distance(const std::string& name, const std::string& i, const Vector3d& from,
-                          const std::string& j, const Vector3d& to, const char* path) {
+                          const char* path_i, const std::string& j, const Vector3d& to, const char* path_j) {
     joint(name, "distance", i, j,
           Fields{}
-              .add("from", hardpoint(name + ".inner", from, path))
-              .add("to", hardpoint(name + ".outer", to, path)),
-          place(path));
+              .add("from", hardpoint(name + ".inner", from, path_i))
+              .add("to", hardpoint(name + ".outer", to, path_j)),
+          place(path_j));
 }
 
 void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
@@ -197,9 +270,9 @@ void Suspension::in_plane(const std::string& name, const std::string& i, const s
           from);
 }
 
-// One bushing, whose frame rides on body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both straight along its axes.
-// F is the same in all directions, so it goes through both points. T is the gradient of an energy where K_rot is the same
-// about all axes; where it is not, as in place of a revolute, it is what Chrono says: without one.
+// A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
+// along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
+// K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
 void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
                                   const std::string& body2, const Vector3d& p, const Matrix3d& frame,
                                   const char* path, const std::optional<Cursor>& data) {
@@ -212,8 +285,11 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
     const double linear = data->require("Stiffness Linear").number(),
                  rotational = data->require("Stiffness Rotational").number();
     double free = 0;
-    if (const auto dof = data->optional("DOF"))
+    if (const auto dof = data->optional("DOF")) {
         if (const auto k = dof->optional("Stiffness Rotational")) free = k->number();
+        if (const auto unused = dof->optional("Stiffness Linear"))
+            leave_out(*unused, "as Chrono reads it and does not use it");
+    }
     const auto rate = [&](int axis) {
         const bool is_free = kind == Kind::spherical || (kind == Kind::revolute ? axis == 2 : axis != 2);
         return is_free ? free : rotational;
@@ -232,6 +308,82 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
     draft_.notes.count("bushings");
 }
 
+// Selects the law of a translational or rotational spring-damper from its fields, in Chrono's
+// order: a map, else a spring table, else a damper table (then there is no spring, even with a
+// spring coefficient), else coefficients.
+Suspension::Law Suspension::law_of(const Cursor& data) {
+    const auto k = data.optional("Spring Coefficient"), curve = data.optional("Spring Curve Data"),
+               map = data.optional("Map Data"), damper_curve = data.optional("Damping Curve Data");
+    const Law law = map                                    ? Law::map
+                    : curve                                ? Law::curve
+                    : damper_curve                         ? Law::damper
+                    : k                                    ? Law::linear
+                    : data.optional("Damping Coefficient") ? Law::damper
+                                                           : Law::none;
+    const auto unused = [&](const char* field, const char* why) {
+        if (const auto found = data.optional(field)) ignore(*found, why);
+    };
+    if (law == Law::map) unused("Spring Curve Data", "Chrono takes the Map Data instead");
+    if (law != Law::map) unused("Deformation", "Chrono uses it with Map Data only");
+    if (law != Law::linear)
+        unused("Spring Coefficient", law == Law::map ? "Chrono takes the Map Data instead"
+                                     : law == Law::curve
+                                         ? "Chrono takes the Spring Curve Data instead"
+                                         : "Chrono takes the Damping Curve Data instead: there "
+                                           "is no spring");
+    if (law == Law::damper)
+        for (const char* field : {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
+            unused(field, "Chrono does not use it for a damper");
+    return law;
+}
+
+Rows Suspension::rows_of(const Cursor& curve, double offset, double preload) {
+    Rows rows;
+    for (const Cursor& row : curve.items()) {
+        const auto cells = row.list(2, "numbers, deflection and force");
+        rows.emplace_back(cells[0].number() + offset, cells[1].number() - preload);
+    }
+    require_rising(curve, rows);
+    return rows;
+}
+
+void Suspension::require_rising(const Cursor& at, const Rows& rows) {
+    if (rows.size() < 2) at.fail("a curve needs at least two rows");
+    for (std::size_t n = 1; n < rows.size(); ++n)
+        if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
+            at.fail(
+                fmt::format("row {}: a deflection that does not rise, or a force that falls, which no "
+                            "spring of a scene has",
+                            n + 1));
+}
+
+// Rows of the map over speed (rows) and deformation (columns) at speed zero, by linear
+// interpolation between the neighbouring speeds, or extrapolation from the first or last two.
+Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) {
+    const Cursor map = data.require("Map Data");
+    const auto columns = data.require("Deformation").items();
+    std::vector<double> speeds;
+    std::vector<std::vector<double>> forces;
+    for (const Cursor& line : map.items()) {
+        const auto cells = line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
+        speeds.push_back(cells[0].number());
+        if (speeds.size() > 1 && !(speeds.back() > speeds[speeds.size() - 2]))
+            line.fail("its speed does not rise from row to row");
+        forces.emplace_back();
+        for (std::size_t n = 1; n < cells.size(); ++n) forces.back().push_back(cells[n].number());
+    }
+    if (speeds.size() < 2) map.fail("a map needs at least two speeds");
+    const auto at_least = std::ranges::lower_bound(speeds, 0.0) - speeds.begin();
+    const std::size_t v = std::clamp<std::size_t>(static_cast<std::size_t>(at_least), 1, speeds.size() - 1);
+    const double t = -speeds[v - 1] / (speeds[v] - speeds[v - 1]);
+    Rows rows;
+    for (std::size_t n = 0; n < columns.size(); ++n)
+        rows.emplace_back(columns[n].number() + offset,
+                          (1 - t) * forces[v - 1][n] + t * forces[v][n] - preload);
+    require_rising(map, rows);
+    return rows;
+}
+
 void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from,
                       const std::string& j, const Vector3d& to, const Cursor& data) {
     const Place here{data.value->line, data.path};
@@ -240,142 +392,148 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     fields.add("bodies", "[" + i + ", " + j + "]")
         .add("from", draft_.points.at(from, name + ".top", here))
         .add("to", draft_.points.at(to, name + ".seat", here));
+    const Fields ends = fields;
     const auto put = [&](std::vector<Entry>& list) {
         list.push_back({element_names_.take(name), "{" + fields.text() + "}", here});
     };
-    const auto k = data.optional("Spring Coefficient"), curve = data.optional("Spring Curve Data"),
-               map = data.optional("Map Data");
-    const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
-    const bool damps = data.optional("Damping Coefficient") || data.optional("Damping Curve Data");
-    if (!map && !curve && (!k || k->number() == 0) && preload == 0) {  // a damper
+    const auto put_damper = [&] {
         if (options_.drop_dynamics)
             draft_.notes.leave_out("by --drop dynamics", here);
         else
             put(draft_.dampers);
-        return;
+    };
+    const auto linear = [](const Rows& rows, bool known_outside) {
+        return "{table: " + table(rows) + ", interpolation: linear" +
+               (known_outside ? "}" : ", outside: unknown}");
+    };
+    const Law law = law_of(data);
+    if (law == Law::none)
+        return draft_.notes.miss(here,
+                                 "neither a spring nor a damper: Chrono has no element of these fields");
+    if (law == Law::damper) return put_damper();
+    const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
+    auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
+    if (least.has_value() != most.has_value()) {
+        ignore(least ? *least : *most, "Chrono makes stops where both lengths are given, and here none");
+        least = most = std::nullopt;
     }
-    if (damps && side > 0)
-        draft_.notes.leave_out("being of motion alone", {here.line, "damping of " + here.what});
-    if (!data.optional("Free Length") && !map) data.require("Free Length");
-    const double free = data.optional("Free Length") ? data.require("Free Length").number() : drawn;
-    double force = 0;  // at the design position, pushing apart
-    if (k) {
-        const double rate = k->number();
-        if (rate < 0) k->fail("negative; no spring of a scene is");
+    // The force at the design position, pushing apart, and the rows from l - L0 on.
+    double force = 0;
+    bool is_nothing = false;
+    if (law == Law::linear) {
+        const Cursor k = data.require("Spring Coefficient");
+        const double rate = k.number(), free = data.require("Free Length").number();
+        if (rate < 0) k.fail("negative; no spring of a scene is");
         force = preload - rate * (drawn - free);
-        if (const double length = free + preload / rate; preload == 0)
+        if (rate == 0) {
+            is_nothing = preload == 0;
+            if (!is_nothing)
+                fields.add("curve", linear({{-0.5 * drawn, -preload}, {0.5 * drawn, -preload}}, true));
+        } else if (preload == 0) {
             fields.add("rate", rate).add("free_length", free);
-        else if (length > 0)
+        } else if (const double length = free + preload / rate; length > 0) {
             fields.add("rate", rate).add("free_length", length);
-        else
-            fields.add("rate", rate).add("preload", force);
-    } else {
-        // Over l - L0. Chrono runs straight between the rows, and holds the ends.
-        Rows rows;
-        if (curve) {
-            for (const Cursor& row : curve->items()) {
-                const auto cells = row.list(2, "numbers, deflection and force");
-                rows.emplace_back(cells[0].number(), cells[1].number() - preload);
-            }
         } else {
-            // A map over speed (rows) and deformation (columns): at rest, the row of speed zero, or between its neighbours.
-            const auto columns = data.require("Deformation").items();
-            const auto lines = map->items();
-            std::vector<std::pair<double, std::vector<double>>> by_speed;
-            for (const Cursor& line : lines) {
-                const auto cells =
-                    line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
-                std::vector<double> forces;
-                for (std::size_t n = 1; n < cells.size(); ++n) forces.push_back(cells[n].number());
-                by_speed.emplace_back(cells[0].number(), forces);
-            }
-            for (std::size_t n = 0; n < columns.size(); ++n) {
-                double at_rest = NAN;
-                for (std::size_t m = 0; m < by_speed.size(); ++m) {
-                    if (by_speed[m].first == 0) at_rest = by_speed[m].second[n];
-                    if (m > 0 && by_speed[m - 1].first < 0 && by_speed[m].first > 0) {
-                        const double t = -by_speed[m - 1].first / (by_speed[m].first - by_speed[m - 1].first);
-                        at_rest = (1 - t) * by_speed[m - 1].second[n] + t * by_speed[m].second[n];
-                    }
-                }
-                if (!std::isfinite(at_rest)) map->fail("no row of speed zero, nor any around it");
-                rows.emplace_back(columns[n].number(), at_rest - preload);
-            }
-            if (std::ranges::all_of(rows, [](const auto& row) { return row.second == 0; })) {
-                if (options_.drop_dynamics)
-                    draft_.notes.leave_out("by --drop dynamics", here);
-                else
-                    put(draft_.dampers);
-                return;
-            }
+            fields.add("rate", rate).add("preload", force);
         }
-        if (rows.size() < 2) data.fail("a curve needs at least two rows");
-        for (std::size_t n = 1; n < rows.size(); ++n)
-            if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
-                data.fail(
-                    fmt::format("row {}: a deflection that does not rise, or a force that falls, which no "
-                                "spring of a scene has",
-                                n + 1));
-        const double x = drawn - free;
-        const auto above = std::ranges::find_if(rows, [&](const auto& row) { return row.first > x; });
-        if (above == rows.begin())
-            force = -rows.front().second;
-        else if (above == rows.end())
-            force = -rows.back().second;
-        else
-            force = -((above - 1)->second + (x - (above - 1)->first) / (above->first - (above - 1)->first) *
-                                                (above->second - (above - 1)->second));
-        if (side > 0)
-            if (const double off = off_straight(rows); off > 1e-9)
-                draft_.notes.warn(
-                    here, fmt::format(
-                              "Chrono runs straight between the rows, a scene smoothly: up to {:.2g} of the "
-                              "largest force apart",
-                              off));
-        fields.add("curve", "{table: " + table(rows) + ", outside: unknown}").add("free_length", free);
+    } else {
+        // Beyond the ends Chrono keeps a table constant and extrapolates a map linearly. The
+        // deformation of a map is the length itself.
+        Rows rows;
+        if (law == Law::curve) {
+            rows = rows_of(data.require("Spring Curve Data"), 0, preload);
+            const double free = data.require("Free Length").number();
+            force = -value_at(rows, drawn - free);
+            fields.add("curve", linear(rows, false)).add("free_length", free);
+        } else {
+            if (const auto free = data.optional("Free Length"))
+                ignore(*free, "Chrono counts the deformation of a map from length zero");
+            rows = map_at_rest(data, -drawn, preload);
+            force = -value_at(rows, 0);
+            fields.add("curve", linear(rows, true));
+        }
+        is_nothing = std::ranges::all_of(rows, [](const auto& row) { return row.second == 0; });
     }
-    const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
+    if (is_nothing) fields = ends;
+    if (is_nothing && !least) return put_damper();
     if (side > 0) {
-        if (force < 0 && free != drawn)
+        if (force < 0 && !is_nothing)
             draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
-        if (least && most && least->number() > most->number())
+        if (least && least->number() > most->number())
             draft_.notes.warn(
                 here,
                 fmt::format(
                     "its minimum length {} is above its maximum length {}: both stops are always closed",
                     least->value->text, most->value->text));
-        else if ((least && least->number() > drawn) || (most && most->number() < drawn))
+        else if (least && (least->number() > drawn || most->number() < drawn))
             draft_.notes.warn(here, fmt::format("a stop is closed at the design length {:.4g} m", drawn));
-        if (least || most)
-            draft_.notes.warn(
-                here, fmt::format(
-                          "Chrono's stops run straight between their rows, a scene smoothly: up to {:.2g} of "
-                          "125 kN apart",
-                          off_straight(stop_table)));
     }
     const auto stop = [&](double clearance) {
-        return fmt::format("{{clearance: {}, curve: {{table: {}}}}}", computed(clearance), table(stop_table));
+        return fmt::format("{{clearance: {}, curve: {}}}", computed(clearance), linear(stop_table, true));
     };
-    if (least) fields.add("bump_stop", stop(drawn - least->number()));
-    if (most) fields.add("rebound_stop", stop(most->number() - drawn));
-    put(draft_.springs);
+    if (least)
+        fields.add(is_nothing ? "bump" : "bump_stop", stop(drawn - least->number()))
+            .add(is_nothing ? "rebound" : "rebound_stop", stop(most->number() - drawn));
+    put(is_nothing ? draft_.stops : draft_.springs);
     draft_.notes.count("springs");
+}
+
+// Rotational spring of body 2 relative to body 1 about the axis: at rest the torque on body 2 is
+// P - k (angle - free), and the angle is 0 as drawn.
+void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
+                      const Vector3d& axis, const Cursor& data) {
+    const Place here{data.value->line, data.path};
+    const Law law = law_of(data);
+    if (law == Law::none || law == Law::map)
+        return draft_.notes.miss(here,
+                                 "neither a spring nor a damper: Chrono has no element of these fields");
+    if (law == Law::damper) {
+        draft_.notes.leave_out("being of motion alone", here);
+        return;
+    }
+    const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
+    const double free = data.optional("Free Angle") ? data.require("Free Angle").number() : 0;
+    if (side < 0 && (preload != 0 || free != 0))
+        draft_.notes.warn(
+            here,
+            "its axis has y turned round on the right, so that its torque at rest is not the mirror "
+            "image of the left one's; here as in Chrono");
+    Fields law_fields;
+    if (law == Law::linear) {
+        const double rate = data.require("Spring Coefficient").number();
+        law_fields.add("rate", rate);
+        if (const double moment = -rate * free - preload; moment != 0)
+            law_fields.add("preload_moment", computed(moment));
+    } else {
+        law_fields.add("curve",
+                       "{table: " + table(rows_of(data.require("Spring Curve Data"), free, preload)) +
+                           ", interpolation: linear, outside: unknown}");
+    }
+    torsion(name, i, j, p, axis, law_fields, here);
 }
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
                          const Vector3d& p, const Vector3d& axis, double rate, double moment,
                          const char* path) {
+    Fields law;
+    law.add("rate", rate);
+    if (moment != 0) law.add("preload_moment", computed(moment));
+    torsion(name, i, j, p, axis, law, place(path));
+}
+
+void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
+                         const Vector3d& p, const Vector3d& axis, const Fields& law, const Place& from) {
     Fields fields;
     fields.add("bodies", "[" + i + ", " + j + "]")
         .add("at", hardpoint(name, p, nullptr))
         .add("axis", direction(axis));
-    fields.add("rate", rate);
-    if (moment != 0) fields.add("preload_moment", computed(moment));
-    draft_.torsion_springs.push_back({element_names_.take(name), "{" + fields.text() + "}", place(path)});
+    draft_.torsion_springs.push_back(
+        {element_names_.take(name), "{" + fields.text() + ", " + law.text() + "}", from});
     draft_.notes.count("torsion springs");
 }
 
-// Rz(∓toe) Rx(∓camber) of the chassis, - on the left. Its spin is held: nothing at rest turns it.
+// Rz(∓toe) Rx(∓camber) of the chassis, - on the left. The spin is fixed, since nothing at rest
+// resists it.
 void Suspension::spindle(const std::string& carrier) {
     const std::string name = sided("spindle");
     const Vector3d centre = point("Spindle/COM");
@@ -420,7 +578,14 @@ void Suspension::tierod(const char* part, const char* chassis_end, const char* o
     const std::string name = sided("tierod"), path(part);
     const bool is_body =
         has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) && has((path + "/Radius").c_str());
-    if (!is_body) return distance(name, "ground", inner, on_outer, outer, outer_path.c_str());
+    if (!is_body) {
+        for (const char* field : {"/Mass", "/Bushing Data"})
+            if (has((path + field).c_str()))
+                ignore(
+                    at((path + field).c_str()),
+                    "Chrono makes a tie rod without Mass, Inertia and Radius a distance, rigid and massless");
+        return distance(name, "ground", inner, inner_path.c_str(), on_outer, outer, outer_path.c_str());
+    }
     body(name, 0.5 * (inner + outer), part);
     std::optional<Cursor> data;
     if (has((path + "/Bushing Data").c_str())) data = at((path + "/Bushing Data").c_str());

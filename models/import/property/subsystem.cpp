@@ -1,5 +1,5 @@
-// Hardpoints of an Adams/Car subsystem (.sub) as points of a scene. Joints and what they connect are in its template, which
-// is another file: so this is a start, not a scene.
+// Imports the hardpoints of an Adams/Car subsystem (.sub).
+// Joints and connections are in its template, another file, so the result is an incomplete scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,16 +26,25 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
 
 }  // namespace
 
-// x rearward, y right, z up there; x forward, y left, z up here: turned about z by half a turn. 'left/right' stands for a
-// pair and gives the left one.
-Draft import_subsystem(std::string_view text, const std::string& name, const Options&) {
+// The file has x rearward, y right, z up unless options.axes is set; the scene has x forward, y
+// left, z up. A 'left/right' hardpoint is a pair, of which the left one is written.
+Draft import_subsystem(std::string_view text, const std::string& name, const Options& options) {
+    const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
+    if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
+        reader::fail(
+            name, 0, "--axes",
+            fmt::format("{} are no axes; allowed: {}", reader::quote(axes), fmt::join(axes_of_tables, " ")));
+    const double along_x = axes.starts_with("x-forward") ? 1 : -1,
+                 along_y = axes.ends_with("y-left") ? 1 : -1;
+    const double along_z = along_x * along_y;  // a rotation: the frame stays right-handed
     const reader::PropertyFile file = reader::parse_property_file(text, name);
     Draft draft;
     draft.title = std::filesystem::path(name).stem().string();
     draft.source = name;
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
-    draft.remarks = {"Axes turned from x rearward, y right, z up to x forward, y left, z up.",
+    draft.remarks = {fmt::format("Axes turned from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
+                                 along_z > 0 ? "up" : "down"),
                      "Hardpoints alone: joints and bodies are in the subsystem's template, which is another "
                      "file. Put yours below."};
     draft.points = Hardpoints(1);
@@ -48,6 +57,10 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
                     if (key == "USAGE" || key == "PROPERTY_FILE") what += " " + value;
                 draft.notes.warn({block.line, what},
                                  "not a part of this scene: what it connects is not in this file");
+            } else if (block.name != "UNITS") {
+                draft.notes.leave_out(
+                    "being no hardpoints",
+                    {block.line, block.name + (block.subblock.empty() ? "" : " " + block.subblock)});
             }
             continue;
         }
@@ -67,13 +80,14 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             const auto& row = block.table.rows[n];
             const int line = block.table.lines[n];
             const double mm = 1000 * file.length;
-            const Eigen::Vector3d p(-mm * real(file, line, row[x]), -mm * real(file, line, row[y]),
-                                    mm * real(file, line, row[z]));
+            const Eigen::Vector3d p(along_x * mm * real(file, line, row[x]),
+                                    along_y * mm * real(file, line, row[y]),
+                                    along_z * mm * real(file, line, row[z]));
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";
             const std::string called = row[of_name] + (pair ? side == "right" ? "_right" : "_left" : "");
-            draft.points.at(p, called, {line, row[of_name]});
+            draft.points.add(p, called, {line, row[of_name]});
             draft.notes.count("HARDPOINT");
         }
     }

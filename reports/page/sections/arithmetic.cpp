@@ -1,4 +1,4 @@
-// Where more steps stop helping because of the arithmetic.
+// Section: step counts beyond which round-off dominates.
 #include <fmt/format.h>
 
 #include "reports/page/sections/common.hpp"

@@ -1,4 +1,4 @@
-// What the formulation gap is made of.
+// Section: attribution of the formulation gap.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,13 +20,13 @@ constexpr Term terms[] = {{"lever", "stored force’s lever", vermilion},
                           {"axis", "its axis and law", blue},
                           {"load", "load’s lever", ochre}};
 
-// The range of an output over a branch, as the study knows it.
+// Range of an output over a branch, from the study.
 double range_of(const compare::Table& outputs, const std::string& output) {
     const auto found = where(outputs, "output", output);
     return found.rows.empty() ? NAN : number(found, 0, "range");
 }
 
-// Of what is read at one reading over one branch.
+// Figure of one reading of one branch.
 std::optional<FigureGroup> group(const std::string& name, const std::string& reading,
                                  const compare::Table& shares, const compare::Table& outputs) {
     Figure figure{.id = fmt::format("gap-{}", slug(name)),

@@ -16,7 +16,7 @@ std::string cell(const std::optional<Field>& deviation) {
     return deviation ? signed_number((*deviation)["signed_max"].number()) : "–";
 }
 
-// Every output that the candidate gives on a branch, off by how much, and the recursion likewise.
+// Deviations of every output that the candidate gives on a branch, beside those of the recursion.
 Table beside_the_recursion(const Field& scene, const std::string& who, const Field& candidate,
                            const Field& branch) {
     const std::string name = branch["name"].text(), unit = branch["unit"].text();
@@ -61,7 +61,7 @@ double largest_of(const Field& list) {
     return worst;
 }
 
-// What its states leave in the legs' own equations.
+// Residuals of its states in the equations of the legs.
 Table leftovers(const std::string& who, const Field& states) {
     Table table{
         .caption = fmt::format("What the states of {} leave in the references' own equations, largest", who),

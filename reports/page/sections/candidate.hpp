@@ -1,4 +1,4 @@
-// What another solver found, beside the recursion.
+// Section and curves of an external solver.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace elastocheck::reports {
 
-// The points of every candidate on these branches, of a main channel, to be drawn over its curves; over the abscissa of the
-// sweep where `travel`. A change counts from where the curves begin.
+// Points of every candidate on these branches for one main channel, drawn over its curves; over the
+// abscissa of the sweep if `travel`. A change is relative to the start of the curves.
 std::vector<Series> candidate_series(const Field& scene, const Sweep& sweep, const std::string& channel,
                                      bool change, bool travel);
 

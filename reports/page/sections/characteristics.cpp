@@ -1,5 +1,5 @@
-// What the suspension does: kinematics and compliance at the design position, each with the error of the recursion in its
-// own unit, how they go over the travel and the steering, and the compliance matrix.
+// Section: kinematics and compliance at the design position with the error of the recursion, their
+// curves over travel and steering, and the compliance matrix.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,8 @@ Table figures_table(const compare::Table& at_design) {
     return table;
 }
 
-// The matrix of the equilibrium leg where the first branch begins, at the contact patches.
+// Compliance matrix of the equilibrium leg at the start of the first branch, at the contact
+// patches.
 std::optional<Table> matrix_table(const compare::Table& compliance, std::string_view point) {
     std::vector<std::size_t> rows;
     for (std::size_t r = 0; r < compliance.rows.size(); ++r)
@@ -75,7 +76,7 @@ std::optional<Table> matrix_table(const compare::Table& compliance, std::string_
     return table;
 }
 
-// ---- Over the travel, over the steering.
+// ---- Curves over travel and steering.
 
 struct Drawn {
     std::string_view name, title;
@@ -133,7 +134,7 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
             }
             if (!series.rows.empty()) figure.series.push_back(std::move(series));
         }
-        break;  // of two wheels the first; of several springs the first
+        break;  // the first of two wheels, or of several springs
     }
     if (figure.series.empty() || !(high - low > 1e-6 * std::max(1e-3, std::abs(high)))) return std::nullopt;
     figure.description = fmt::format("{} over {}: by the reference between {} and {}.", figure.y, x_axis,

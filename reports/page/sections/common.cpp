@@ -79,8 +79,8 @@ std::string abscissa_of(const Field& scene, const Field& branch) {
 
 namespace {
 
-// Whether every leg's curve can be drawn over it, and anybody would: a wheel that travels by less than a millimetre is
-// being loaded by something else.
+// Whether every leg's curve has this abscissa and it is useful: with a travel below a millimetre
+// the branch does not lift the wheel.
 bool over_abscissa(const Field& branch) {
     if (const auto abscissa = branch.find("abscissa"); abscissa && abscissa->text().ends_with("travel")) {
         const auto x = curve_of(branch, "equilibrium").channel(abscissa->text());
@@ -156,7 +156,7 @@ double largest(const std::vector<double>& values) {
 
 namespace {
 
-// As somebody gave it: with as many digits as that takes, up to six.
+// With as many digits as entered, up to six.
 std::string given(double value) {
     int digits = 1;
     while (digits < 6 && std::stod(fmt::format("{:.{}e}", value, digits - 1)) != value) ++digits;

@@ -1,4 +1,4 @@
-// Error over the number of steps: what falls with them, and what does not.
+// Section: errors over the number of steps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 double worse(double a, double b) { return std::isnan(a) || std::isnan(b) ? NAN : std::max(a, std::abs(b)); }
 
-// At the end of a branch, worst over the positions, per level of steps.
+// Largest errors over the positions at the end of a branch, per step count.
 struct Levels {
     std::vector<double> steps, phi, step, truth;
 };
@@ -45,10 +45,10 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps, const st
     return result;
 }
 
-// "at equal wheel centre y": as a channel's name is written for people.
+// "at equal wheel centre y": display name of a channel.
 std::string spoken(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
 
-// Of the step errors of one method over one branch.
+// Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const compare::Table& table) {
     FigureGroup group;
     group.table.caption = fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);

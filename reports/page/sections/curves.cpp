@@ -1,4 +1,4 @@
-// The outputs over what drives them, all legs, and over the travel the load or force that it takes.
+// Section: outputs over the parameter, by all legs, and load or force over the travel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace elastocheck::reports {
 namespace {
 
-// What is drawn: an output, as it is or as its change since the design position.
+// A drawn output, absolute or as its change since the design position.
 struct Output {
     std::string id, title, axis, channel;
     bool change = false;
-    bool load = false;  // the load itself, over the abscissa
+    bool load = false;  // the load, over the abscissa
 };
 
 std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
@@ -47,7 +47,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     if (!sweep.abscissa.empty() && !measured_over_parameter(scene, sweep)) {
         if (compare::parameter_word(sweep.unit) == "load") {
             outputs.push_back({"load", "Load", sweep.parameter(), "", false, true});
-        } else {  // the force that moves it, in the place of the load
+        } else {  // the driving force instead of the load
             for (const auto& c : channels_of(scene))
                 for (const auto& moved : sweep.branches.front()["drivers"]["moved"].texts())
                     if (c.name.starts_with(moved + ".drive_"))
@@ -57,7 +57,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     return outputs;
 }
 
-// Below 1e-9 of a mm, deg or N it is the arithmetic's; an axis would make room for it.
+// 0 below 1e-9 of a mm, deg or N, which is rounding and would scale an axis.
 double at_rest(double x) { return std::abs(x) < 1e-9 ? 0 : x; }
 std::string value(double x, int digits = 5) { return std::abs(x) < 1e-9 ? "0" : number(x, digits); }
 
@@ -77,7 +77,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
     const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
-    const bool fourth = measured && !output.load;  // a column of its own
+    const bool fourth = measured && !output.load;  // has its own column
     const bool travel = !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
     double most = 0;
     for (const auto& branch : sweep.branches) {
@@ -114,7 +114,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
             rows.emplace_back(a.a[k], row);
         }
     }
-    if (rows.empty() || most < 1e-9) return std::nullopt;  // it does not move
+    if (rows.empty() || most < 1e-9) return std::nullopt;  // constant
     std::ranges::sort(rows, {}, [](const auto& row) { return row.first; });
     for (auto& [load, row] : rows) table.rows.push_back(std::move(row));
     table.columns = {{sweep.parameter()}};
@@ -150,7 +150,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name), {figure}, table};
 }
 
-// Every main output at the end of a branch, per leg.
+// Every main output at the end of a branch, by leg.
 Table outputs(const Field& scene, const Field& branch) {
     Table table{
         .caption = fmt::format("Outputs at the end ({} {}) of branch {}", number(branch["to"].number(), 4),

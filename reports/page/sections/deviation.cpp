@@ -1,4 +1,5 @@
-// How far the recursion is off along the branches, against the tolerance and against what can be known.
+// Section: deviation of the recursion along the branches, against the tolerance and the reference
+// uncertainty.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +12,10 @@
 namespace elastocheck::reports {
 namespace {
 
-// Worst over the main channels of a unit, point by point of the equilibrium leg; NaN where nothing can be compared.
+// Worst main channel of a unit at each point of the equilibrium leg; NaN without a comparison.
 using Profile = std::vector<double>;
 
-// A logarithm has no place for zero and NaN: the line is broken there. Ends are kept, the rest thinned.
+// Gaps at zero and NaN, for a logarithmic axis. Ends are kept, the rest thinned.
 void append(Series& series, const std::vector<double>& load, const Profile& profile) {
     if (!series.rows.empty()) series.rows.emplace_back();
     for (const auto k : thinned(profile.size(), 60))
@@ -23,18 +24,18 @@ void append(Series& series, const std::vector<double>& load, const Profile& prof
 
 struct Curves {
     Series load{"", Series::Style::line, vermilion};
-    Series travel{"", Series::Style::dashed, blue};  // the other may lie below it
+    Series travel{"", Series::Style::dashed, blue};  // dashed, since it may cover the other curve
     Series recommended{"", Series::Style::line, green};
     Series references{"references apart", Series::Style::thin, slate};
 };
 
-// Of what was compared; points that the other leg does not reach are NaN.
+// Maximum over the compared points; points out of reach of the other leg are NaN.
 void raise_peak(double& most, const Profile& profile) {
     for (const double value : profile)
         if (value > most) most = value;
 }
 
-// The worst deviation per unit: a figure with its table.
+// Worst deviation per unit: a figure with its table.
 std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::string_view unit) {
     auto channels = main_channels_of(scene);
     std::erase_if(channels, [&](const ChannelInfo& c) { return c.unit != unit; });
@@ -56,7 +57,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     table.columns.push_back({fmt::format("references apart [{}]", unit)});
 
     double high = 1e-9, load_peak = 0, travel_peak = 0, apart = 0;
-    bool complete = true;  // both references went all the way
+    bool complete = true;  // both references reached the end
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium");
@@ -116,9 +117,9 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     if (const auto trade = scene.find("trade"))
         if (const auto asked = (*trade)["tolerance"].find(std::string(unit))) tolerance = asked->number();
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
-    // Six decades hold everything that matters; what is below touches the lower edge.
+    // Six decades are shown; smaller values lie on the lower edge.
     figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
-    double best = 0;  // what is recommended may be far better still, and belongs in the picture
+    double best = 0;  // the recommended configuration may be more accurate and stays visible
     for (const auto& row : curves.recommended.rows)
         if (row.size() == 2 && std::isfinite(row[1])) best = std::max(best, row[1]);
     if (best > 0) figure.y_low = std::min(figure.y_low, std::pow(10, std::floor(std::log10(best)) - 1));
@@ -153,10 +154,10 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     return FigureGroup{fmt::format("Worst of {}. {}", enumerated(names), agreement), {figure}, table};
 }
 
-// Below 1e-9 it is the arithmetic's.
+// 0 below 1e-9, which is rounding.
 std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
 
-// One row per channel worth it: main ones, and of each joint the force and moment component that is worst.
+// One row per main channel, and per joint for its worst force and moment component.
 Table deviations(const Field& scene, const Field& branch) {
     Table table{.caption =
                     fmt::format("Deviation of the published recursion from the full solution, branch {}",
@@ -184,7 +185,8 @@ Table deviations(const Field& scene, const Field& branch) {
     std::vector<Row> rows;
     for (const auto& channel : channels_of(scene)) {
         const auto d = load.find(channel.name);
-        if (!d || (channel.kinematic && !channel.main)) continue;  // travel is wheel_centre_z once more
+        // travel duplicates wheel_centre_z
+        if (!d || (channel.kinematic && !channel.main)) continue;
         const double max = (*d)["max"].number();
         const auto joint = channel.name.substr(0, channel.name.find('.'));
         if (!channel.main && !rows.empty() && rows.back().channel.name.starts_with(joint + ".") &&

@@ -1,4 +1,4 @@
-// The suspension in three views, as on a drawing board, and its points in a table.
+// Section: the suspension in three views, with a table of its points.
 #include <fmt/format.h>
 
 #include "reports/page/numbers.hpp"

@@ -1,4 +1,4 @@
-// The first screen: the suspension, whether it passes, and what it does in a few numbers.
+// Section: first screen with the suspension, the verdict and key figures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,25 +16,25 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// "A", or "A / B" where there are two ends.
+// "A", or "A / B" for two ends.
 std::string both(const std::vector<std::string>& values) {
     std::string text;
     for (const auto& value : values) text += (text.empty() ? "" : "\u00a0/\u00a0") + value;
     return text;
 }
 
-// Up to three significant digits, no finer than a thousandth: a key figure is read, not reckoned with.
+// Up to three significant digits, no finer than a thousandth.
 std::string key_number(double value) {
     if (std::abs(value) < 5e-4) return "0";
     return signed_number(value, std::abs(value) < 0.0995 ? 2 : 3);
 }
 
-// As somebody gave it: "−80", "+3000".
+// As entered: "−80", "+3000".
 std::string end_number(double a) {
     return (a > 0 ? "+" : a < 0 ? "−" : "") + fmt::format("{:.4g}", std::abs(a));
 }
 
-// One end of the sweep, as the equilibrium leg has it.
+// One end of the sweep, by the equilibrium leg.
 struct End {
     Field branch;
     LegCurve curve;
@@ -65,7 +65,7 @@ struct Tile {
     std::string value, label;
 };
 
-// The rates at the ends of the sweep, of one wheel; the other's are said only where they differ.
+// Rates at the ends of the sweep for one wheel; for the other only where they differ.
 void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep) {
     for (const bool ride : {false, true}) {
         std::vector<std::string> wheels;
@@ -103,7 +103,7 @@ void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep)
     }
 }
 
-// Rates at the design position; of twins the first.
+// Rates at the design position; the first of equal wheels.
 void add_characteristics(std::vector<Tile>& tiles, const Field& scene) {
     const auto found = scene.find("characteristics");
     if (!found) return;
@@ -133,7 +133,7 @@ void add_characteristics(std::vector<Tile>& tiles, const Field& scene) {
         }
 }
 
-// What an output changes by at the ends; twins that do the same are said once.
+// Changes of outputs at the ends; equal wheels are shown once.
 void add_changes(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep) {
     struct Wanted {
         const char *name, *text;
@@ -197,7 +197,7 @@ std::optional<Section> first_section(const Field& scene) {
     if (!suspension) return section;
     const std::string noun = noun_of(*suspension);
     bool right = !scene["drawing"]["points"].items().empty() && !suspension->wheels.empty();
-    for (const auto& wheel : suspension->wheels)  // all on the right, y to the left
+    for (const auto& wheel : suspension->wheels)  // all wheels on the right side; y points left
         right = right && suspension->points[wheel.centre].at[1] < 0;
     FigureGroup group;
     group.figures = draw_views(*suspension, {axonometric_view(right)}, large_frame(*suspension));

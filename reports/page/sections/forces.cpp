@@ -1,4 +1,4 @@
-// What bushings, springs and links bear, each in its own axes.
+// Section: forces of bushings, springs and links in their own axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t most_elements = 40;
 constexpr double nothing = 1e-6;  // [N], [N·m]
 
-// "mount.displacement_x" of "mount.elastic_force_x": what is deformed along the axis of a force.
+// Deformation conjugate to a force: "mount.displacement_x" for "mount.elastic_force_x".
 std::string deformation_of(std::string output) {
     constexpr std::pair<const char*, const char*> pairs[] = {{".elastic_force_", ".displacement_"},
                                                              {".elastic_moment_", ".rotation_"},
@@ -30,14 +30,14 @@ std::string deformation_of(std::string output) {
     return {};
 }
 
-// The row in which an output is largest, and the largest of its element.
+// Row with the largest value of each output, and the largest force of each element.
 struct Largest {
-    std::vector<std::size_t> rows;             // one an output, in the order of the table
+    std::vector<std::size_t> rows;             // one per output, in the order of the table
     std::map<std::string, double> of_element;  // [N] or [N·m]
 };
 Largest largest_of(const compare::Table& forces) {
     Largest result;
-    std::map<std::string, std::size_t> place;  // in `rows`
+    std::map<std::string, std::size_t> place;  // index in `rows`
     for (std::size_t r = 0; r < forces.rows.size(); ++r) {
         const std::string& unit = words(forces, r, "unit");
         const double size = std::abs(number(forces, r, "value"));
@@ -53,7 +53,7 @@ Largest largest_of(const compare::Table& forces) {
     return result;
 }
 
-// The least force of those that are shown; 0 where all are.
+// Smallest displayed force; 0 if all are displayed.
 double threshold(const std::map<std::string, double>& of_element) {
     if (of_element.size() <= most_elements) return 0;
     std::vector<double> sizes;
@@ -62,7 +62,7 @@ double threshold(const std::map<std::string, double>& of_element) {
     return sizes[most_elements - 1];
 }
 
-// By branch, end and output.
+// Key: branch, end, output.
 using Deformations = std::map<std::tuple<std::string, double, std::string>, std::size_t>;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How much the outputs depend on what a bushing is taken to measure.
+// Section: spread of the outputs over bushing formulations.
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +25,7 @@ std::optional<Section> formulations_section(const Field& scene) {
                             {"largest by", true},
                             {"references apart"},
                             {"published deviation"}}};
-    double most = 1e-9;  // [mm]: less is the arithmetic's
+    double most = 1e-9;  // [mm]: smaller spreads are rounding
     for (std::size_t r = 0; r < spread.rows.size(); ++r) {
         const double value = reports::number(spread, r, "spread");
         const std::string& unit = words(spread, r, "unit");

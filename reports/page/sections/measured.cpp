@@ -85,8 +85,7 @@ std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const
 double value_between(const Series& measured, double x) {
     auto rows = measured.rows;
     std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
-    std::ranges::stable_sort(rows, {},
-                             [](const auto& row) { return row[0]; });  // NaN has no place in an order
+    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row[0]; });  // NaN cannot be sorted
     for (std::size_t k = 1; k < rows.size(); ++k) {
         const auto &a = rows[k - 1], &b = rows[k];
         if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))

@@ -1,4 +1,4 @@
-// Measured curves beside the calculated ones.
+// Measured curves beside the calculated curves.
 #pragma once
 
 #include <optional>
@@ -10,19 +10,20 @@
 
 namespace elastocheck::reports {
 
-// Whether the points of these branches say their parameter and no travel: figures with them go over the parameter then.
+// Whether the points of these branches give their parameter but no travel; figures with them use
+// the parameter then.
 bool measured_over_parameter(const Field& scene, const Sweep& sweep);
 
-// The points of these branches, of a channel (or of the parameter where `channel` is empty), to be drawn over its
-// curves: a change counts from where those begin. Nothing where it was not measured.
+// Points of these branches for a channel (or for the parameter if `channel` is empty), drawn over
+// its curves: a change is relative to the start of the curves. Empty if it was not measured.
 std::optional<Series> measured_series(const Field& scene, const Sweep& sweep, const std::string& channel,
                                       bool change);
 
-// The points that bear on one branch: its own where the measurement says of which branch each is, else all.
+// The points of one branch: its own if the measurement names the branches, else all.
 std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
                                    const std::string& channel, bool change);
 
-// Between its points, straight; NaN outside them, and beside a point at which it was not measured.
+// Linear interpolation; NaN outside the points, and beside a point without a value.
 double value_between(const Series& measured, double x);
 
 }  // namespace elastocheck::reports

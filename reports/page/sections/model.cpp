@@ -1,4 +1,4 @@
-// The model as compiled.
+// Section: the compiled model.
 #include <fmt/format.h>
 
 #include <cmath>

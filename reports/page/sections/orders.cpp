@@ -1,4 +1,4 @@
-// The branch as a power series: how its order, what it is told, its reach and its error go together.
+// Section: the branch as a power series, with order, tolerance, reach and error.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What accuracy costs: the ladder of methods as work against error.
+// Section: work-precision diagrams of the methods.
 #include <fmt/format.h>
 
 #include <algorithm>

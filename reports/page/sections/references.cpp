@@ -1,4 +1,5 @@
-// Why the references can be believed: what each one's states leave in the others' equations.
+// Section: agreement of the references, by the residuals of each leg's states in the equations of
+// the others.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -52,7 +53,7 @@ std::optional<Section> references_section(const Field& scene) {
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
     if (times) work.columns.push_back({"time [ms]"});
     const auto channels = channels_of(scene);
-    bool said = false;  // of the theorem
+    bool said = false;  // the theorem has been printed
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
         const Field apart = branch["reference_uncertainty"]["at_equal_parameter"];
@@ -62,7 +63,8 @@ std::optional<Section> references_section(const Field& scene) {
             double worst = -1;
             for (const auto& channel : channels) {
                 const auto d = apart["channels"].find(channel.name);
-                // What is a length and no position, as a swing arm near endless, has a size of its own.
+                // A length that is not a position, such as a swing arm length near infinity, has
+                // its own scale.
                 const bool place = channel.unit == "mm" || channel.unit == "deg";
                 if (channel.unit != unit || !d || (place && !channel.kinematic)) continue;
                 compared += (*d)["compared"].whole();

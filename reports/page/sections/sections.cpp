@@ -2,7 +2,7 @@
 
 namespace elastocheck::reports {
 
-// First what a chassis engineer looks for, then how far each number can be trusted.
+// First the results for a chassis engineer, then the accuracy of each number.
 std::vector<Section> sections_of(const Field& scene) {
     struct Part {
         const char* title;

@@ -1,5 +1,5 @@
-// The sections of a scene's report, in order. A later result becomes one more function here, one more text
-// template, and one more line in sections.cpp.
+// Sections of a scene's report, in order. A new section takes a function here, a text template, and
+// a line in sections.cpp.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace elastocheck::reports {
 
-// Each makes its section from one scene of result.json, or nothing when the scene has nothing for it. Throws
-// ResultError where the document lacks something it should have.
+// Each makes its section from one scene of result.json, or none if the scene has no data for it.
+// Throws ResultError for missing fields.
 std::optional<Section> candidate_section(const Field& scene);
 std::optional<Section> first_section(const Field& scene);
 std::optional<Section> verdict_section(const Field& scene);

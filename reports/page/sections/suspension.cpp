@@ -87,7 +87,7 @@ std::optional<Suspension> suspension_of(const Field& scene) {
         if (moved.points.size() != count) at["points_mm"].fail("not as many points as in the drawing");
         if (const auto wheels = at.find("wheels_mm"))
             for (const auto& wheel : wheels->items()) moved.wheels.push_back(places_of(wheel));
-        // from the lowest to the highest, however many branches it takes
+        // in ascending order of the parameter, over any number of branches
         const auto before = std::ranges::upper_bound(order, at["a"].number()) - order.begin();
         order.insert(order.begin() + before, at["a"].number());
         s.moved.insert(s.moved.begin() + before, std::move(moved));

@@ -1,4 +1,4 @@
-// The suspension of a scene in result.json, to be drawn.
+// Drawing data of a suspension from result.json.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace elastocheck::reports {
 
-// Nothing where the scene has no drawing. With the positions at the ends of the branch that leads the page.
+// Empty if the scene has no drawing. Includes the positions at the ends of the leading branch.
 std::optional<Suspension> suspension_of(const Field& scene);
 
-// What it is called: a scene without a wheel is a mechanism.
+// "suspension", or "mechanism" for a scene without a wheel.
 const char* noun_of(const Suspension& suspension);
 
 }  // namespace elastocheck::reports

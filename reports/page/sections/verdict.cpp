@@ -1,4 +1,4 @@
-// How far the recursion can be trusted, in sentences made of the numbers.
+// Section: verdict on the recursion in sentences.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr double nothing = 1e-9;  // mm, deg: smaller deviations are the arithmetic's
+constexpr double nothing = 1e-9;  // mm, deg: smaller deviations are rounding
 
 struct Worst {
     std::string branch, channel, unit;
@@ -47,7 +47,8 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, const cha
     return worst;
 }
 
-// Where a wheel rate was read: "jounce"; "travel at −80 mm", "jounce (left wheel)" where that is not enough.
+// Place of a wheel rate: "jounce"; "travel at −80 mm", "jounce (left wheel)" if otherwise
+// ambiguous.
 std::string end_of(const Field& scene, const Field& rate) {
     std::string text = rate["branch"].text();
     const std::string wheel = rate["wheel"].text();
@@ -59,7 +60,7 @@ std::string end_of(const Field& scene, const Field& rate) {
     return text;
 }
 
-// The recursion's wheel rate, branch by branch where something vertical moves a wheel: "2.9 % too soft".
+// Wheel-rate error of the recursion for each branch that lifts a wheel: "2.9 % too soft".
 json rate_words(const Field& scene) {
     json list = json::array();
     for (const auto& rate : scene["rate_errors"].items()) {
@@ -73,12 +74,12 @@ json rate_words(const Field& scene) {
     return list;
 }
 
-// The force that is off most: of what drives a branch, where that is off at all, else of a joint. Positions that
-// a motion dictates are exact whatever it takes to hold them.
+// Force with the largest error: of a driver of a branch if it has an error at all, else of a joint.
+// Positions under a prescribed motion are exact whatever the error of the driving force.
 json force_words(const Field& scene) {
     json words = nullptr;
     bool of_drive = false;
-    double most = 1e-6;  // [N], [N·m]: less is the arithmetic's
+    double most = 1e-6;  // [N], [N·m]: smaller errors are rounding
     for (const auto& branch : scene["branches"].items())
         for (const auto& channel : channels_of(scene)) {
             if (channel.kinematic) continue;
@@ -96,7 +97,7 @@ json force_words(const Field& scene) {
     return words;
 }
 
-// Branches that the recursion did not get through.
+// Branches on which the recursion failed.
 json failures(const Field& scene) {
     json list = json::array();
     for (const auto& branch : scene["branches"].items())
@@ -116,7 +117,7 @@ json gap_words(const Field& scene) {
             {(*part)["role"].text(), true}};
 }
 
-// What it was off at most, on the ladder and when it was run again, and what the references leave open.
+// Largest error, on the ladder and in the confirming run, and the reference uncertainty.
 std::string held(const Field& chosen) {
     std::string text;
     for (const char* unit : {"mm", "deg"}) {
@@ -125,6 +126,11 @@ std::string held(const Field& chosen) {
         if (!text.empty()) text += " and ";
         text += quantity(std::max(found->number(), again->number()), unit);
     }
+    const auto share = chosen["expected_error"].find("share"),
+               again = chosen["confirmed_error"].find("share");
+    if (share && again)
+        text += fmt::format(", and forces and moments to {} of their extent",
+                            percent(std::max(share->number(), again->number())));
     return text;
 }
 

@@ -1,14 +1,19 @@
-// ADAMS datasets: the lexical rules, what statements come to, and what statics by hand says of it.
+// Import of ADAMS datasets: lexical rules, conversion of statements, and hand-calculated statics.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <utility>
 
+#include "compare/formulations.hpp"
 #include "compare/legs.hpp"
+#include "compare/trim.hpp"
 #include "models/compile.hpp"
+#include "models/curve.hpp"
 #include "models/import/adm/expression.hpp"
 #include "models/import/export_adm.hpp"
 #include "models/import/import.hpp"
@@ -69,7 +74,7 @@ ACCGRAV/
 END
 )";
 
-// The entries of the scene alone: no comments.
+// The entries of the scene without comments.
 std::string entries(const std::string& yaml) {
     std::string result;
     for (std::size_t at = 0; at < yaml.size();) {
@@ -83,14 +88,19 @@ std::string entries(const std::string& yaml) {
     return result;
 }
 
+// Adds END to a dataset without one.
+std::string ended(const std::string& text) {
+    return text.find("\nEND") == text.npos && text.find("\rEND") == text.npos ? text + "\nEND\n" : text;
+}
+
 std::string scene_of(const std::string& text, const Options& options = {}) {
-    return importer::import_text(text, "model.adm", options).yaml;
+    return importer::import_text(ended(text), "model.adm", options).yaml;
 }
 
 std::string refusal(const std::string& text, const Options& options = {},
                     const std::string& file = "model.adm") {
     try {
-        importer::import_text(text, file, options);
+        importer::import_text(ended(text), file, options);
     } catch (const SceneError& error) {
         return error.what();
     }
@@ -112,6 +122,7 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
     const std::string expected = entries(scene_of(linkage));
     const std::pair<const char*, std::string> others[] = {
         {"lines end in CRLF", everywhere(linkage, "\n", "\r\n")},
+        {"lines end in CR", everywhere(linkage, "\n", "\r")},
         {"cut off words",
          everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"), "MARKER/",
                     "mark/")},
@@ -152,7 +163,7 @@ TEST(Adm, KeepsNamesAndSaysWhereEachElementComesFrom) {
     EXPECT_NE(yaml.find("damping of SPRINGDAMPER/1"), yaml.npos) << yaml;
 }
 
-// A point of view that no unit of the file can change: each quantity is converted by its own unit.
+// Each quantity is converted by its own unit: the scene is the same for all units of the file.
 TEST(Adm, UnitsAreConvertedEachByItsOwn) {
     struct Units {
         const char *force, *mass, *length;
@@ -184,7 +195,8 @@ TEST(Adm, UnitsAreConvertedEachByItsOwn) {
               entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
 }
 
-// ZP and XP are points: REULER, the points and a marker in a marker are three ways to say one frame.
+// ZP and XP are points: REULER, two points, and a marker relative to a marker define the same
+// frame.
 TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
     const std::string bushing = replaced(linkage, "ACCGRAV/",
                                          "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
@@ -218,12 +230,12 @@ TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
         EXPECT_LE(expected.i.A_local.angularDistance(frame(text).i.A_local), 1e-7);
         EXPECT_LE((expected.undeformed - frame(text).undeformed).norm(), 1e-12);
     }
-    // In marker 8, turned by 30° about z, the offset turns with it; z does not.
+    // In marker 8, rotated by 30° about z, the offset rotates with it; z does not change.
     EXPECT_LE(expected.i.A_local.angularDistance(frame(nested).i.A_local), 1e-7);
     EXPECT_LE((expected.undeformed - frame(nested).undeformed).norm(), 1e-12);
 }
 
-// ---- Every message.
+// ---- Error messages.
 
 TEST(Adm, SaysWhatIsWrongAndWhere) {
     const std::string more = "ACCGRAV/";
@@ -293,6 +305,10 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"a motion of", with("MOTION/1, ROTATIONAL, JOINT = 5, FUNCTION = 0"), "there is no JOINT/5"},
         {"a motion along", with("MOTION/1, TRANS, JOINT = 1, FUNCTION = 0"), "has no such coordinate"},
         {"a table", with("SPLINE/1, X = 1, 2, 2, Y = 1, 2, 3"), "is not above the one before"},
+        {"no id", with("SPRINGDAMPER/, TRANS, I = 4, J = 5, K = 1"), "SPRINGDAMPER/: has no id"},
+        {"an id twice", with("SPRINGDAMPER/1, TRANS, I = 4, J = 5, K = 1"),
+         "there is one with this id already, in line"},
+        {"in quotes", replaced(linkage, "K = 12.5", "K = '12.5'"), "is no number"},
         {"half a table", with("SPLINE/1, X = 1, 2, Y = 1, 2, 3"), "2 X and 3 Y"},
     };
     for (const auto& [what, text, message] : cases) {
@@ -306,7 +322,7 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
     EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is no ending"), std::string::npos);
 }
 
-// Nothing is dropped in silence: an error with its line, or with --allow-missing told in the head.
+// Nothing is dropped silently: an error with its line, or with --allow-missing a note in the head.
 TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
     const auto with = [&](const std::string& statement) {
         return replaced(linkage, "ACCGRAV/", statement + "\nACCGRAV/");
@@ -318,6 +334,17 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         {"FRICTION/1, JOINT = 1", "--drop dynamics"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = USER(1)", "USER(...)"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DM(4,5)**2", "a power of a displacement"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -SIGN(10,VR(4,5))", "SIGN of a velocity: friction"},
+        {"JOINT/2, SPHERICAL, I = 4, J = 6, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, MAXIMUM_DEFORMATION = 0.01\n"
+         "MARKER/6, PART = 1, QP = 100, 0, 0",
+         "MU_DYN_ROT, MAX_FRIC_ROT, MAXIMUM_DEFORMATION: its friction holds"},
+        {"SPRINGDAMPER/2, TRANS, I = 4, J = 5, K = 3, KT = 4", "KT: given, but not used"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = STEP(TIME,0,0,1,5) + STEP(TIME,1,0,2,-5)",
+         "changes with time, 0 to 5"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -(1+STEP(TIME,0,0,1,5)+STEP(TIME,1,0,2,-5))*DM(4,5)",
+         "a force of displacements that changes with time"},
+        {"MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = SIN(2*PI*TIME)",
+         "a velocity or an acceleration that changes"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3*DM(4,5)", "a negative rate"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DX(4,5,5)", "other than between its own markers"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = VARVAL(4)\nVARIABLE/4, "
@@ -378,10 +405,10 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
     EXPECT_FALSE(evaluate(std::string(100'000, '-') + "1", context).linear.size());
 }
 
-// ---- Rest.
+// ---- Equilibrium at rest.
 
-// A block on a bushing whose markers are a centimetre and 13° apart, loaded by itself: it comes to rest where K δ = FORCE and
-// KT θ = TORQUE, δ and θ of I in the axes of J, wherever it was drawn.
+// A block on a bushing whose markers are a centimetre and 13° apart, under its own preload: at rest
+// K δ = FORCE and KT θ = TORQUE, δ and θ of I in the axes of J, independent of the drawn position.
 TEST(Adm, ABushingComesToRestWhereItsLawSaysWhateverItsMarkersAre) {
     const std::string text = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = MILLIMETER, TIME = SECOND
@@ -393,7 +420,7 @@ BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -
 )";
     const Scene scene = parse_scene(scene_of(text), "scene");
     const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
-    // The markers as they were drawn, moved with the part.
+    // The markers as drawn, moved with the part.
     const Matrix3d A_part = euler(10, 20, 30), A_I = A_part * euler(24, 5, 0), A_J = euler(10, 20, 66);
     const Vector3d I = Vector3d(5, 6, 7) + A_part * Vector3d(20, 10, 0), J(30, 20, 15);
     const Matrix3d turn = rest.poses.at(0).p.toRotationMatrix();
@@ -406,7 +433,8 @@ BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -
     EXPECT_NEAR(std::atan2(B(1, 0), B(0, 0)), -0.02, 1e-9);
 }
 
-// Samples of joints, with gravity turned to where the part as drawn hangs straight: the reaction carries its weight.
+// Joint samples, with gravity in the direction in which the part hangs straight as drawn: the
+// reaction carries its weight.
 TEST(Adm, JointSamplesBearTheWeightAtRest) {
     const double weight = 9.80665;  // of 1 kg
     for (const auto& [file, axis, g] : {std::tuple{"Revolute_Case01", "IGRAV", Vector3d(weight, 0, 0)},
@@ -427,7 +455,7 @@ TEST(Adm, JointSamplesBearTheWeightAtRest) {
     }
 }
 
-// The pendulum on its torsion spring: 2 m g cos φ = k φ.
+// Pendulum on a torsion spring: 2 m g cos φ = k φ.
 TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
     const Scene scene = parse_scene(scene_of(sample("chrono_RotSpring_Case01.adm")), "scene");
     const double k = 180 / std::numbers::pi, m_g = 9.80665;
@@ -438,7 +466,8 @@ TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
     EXPECT_NEAR(rest.poses.at(0).r.z(), -2 * std::sin(phi), 1e-9);
 }
 
-// A vector force of displacements is the bushing of the same numbers, and a FIELD with a diagonal as well.
+// A vector force of displacements equals a bushing with the same numbers, and so does a diagonal
+// FIELD.
 TEST(Adm, AVectorForceOfDisplacementsIsABushing) {
     const std::string base = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
@@ -468,7 +497,8 @@ MARKER/3, PART = 1, FLOATING
     }
 }
 
-// The end of a straight BEAM goes down by F L³/3EI + F L/(G A/s) and turns by F L²/2EI, in each plane the way it bends.
+// The end of a straight BEAM deflects by F L³/3EI + F L/(G A/s) and rotates by F L²/2EI in each
+// plane.
 TEST(Adm, ABeamBendsAsTimoshenkoSays) {
     const std::string text = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
@@ -493,13 +523,42 @@ ACCGRAV/, KGRAV = -10
     }
 }
 
+// A spline over a penetration is a stop. A contact that pulls and a spline that does not begin at
+// (0, 0) are errors.
+TEST(Adm, ASplineOfAPenetrationIsAStopWithACurve) {
+    const auto with = [](const std::string& function, const std::string& points) {
+        return replaced(linkage, "ACCGRAV/",
+                        "SPLINE/4, X = " + points +
+                            "\nSFORCE/7, TRANS, I = 4, J = 5, FUNCTION = " + function + "\nACCGRAV/");
+    };
+    const std::string rows = "0, 10, 20, Y = 0, 500, 2000";
+    const Scene scene = parse_scene(scene_of(with("2 * AKISPL(DIM(180, DM(4,5)), 0, 4)", rows)), "scene");
+    const auto& stop = std::get<AxialSpring>(scene.elastics.at(1).kind);
+    EXPECT_NEAR(force(stop.law, 0.170 - stop.free_length), -1000, 1e-9);
+    EXPECT_EQ(force(stop.law, 0.181 - stop.free_length), 0);
+    EXPECT_FALSE(std::get<Curve>(stop.law).known_outside);
+    EXPECT_NE(refusal(with("-AKISPL(DIM(180, DM(4,5)), 0, 4)", rows)).find("a contact that pulls"),
+              std::string::npos);
+    EXPECT_NE(refusal(with("AKISPL(DIM(180, DM(4,5)), 0, 4)", "1, 10, 20, Y = 0, 500, 2000"))
+                  .find("SPLINE/4 of a penetration does not begin at 0, 0"),
+              std::string::npos);
+    // DIM without a spline is a contact of rate 1.
+    const Scene ramp = parse_scene(scene_of(with("3 * DIM(180, DM(4,5))", rows)), "scene");
+    const auto& contact = std::get<AxialSpring>(ramp.elastics.at(1).kind);
+    EXPECT_NEAR(force(contact.law, 0.170 - contact.free_length), -30, 1e-9);
+}
+
 TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
     const std::string text =
         replaced(linkage, "ACCGRAV/",
                  "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
                  "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
     const std::string yaml = scene_of(text);
-    EXPECT_NE(yaml.find("SPLINE/4 the file has Akima's curve"), yaml.npos) << yaml;
+    const auto told = importer::told(importer::import_text(text, "model.adm", {}).notes);
+    EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
+        return line.find("N apart (of 900), at ") != line.npos &&
+               line.find("SPLINE/4 the file has Akima's curve") != line.npos;
+    })) << yaml;
     const Scene scene = parse_scene(yaml, "scene");
     const auto& spring = std::get<AxialSpring>(scene.elastics.at(1).kind);
     const auto& curve = std::get<Curve>(spring.law);
@@ -508,7 +567,7 @@ TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
     EXPECT_NEAR(curve.pieces.at(4)[0], 100, 1e-9);
 }
 
-// IMPACT with exponent 1 is a bump stop, BISTOP one each way.
+// IMPACT with exponent 1 is a bump stop, BISTOP a stop in each direction.
 TEST(Adm, AContactAlongALineIsAStop) {
     const std::string text =
         replaced(linkage, "ACCGRAV/",
@@ -526,7 +585,8 @@ TEST(Adm, AContactAlongALineIsAStop) {
     EXPECT_NEAR(std::get<Curve>(stop(2).law).pieces.back()[1], 1e6, 1e-3);
 }
 
-// A crank that a MOTION turns by 30° in a second, and a coupler that turns another by half as much the other way.
+// A MOTION rotates a crank by 30° in a second; a COUPLER rotates another by half as much in the
+// other direction.
 TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
     const Scene generic = parse_scene(scene_of(sample("adamspy_generic_model.adm")), "scene");
     ASSERT_EQ(generic.branches.size(), 1u);
@@ -543,7 +603,179 @@ TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
     EXPECT_NEAR(drivers[1].rate / drivers[0].rate, -0.5, 1e-12);
 }
 
-// ---- There and back.
+// ---- Unused arguments and truncated files.
+
+// Each argument and flag of every statement with an effect in statics, misspelt in its first
+// letter, is an error.
+TEST(Adm, AMisspeltArgumentIsNeverSilent) {
+    int changed = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(ELASTOCHECK_IMPORT) / "samples")) {
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() != ".adm" || !refusal(sample(name)).empty()) continue;
+        const std::string text = sample(name);
+        std::string keyword;
+        bool is_title = true;
+        for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+            end = std::min(text.find('\n', at), text.size());
+            const std::string line = text.substr(at, end - at);
+            if (std::exchange(is_title, false) || line.empty() || line[0] == '!') continue;
+            if (const auto slash = line.find('/'); line[0] != ',' && slash != line.npos)
+                keyword = line.substr(0, slash);
+            if (keyword == "REQUEST" || keyword == "OUTPUT" || keyword == "GRAPHICS" ||
+                keyword == "RESULTS" || keyword == "INTEGRATOR" || keyword == "PREFERENCES" ||
+                keyword == "VARIABLE" || keyword == "END")
+                continue;
+            // After a blank, a comma or at the start of the line: a word in capitals, followed by
+            // "=", "," or the end of the line.
+            for (std::size_t k = 0; k < line.size(); ++k) {
+                if (!(line[k] >= 'A' && line[k] <= 'Z') ||
+                    (k > 0 && line[k - 1] != ' ' && line[k - 1] != ','))
+                    continue;
+                std::size_t n = k;
+                while (n < line.size() && ((line[n] >= 'A' && line[n] <= 'Z') || line[n] == '_')) ++n;
+                const auto next = line.find_first_not_of(" \t\r", n);
+                if (n - k < 1 || (next != line.npos && line[next] != '=' && line[next] != ',')) continue;
+                if (line.find('=') < k) continue;  // a value
+                std::string other = text;
+                other[at + k] = line[k] == 'Q' ? 'K' : 'Q';
+                ++changed;
+                EXPECT_NE(refusal(other), "") << name << ": " << line;
+            }
+        }
+    }
+    EXPECT_GT(changed, 200);
+}
+
+TEST(Adm, ADatasetThatWasCutOffIsRefused) {
+    const std::string whole = sample("chrono_RotSpring_Case01.adm");
+    EXPECT_EQ(refusal(whole), "");
+    for (const double share : {0.5, 0.7, 0.9, 0.99}) {
+        const std::string half = whole.substr(0, static_cast<std::size_t>(share * whole.rfind("END")));
+        std::string said;
+        try {
+            importer::import_text(half, "model.adm", {});
+        } catch (const SceneError& error) {
+            said = error.what();
+        }
+        EXPECT_NE(said, "") << share;
+    }
+    const std::string without = linkage.substr(0, linkage.find("END"));
+    try {
+        importer::import_text(without, "model.adm", {});
+        ADD_FAILURE() << "imported";
+    } catch (const SceneError& error) {
+        EXPECT_NE(std::string(error.what()).find("END: the dataset does not end with END"), std::string::npos)
+            << error.what();
+    }
+    EXPECT_NE(
+        importer::import_text(without, "model.adm", {"", false, true}).yaml.find("# MISSING: line 42, END"),
+        std::string::npos);
+}
+
+// Friction arguments of a joint, named as in the documentation, are left out by --drop dynamics
+// with a note that gives their line.
+TEST(Adm, FrictionOfAJointIsLeftOutByName) {
+    const std::string text = replaced(linkage, ", REVOLUTE\n",
+                                      ", REVOLUTE, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
+                                      "MAXIMUM_DEFORMATION = 0.01, INNER_RADIUS = 4\n");
+    EXPECT_NE(
+        refusal(text).find("MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its friction holds"),
+        std::string::npos);
+    const auto told = importer::told(importer::import_text(text, "model.adm", {"", true, false}).notes);
+    EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
+        return line.starts_with("Left out, by --drop dynamics: line 30, MU_DYN_ROT, MAX_FRIC_ROT");
+    }));
+}
+
+// Two joints with a gap between their markers give one warning line, with the larger gap.
+TEST(Adm, WarningsOfOneKindAreOneLineWithTheLargest) {
+    const std::string text =
+        replaced(linkage, "ACCGRAV/",
+                 "PART/3, MASS = 1\nMARKER/6, PART = 3, QP = 0, 0, 0.01\nMARKER/7, PART = 1\n"
+                 "PART/4, MASS = 1\nMARKER/8, PART = 4, QP = 0, 0, 0.02\n"
+                 "JOINT/2, SPH, I = 6, J = 7\nJOINT/3, SPH, I = 8, J = 7\nACCGRAV/");
+    const auto imported = importer::import_text(text, "model.adm", {});
+    EXPECT_EQ(imported.notes.warnings.size(), 2u);
+    std::vector<std::string> warnings;
+    for (const auto& line : importer::told(imported.notes))
+        if (line.starts_with("Warning")) warnings.push_back(line);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0],
+              "Warning: line 47, JOINT/3: I and J are apart by 0.02 mm in the file; here they meet (2 of "
+              "this kind, this "
+              "the largest; also line 46, JOINT/2).");
+}
+
+TEST(Adm, InitialConditionsAreLeftOutEachWithItsLine) {
+    const std::string yaml = scene_of(replaced(
+        linkage, "ACCGRAV/", "MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = 1, ICDISP = 0.1\nACCGRAV/"));
+    EXPECT_NE(yaml.find("line 41, ICDISP of MOTION/1"), yaml.npos) << yaml;
+}
+
+// ---- Functions of TIME: a branch over their whole range.
+
+TEST(Adm, AProgrammeInTimeCoversItsWholeRange) {
+    const double deg = std::numbers::pi / 180;
+    const std::tuple<const char*, double, double> cases[] = {
+        {"STEP(TIME,0,0,1,40D)+STEP(TIME,1,0,2,-70D)+STEP(TIME,2,0,3,30D)", -30, 40},  // and back
+        {"STEP(TIME,0,0D,1,40D)+STEP(TIME,1,0D,2,-30D)", 0, 40},
+        {"10D*SIN(2*PI*TIME)", -10, 10},
+        {"-10D*SIN(1.3*TIME*5)", -10, 10},
+        {"STEP(TIME,0.1,0D,0.1001,20D)+STEP(TIME,0.1001,0D,0.1002,-20D)+STEP(TIME,1,0,2,1D)", 0,
+         20},  // a spike
+        {"IF(TIME-0.3: 0, 0, IF(TIME-0.3001: 12D, 0, 0))+STEP(TIME,1,0,2,-3D)", -3, 12},
+        {"30D*TIME", 0, 30},
+        {"-30D*TIME", -30, 0},
+    };
+    for (const auto& [function, from, to] : cases) {
+        const Scene scene = parse_scene(
+            scene_of(replaced(linkage, "ACCGRAV/",
+                              fmt::format("MOTION/1, ROT, JOINT = 1, FUNCTION = {}\nACCGRAV/", function))),
+            "scene");
+        ASSERT_EQ(scene.branches.size(), 1u) << function;
+        const Branch& branch = scene.branches[0];
+        EXPECT_EQ(branch.name, "motion");
+        EXPECT_NEAR(std::min({branch.from, branch.to, 0.0}) / deg, from, 1e-6) << function;
+        EXPECT_NEAR(std::max({branch.from, branch.to, 0.0}) / deg, to, 1e-6) << function;
+    }
+}
+
+TEST(Adm, MotionsThatDoNotGoInProportionHaveABranchEach) {
+    const std::string two =
+        "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
+        "MOTION/1, ROT, JOINT = 1, FUNCTION = STEP(TIME,0,0D,1,10D)\nMOTION/2, ROT, JOINT = 2, FUNCTION = ";
+    const auto scene = [&](const char* second) {
+        return parse_scene(scene_of(replaced(linkage, "ACCGRAV/", two + second + "\nACCGRAV/")), "scene");
+    };
+    const Scene together = scene("-2*STEP(TIME,0,0D,1,10D)"), apart = scene("10D*TIME");
+    ASSERT_EQ(together.branches.size(), 1u);
+    ASSERT_EQ(together.branches[0].drivers.size(), 2u);
+    EXPECT_NEAR(together.branches[0].drivers[1].rate / together.branches[0].drivers[0].rate, -2, 1e-9);
+    ASSERT_EQ(apart.branches.size(), 2u);
+    EXPECT_EQ(apart.branches[1].name, "motion_2");
+}
+
+// The value at time 0 is a static load and the change is a branch, which drives all proportional
+// components together.
+TEST(Adm, ALoadInTimeIsABranchOverWhatItChangesBy) {
+    const std::string yaml = scene_of(replaced(
+        linkage, "ACCGRAV/",
+        "MARKER/9, PART = 1, FLOATING\nVFORCE/1, I = 4, JFLOAT = 9, RM = 5, FX = 100*SIN(2*PI*TIME)\\ "
+        "FY = 10 + 50*SIN(2*PI*TIME)\\ FZ = 5\nACCGRAV/"));
+    EXPECT_NE(yaml.find("vforce_1: {on: crank, at: crank_cm, force: [0, 10, 5]}"), yaml.npos) << yaml;
+    EXPECT_NE(yaml.find("load: {load: {vforce_1.change: 1, vforce_1.change_2: 0.5}, from: -100, to: 100"),
+              yaml.npos)
+        << yaml;
+    const std::string spike =
+        scene_of(replaced(linkage, "ACCGRAV/",
+                          "SFORCE/7, TRANS, ACTIONONLY, I = 4, J = 5, FUNCTION = STEP(TIME,0.1,0,0.11,500) + "
+                          "STEP(TIME,0.11,0,0.12,-500)\nACCGRAV/"));
+    EXPECT_NE(spike.find("load: {load: {sforce_7.change: 1}, to: 500"), spike.npos) << spike;
+    EXPECT_EQ(spike.find("exerting nothing"), spike.npos);
+}
+
+// ---- Export and re-import.
 
 TEST(Adm, ExportedAndImportedAgainRestsWhereItDid) {
     const std::string with_all = R"(t
@@ -566,7 +798,7 @@ MARKER/8, PART = 1, QP = 201, 251, 301
 SPRINGDAMPER/1, TRANS, I = 4, J = 3, K = 4, LENGTH = 90
 ACCGRAV/, KGRAV = -9806.65
 )";
-    // Where the ball is on the turned part.
+    // Position of the ball on the rotated part.
     const Vector3d ball = euler(10, 20, 30).transpose() * (Vector3d(160, 210, 310) - Vector3d(100, 200, 300));
     const std::string met = replaced(with_all, "@", fmt::format("{}, {}, {}", ball.x(), ball.y(), ball.z()));
     const Scene first = parse_scene(scene_of(met), "scene");
@@ -581,7 +813,7 @@ ACCGRAV/, KGRAV = -9806.65
         EXPECT_LE(a.poses[k].p.angularDistance(b.poses[k].p),
                   1e-7);  // of an arc cosine near 1: half the digits
     }
-    // It has moved: the agreement is not that of two models that stand still.
+    // The part has moved, so the agreement is significant.
     EXPECT_GT((a.poses[0].r - first.bodies[0].design.r).norm(), 1e-4);
 }
 
@@ -590,6 +822,121 @@ TEST(Adm, WhatADatasetCannotSayIsRefusedOnExport) {
     EXPECT_THROW(importer::export_adm(scene, false), SceneError);
     const importer::Exported exported = importer::export_adm(scene, true);
     EXPECT_NE(exported.text.find("MISSING: element"), std::string::npos);
+}
+
+// Sum of the forces of the springs and stops whose names begin with `name`, at a length [m].
+double force_between(const Scene& scene, const std::string& name, double length) {
+    double sum = 0;
+    for (const Elastic& elastic : scene.elastics)
+        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind);
+            spring != nullptr && (elastic.name == name || elastic.name.starts_with(name + ".")))
+            sum += force(spring->law, length - spring->free_length);
+    return sum;
+}
+
+TEST(Adm, SpringsAndStopsOfAnyLawAreExportedAndImportedAgainWithTheSameForces) {
+    const auto scene_with = [](const std::string& fields) {
+        return parse_scene(R"(elastocheck: 1
+name: stops
+units: {length: mm, angle: deg, force: N}
+points: {o: [0, 0, 0], p: [50, 0, 0], t: [50, 0, 400]}
+bodies: {arm: {origin: o}}
+joints: {hinge: {type: revolute, bodies: [arm, ground], at: o, axis: y}}
+springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, )" +
+                               fields +
+                               R"(}}
+loads: {push: {on: arm, at: p, force: [0, 0, 1]}}
+branches: {up: {load: push, to: 10, steps: 1}}
+probes: {tip: {on: arm, at: p}}
+)",
+                           "scene");
+    };
+    const std::string table = "curve: {table: [[0, 0], [10, 250], [20, 800], [30, 2000], [45, 5000]]";
+    for (const std::string& fields : std::vector<std::string>{
+             "bump_stop: {clearance: 45, " + table + "}}", "rebound_stop: {clearance: 45, " + table + "}}",
+             "bump_stop: {clearance: 20, rate: 300}, rebound_stop: {clearance: 30, " + table +
+                 ", outside: unknown}}",
+             "bump_stop: {clearance: -5, " + table +
+                 ", outside: unknown}}, rebound_stop: {clearance: 30, rate: 70}"}) {
+        const Scene first = scene_with(fields);
+        const importer::Exported exported = importer::export_adm(first, false);
+        const Scene second = parse_scene(scene_of(exported.text), "scene");
+        for (double length = 0.25; length < 0.55; length += 0.0037) {
+            const double f = force_between(first, "coil", length);
+            EXPECT_NEAR(force_between(second, "coil", length), f, 1e-9 * (1000 + std::abs(f)))
+                << fields << " at " << length << " m\n"
+                << exported.text;
+        }
+        EXPECT_NE(force_between(first, "coil", 0.25), force_between(first, "coil", 0.50));
+    }
+}
+
+TEST(Adm, ATorsionSpringWithACurveIsExportedAndImportedAgainAsItWas) {
+    std::string text = linkage;
+    const Scene first =
+        parse_scene(scene_of(replaced(
+                        text, "ACCGRAV/",
+                        "SPLINE/4, LINEAR_EXTRAPOLATE, X = -1, -0.5, 0, 0.5, 1, Y = -900, -300, 0, 100, 150\n"
+                        "SFORCE/7, ROT, I = 3, J = 1, FUNCTION = 25 - AKISPL(AZ(3,1), 0, 4)\nACCGRAV/")),
+                    "scene");
+    const Scene second = parse_scene(scene_of(importer::export_adm(first, false).text), "scene");
+    const auto torsion = [](const Scene& scene) {
+        const auto found = std::ranges::find(scene.elastics, WrittenAs::torsion_spring, &Elastic::written_as);
+        EXPECT_NE(found, scene.elastics.end());
+        return std::get<Bushing>(found->kind);
+    };
+    const Bushing a = torsion(first), b = torsion(second);
+    for (double angle = -1.5; angle < 1.5; angle += 0.03) {
+        const auto moment = [&](const Bushing& spring) {
+            return spring.preload[5] + force(std::get<PerAxis>(spring.law).axis[5], angle);
+        };
+        EXPECT_NEAR(moment(b), moment(a), 1e-12) << angle;
+    }
+}
+
+// All built-in scenes, with their bushings converted to ADAMS' formulation. A bushing with its
+// frame on j is exported with its markers swapped.
+TEST(Adm, EveryBuiltInSceneIsExportedAndImportedAgainWithTheElementsItHad) {
+    int scenes = 0, bushings = 0;
+    for (const auto& file : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
+        if (file.path().extension() != ".yaml") continue;
+        SCOPED_TRACE(file.path().filename());
+        ++scenes;
+        const Scene first =
+            compare::converted(compare::trim(read_scene(file.path())).scene, importer::adams_bushing).scene;
+        const Scene second = parse_scene(scene_of(importer::export_adm(first, false).text), "scene");
+        for (const Elastic& elastic : first.elastics) {
+            if (elastic.only_where_driven) continue;
+            if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
+                for (double x = -0.1; x <= 0.1; x += 0.01) {
+                    const double length = spring->free_length + x,
+                                 f = force_between(first, elastic.name, length);
+                    // Lengths are imported with twelve digits.
+                    const double largest =
+                        std::abs(force_between(first, elastic.name, spring->free_length - 0.1));
+                    EXPECT_NEAR(force_between(second, elastic.name, length), f, 1e-9 * (1 + largest))
+                        << elastic.name << " " << x;
+                }
+                continue;
+            }
+            const auto same = std::ranges::find(second.elastics, elastic.name, &Elastic::name);
+            ASSERT_NE(same, second.elastics.end()) << elastic.name;
+            const auto &a = std::get<Bushing>(elastic.kind), &b = std::get<Bushing>(same->kind);
+            const auto *K = std::get_if<LinearStiffness>(&a.law), *L = std::get_if<LinearStiffness>(&b.law);
+            if (elastic.written_as == WrittenAs::torsion_spring || K == nullptr) continue;
+            ASSERT_NE(L, nullptr) << elastic.name;
+            EXPECT_LE((K->K - L->K).norm(), 1e-9 * K->K.norm()) << elastic.name;
+            EXPECT_LE((a.preload - b.preload).norm(), 1e-9 * (1 + a.preload.norm())) << elastic.name;
+            ++bushings;
+        }
+    }
+    EXPECT_GT(scenes, 20);
+    EXPECT_GT(bushings, 50);
+    Scene turned = read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "single_bushing.yaml");
+    auto& mount = std::get<Bushing>(turned.elastics.at(0).kind);
+    mount.formulation = importer::adams_bushing;
+    mount.formulation.frame = Formulation::Frame::on_j;
+    EXPECT_NO_THROW(importer::export_adm(turned, false));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Suspensions of Chrono::Vehicle, property files of Adams/Car; and of all formats: what becomes of the samples, and that no
-// damage to them ends other than in an answer.
+// Import of Chrono::Vehicle suspensions and Adams/Car property files.
+// For all formats also the recorded outcomes of the samples, and fuzz tests with damaged samples.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,12 +7,15 @@
 #include <cstring>
 #include <filesystem>
 
+#include "compare/characteristics.hpp"
 #include "compare/legs.hpp"
 #include "models/compile.hpp"
+#include "models/curve.hpp"
 #include "models/import/export_chrono.hpp"
 #include "models/import/import.hpp"
 #include "models/reader/scene_file.hpp"
 #include "tests/models/import/imports.hpp"
+#include "tests/support/pipe.hpp"
 
 namespace elastocheck {
 namespace {
@@ -26,6 +29,14 @@ const fs::path folder = fs::path(ELASTOCHECK_IMPORT);
 
 std::string chrono_scene(const std::string& text) {
     return importer::import_text(text, "model.json", {}).yaml;
+}
+
+// The notes in the head of the scene, each on one line.
+std::string head_of(const std::string& text) {
+    std::string head;
+    for (const auto& line : importer::told(importer::import_text(text, "model.json", {}).notes))
+        head += line + "\n";
+    return head;
 }
 
 std::string refusal(const std::string& text, const std::string& file) {
@@ -45,7 +56,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 // ---- Chrono
 
-// The published hardpoints are in a built-in scene as well, written by hand.
+// The published hardpoints are also in a built-in scene, written by hand.
 TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
     const Scene scene = parse_scene(chrono_scene(sample("generic__MacPhersonStrut.json")), "scene");
     ASSERT_EQ(scene.wheels.size(), 2u);
@@ -60,7 +71,8 @@ TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
     EXPECT_EQ(spring.free_length, 0.306);
 }
 
-// Toe and camber turn the spindle, as toe and camber here say: positive toe-in, top out.
+// Toe and camber rotate the spindle with the sign convention of the outputs: positive toe-in, top
+// out.
 TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     std::string text = sample("generic__DoubleWishbone.json");
     text = replaced(replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"),
@@ -72,7 +84,8 @@ TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     EXPECT_LE((Vector3d(f.x(), -f.y(), f.z()) - e).norm(), 1e-12);
 }
 
-// Every leg over ±60 mm of travel, by the references' own measure of agreement; the rest of the samples is for the command.
+// All legs agree over ±60 mm of travel within the uncertainty of the references; the command covers
+// the other samples.
 TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
     for (const char* file : {"generic__DoubleWishbone.json", "generic__ThreeLinkIRS.json"}) {
         const Scene scene = parse_scene(chrono_scene(sample(file)), "scene");
@@ -91,7 +104,8 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
     }
 }
 
-// In place of a revolute the rotation about its axis is free; elsewhere a bushing has K_rot; and F is the same all round.
+// A bushing in place of a revolute is free about its axis; other bushings have K_rot; the force is
+// isotropic.
 TEST(Chrono, BushingsStandWhereChronoPutsThem) {
     const std::string yaml = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json"));
     EXPECT_NE(yaml.find("rates: [70000000, 70000000, 70000000]"), yaml.npos) << yaml;
@@ -104,14 +118,14 @@ TEST(Chrono, BushingsStandWhereChronoPutsThem) {
             EXPECT_FALSE(bushing->formulation.conjugate);
         }
     EXPECT_EQ(bushings, 4);
-    // The tie rod has mass, and is a body between a ball and a universal joint.
+    // The tie rod has mass: a body between a ball joint and a universal joint.
     EXPECT_NE(yaml.find("tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"), yaml.npos);
     const std::string light = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json"));
     EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"), light.npos)
         << light;
 }
 
-// The template and the generic suspension of the same numbers are one mechanism.
+// A template and the generic suspension with the same numbers are the same mechanism.
 TEST(Chrono, TheReplicaMovesAsItsTemplate) {
     const Scene a = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene"),
                 b = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")),
@@ -132,7 +146,7 @@ TEST(Chrono, TheReplicaMovesAsItsTemplate) {
             const Pose& pose = point.poses.at(static_cast<std::size_t>(w.body));
             return pose.r + pose.p * w.centre_local;
         };
-        // The replica's joints were written with six digits.
+        // The replica's joints are given with six digits.
         EXPECT_LE((wheel(m, p.points[k]) - wheel(n, q.points[k])).norm(), 1e-6);
     }
 }
@@ -146,6 +160,232 @@ TEST(Chrono, FaultsOfTheDataAreKeptAndTold) {
     EXPECT_NE(
         chrono_scene(sample("generic__MacPhersonStrut.json")).find("in tension at the design position: 1.2"),
         std::string::npos);
+}
+
+// Each key of every sample, misspelt in its last letter, is an error.
+TEST(Chrono, AMisspeltKeyIsNeverSilent) {
+    int changed = 0;
+    // Whether the position is inside "Visualization", which is left out as a whole.
+    const auto in_picture = [](const std::string& text, std::size_t at) {
+        const std::size_t begin = text.rfind("\"Visualization\"", at);
+        if (begin == text.npos) return false;
+        const std::string_view between = std::string_view(text).substr(begin, at - begin);
+        return std::ranges::count(between, '{') > std::ranges::count(between, '}');
+    };
+    for (const auto& entry : fs::directory_iterator(folder / "samples")) {
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() != ".json" || !refusal(sample(name), name).empty()) continue;
+        const std::string text = sample(name);
+        for (std::size_t colon = text.find(':'); colon != text.npos; colon = text.find(':', colon + 1)) {
+            const std::size_t line = text.rfind('\n', colon) + 1;
+            const std::size_t close = text.find_last_not_of(" \t", colon - 1);
+            if (text[close] != '"' || text.substr(line, colon - line).find("//") != text.npos ||
+                in_picture(text, line))
+                continue;
+            const std::size_t open = text.rfind('"', close - 1);
+            std::string other = text;
+            other[close - 1] = other[close - 1] == 'q' ? 'z' : 'q';
+            const std::string key = other.substr(open + 1, close - open - 1);
+            ++changed;
+            try {
+                const std::string yaml = importer::import_text(other, "model.json", {}).yaml;
+                const std::string head = yaml.substr(0, yaml.find("\nelastocheck:"));
+                ADD_FAILURE() << name << ": " << key
+                              << (head.find(key) == head.npos ? ": silent" : ": only told");
+            } catch (const SceneError& error) {
+                EXPECT_NE(std::string(error.what()), "");
+            }
+        }
+    }
+    EXPECT_GT(changed, 1000);
+}
+
+// A // comment ends at the end of its line for all line endings, and messages count those lines.
+TEST(Chrono, LinesMayEndInCarriageReturnsAlone) {
+    std::string text = sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json");
+    const auto entries = [](const std::string& yaml) { return yaml.substr(yaml.find("\nelastocheck:")); };
+    const std::string expected = entries(chrono_scene(text));
+    std::erase(text, '\r');
+    std::ranges::replace(text, '\n', '\r');
+    EXPECT_EQ(entries(chrono_scene(text)), expected);
+}
+
+TEST(Chrono, AMisspeltSpringIsAnErrorThatNamesTheRightKey) {
+    const std::string said = refusal(
+        replaced(sample("generic__DoubleWishbone.json"), "\"Spring Coefficient\"", "\"Spring Coefficent\""),
+        "model.json");
+    EXPECT_NE(
+        said.find("Spring/Spring Coefficent: not known of this template, did you mean 'Spring Coefficient'?"),
+        said.npos)
+        << said;
+    EXPECT_NE(refusal(replaced(sample("generic__DoubleWishbone.json"), "14.705", "\"14.705\""), "model.json")
+                  .find("expected a number, found the string \"14.705\""),
+              std::string::npos);
+}
+
+// A sample with the text `at` replaced by `instead`, to add or change a field.
+std::string double_wishbone(const std::string& at, const std::string& instead) {
+    return replaced(sample("generic__DoubleWishbone.json"), at, instead);
+}
+
+// Order of fields as in Chrono's ReadTSDAFunctorJSON: a map before a table before a coefficient,
+// and a damper table before a coefficient. Stops exist if both lengths are given; the deformation
+// of a map is the length itself; a tie rod without inertia is a distance.
+TEST(Chrono, TakesTheFieldThatChronoTakes) {
+    const std::string coefficient = "\"Spring Coefficient\":";
+    const auto law = [](const std::string& yaml) {
+        const Scene scene = parse_scene(yaml, "scene");
+        for (const auto& elastic : scene.elastics)
+            if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) return *spring;
+        return AxialSpring{};
+    };
+    const auto with = [&](const std::string& fields) {
+        return double_wishbone(coefficient, fields + ", " + coefficient);
+    };
+    const auto says = [](const std::string& text, const char* what) {
+        const std::string head = head_of(text);
+        EXPECT_NE(head.find(what), head.npos) << head;
+    };
+    const std::string both = with("\"Spring Curve Data\": [[-0.1, -500], [0.1, 500]]");
+    EXPECT_EQ(std::get<Curve>(law(chrono_scene(both)).law).pieces.at(1)[1], 5000);
+    says(both, "Spring Coefficient: not used: Chrono takes the Spring Curve Data instead");
+
+    const std::string damper = with("\"Damping Curve Data\": [[-1, -5], [1, 5]]");
+    const auto elastics = parse_scene(chrono_scene(damper), "scene").elastics;
+    EXPECT_EQ(elastics.size(), 0u);
+    says(damper, "Chrono takes the Damping Curve Data instead: there is no spring");
+
+    const std::string one_stop = with("\"Minimum Length\": 0.2");
+    EXPECT_EQ(chrono_scene(one_stop).find("bump_stop"), std::string::npos);
+    says(one_stop, "Minimum Length: not used: Chrono makes stops where both");
+
+    // At speed zero -30 N at 0.25 m and 70 N at 0.35 m.
+    const std::string map = with("\"Map Data\": [[-1, -40, 60], [3, 0, 100]], \"Deformation\": [0.25, 0.35]");
+    const AxialSpring of_map = law(chrono_scene(map));
+    const auto& curve = std::get<Curve>(of_map.law);
+    EXPECT_NEAR(of_map.free_length + curve.knots.at(0), 0.25, 1e-9);
+    EXPECT_NEAR(curve.pieces.at(1)[0], -30, 1e-9);
+    EXPECT_NEAR(curve.pieces.at(1)[1], 1000, 1e-9);
+    EXPECT_TRUE(curve.known_outside);
+    says(map, "Free Length: not used: Chrono counts the deformation of a map from length zero");
+
+    says(double_wishbone(
+             "\"Tierod\":\n  {",
+             "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, \"Stiffness Rotational\": 1},"),
+         "Tierod.Bushing Data: not used: Chrono makes a tie rod without Mass");
+}
+
+// ChLinkRSDA: the torque on body 2 about the axis is P - k (angle - free).
+TEST(Chrono, ARotationalSpringHasItsPreloadAndItsFreeAngle) {
+    const auto torsion = [](const std::string& law) {
+        const std::string text = replaced(
+            sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json"), "\"TSDAs\"",
+            "\"RSDAs\": [{\"Name\": \"twist\", \"Mirrored\": false, \"Body1\": \"Chassis\", \"Body2\": "
+            "[\"LCA\", \"Left\"], \"Position\": [0, 0.3, 0], \"Axis\": [1, 0, 0], " +
+                law + "}], \"TSDAs\"");
+        return chrono_scene(text);
+    };
+    const std::string linear = torsion(
+        "\"Spring Coefficient\": 100, \"Free Angle\": 0.2, \"Preload\": 5, \"Damping Coefficient\": 3");
+    EXPECT_NE(linear.find("rate: 100, preload_moment: -25}"), linear.npos) << linear;
+    const std::string curve =
+        torsion("\"Spring Curve Data\": [[-1, -10], [1, 10]], \"Free Angle\": 0.25, \"Preload\": 2");
+    EXPECT_NE(curve.find("curve: {table: [[-0.75, -12], [1.25, 8]]"), curve.npos) << curve;
+}
+
+// Each point of the file is a hardpoint with its own source line; the midpoint of an arm's axis is
+// marked as computed.
+TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
+    const std::string text = sample("hmmwv__HMMWV_DoubleWishboneFront.json"), yaml = chrono_scene(text);
+    const auto line_of = [&](const char* part, const char* key) {
+        const auto at = text.find(key, text.find(part));
+        return std::ranges::count(std::string_view(text).substr(0, at), '\n') + 1;
+    };
+    for (const auto& [name, part, key] :
+         {std::tuple{"upper_arm.axis.front_left", "Upper Control Arm", "Location Chassis Front"},
+          {"upper_arm.axis.rear_left", "Upper Control Arm", "Location Chassis Back"},
+          {"tierod_left.inner", "Tierod", "Location Chassis"},
+          {"tierod_left.outer", "Tierod", "Location Upright"}}) {
+        const auto at = yaml.find(fmt::format("  {}: [", name));
+        ASSERT_NE(at, yaml.npos) << name;
+        const std::string line = yaml.substr(at, yaml.find('\n', at) - at);
+        EXPECT_NE(line.find(fmt::format("# line {}, {}/{}", line_of(fmt::format("\"{}\"", part).c_str(), key),
+                                        part, key)),
+                  line.npos)
+            << line;
+    }
+    EXPECT_NE(yaml.find("# midpoint of Upper Control Arm/Location Chassis Front and"), yaml.npos);
+}
+
+// Piecewise linear table with kinks at its rows: for every leg the height z of a block on a spring
+// follows the inverse of the table.
+TEST(Curve, StraightBetweenItsRowsIsFollowedByEveryLeg) {
+    const std::vector<std::pair<double, double>> rows{
+        {-0.1, -2000}, {-0.03, -400}, {0, 0}, {0.02, 100}, {0.1, 900}};
+    const Scene scene = parse_scene(R"(
+elastocheck: 1
+name: block
+units: {length: m, angle: rad, force: N}
+points: {o: [0, 0, 0], top: [0, 0, 0.5]}
+bodies: {block: {origin: o}}
+joints: {guide: {type: translational, bodies: [ground, block], at: o, axis: z}}
+springs:
+  coil: {bodies: [ground, block], from: o, to: top, free_length: 0.5, curve: {interpolation: linear,
+    table: [[-0.1, -2000], [-0.03, -400], [0, 0], [0.02, 100], [0.1, 900]]}}
+loads: {push: {on: block, at: o, force: [0, 0, 1]}}
+branches: {push: {load: push, from: -2500, to: 1500, steps: 40}}
+probes: {o: {on: block, at: o}}
+)",
+                                    "block");
+    const Model model = compile(scene);
+    const auto ways = compare::ways_of(model, model.branches.front(), 40);
+    for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series}) {
+        const auto path = compare::walk(ways, {.leg = leg});
+        ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
+        ASSERT_EQ(path.points.size(), 41u) << name(leg);
+        for (const auto& point : path.points) {
+            const double F = point.load;
+            std::size_t k = 0;
+            while (k + 2 < rows.size() && rows[k + 1].second < F) ++k;
+            const double z = rows[k].first + (F - rows[k].second) * (rows[k + 1].first - rows[k].first) /
+                                                 (rows[k + 1].second - rows[k].second);
+            EXPECT_NEAR(point.poses.at(0).r.z(), z, 1e-12) << name(leg) << " " << F;
+        }
+    }
+}
+
+// A wheel directly over its spring, whose table has a row every 10 mm. At branch points on a row
+// the wheel rate is undefined, since rounding would select the side; the legs agree on these
+// points.
+TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
+    const Scene scene = parse_scene(chrono_scene(sample("ultra_tow__UT_LeafspringAxle.json")), "scene");
+    const Model model = compile(scene);
+    const auto channels = compare::characteristics(model);
+    const auto ways = compare::ways_of(model, model.branches.front(), 12);  // 10 mm each
+    const auto rate = static_cast<std::size_t>(
+        std::ranges::find(channels, "left.wheel_rate", &compare::Channel::name) - channels.begin());
+    ASSERT_LT(rate, channels.size());
+    int without = 0;
+    for (const auto leg : {compare::Leg::equilibrium, compare::Leg::series}) {
+        const auto walked = compare::walk(model, channels, model.branches.front(), ways, {.leg = leg});
+        for (const auto& values : walked.curve.values)
+            without += values.at(rate) == compare::undefined ? 1 : 0;
+    }
+    EXPECT_GT(without, 2);
+    EXPECT_EQ(without % 2, 0);
+}
+
+// Chrono interpolates linearly between the rows; the scene does the same to the last digit.
+TEST(Chrono, ATableIsStraightBetweenItsRows) {
+    const Scene scene = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene");
+    const auto& curve = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
+    ASSERT_GT(curve.knots.size(), 10u);
+    for (std::size_t k = 0; k + 1 < curve.knots.size(); ++k) {
+        const double h = curve.knots[k + 1] - curve.knots[k];
+        EXPECT_NEAR(curve.pieces[k + 1][0] + h * curve.pieces[k + 1][1], curve.pieces[k + 2][0], 1e-9);
+        EXPECT_EQ(curve.pieces[k + 1][2], 0);
+        EXPECT_EQ(curve.pieces[k + 1][3], 0);
+    }
 }
 
 TEST(Chrono, SaysWhatIsWrongAndWhere) {
@@ -213,6 +453,13 @@ TEST(PropertyFile, ABushingTakesAllSixCurvesInTheUnitsOfTheFile) {
     EXPECT_EQ(std::get<Curve>(law.axis[5]).pieces[1][1], 0);
 }
 
+TEST(PropertyFile, LinesMayEndInCarriageReturnsAlone) {
+    std::string sub = support::text_of(folder / "fixtures" / "front.sub");
+    const std::string expected = importer::import_text(sub, "front.sub", {}).yaml;
+    std::ranges::replace(sub, '\n', '\r');
+    EXPECT_EQ(importer::import_text(sub, "front.sub", {}).yaml, expected);
+}
+
 TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     const Scene scene = beside_fixtures(
         "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, free_length: "
@@ -225,7 +472,7 @@ TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     EXPECT_NEAR(stop.pieces[1][0], -2500, 1e-9);
 }
 
-// In a spring's file what it is shorter by is positive, and so is what pushes its ends apart: 3000 N at 100 mm of jounce.
+// In a spring file compression and pushing force are positive: 3000 N at 100 mm of jounce.
 TEST(PropertyFile, ASpringPushesBackByTheSideOfItsCurveThatIsCompression) {
     const support::Folder here;
     here.write("p.spr",
@@ -293,6 +540,39 @@ TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
     EXPECT_NE(yaml.find("BUSHING_ASSEMBLY lca_front"), yaml.npos);
 }
 
+// Two hardpoints at the same position both remain: the template may have a part on each.
+TEST(PropertyFile, HardpointsOfOnePlaceBothStay) {
+    const std::string sub = support::text_of(folder / "fixtures" / "front.sub");
+    const std::string twice =
+        replaced(sub, "'wheel_center'     'left/right'",
+                 "'tierod_outer'  'left/right'  0.0  -760.0  330.0\n'wheel_center'     'left/right'");
+    const auto imported = importer::import_text(twice, "front.sub", {});
+    EXPECT_NE(imported.yaml.find("tierod_outer_left: [0, 760, 330]"), imported.yaml.npos) << imported.yaml;
+    EXPECT_NE(imported.yaml.find("wheel_center_left: [0, 760, 330]"), imported.yaml.npos);
+    EXPECT_EQ(imported.notes.understood.at("HARDPOINT"), 4);
+}
+
+TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
+    const std::string sub = support::text_of(folder / "fixtures" / "front.sub");
+    const auto front = [&](const char* axes) {
+        Options options;
+        options.axes = axes;
+        return importer::import_text(sub, "front.sub", options).yaml;
+    };
+    EXPECT_EQ(front("x-rearward,y-right"), front(""));
+    EXPECT_NE(front("x-forward,y-left").find("lca_front_left: [-200, -400, 150]"), std::string::npos);
+    EXPECT_NE(front("x-forward,y-right").find("lca_front_left: [-200, 400, -150]"), std::string::npos);
+    EXPECT_NE(front("x-rearward,y-right")
+                  .find("# Axes turned from x-rearward,y-right, z up to x forward, y left, z up "
+                        "(ISO 8855)."),
+              std::string::npos);
+    EXPECT_THROW(front("x-up,y-left"), SceneError);
+    Options options;
+    options.axes = "x-forward,y-left";
+    EXPECT_THROW(importer::import_text(sample("generic__DoubleWishbone.json"), "model.json", options),
+                 SceneError);
+}
+
 // ---- A second frame of a bushing, for markers that are not parallel as drawn.
 
 TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
@@ -310,9 +590,9 @@ TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
     EXPECT_THROW(bushing("frame_j: {x: y}, "), SceneError);
 }
 
-// ---- There and back.
+// ---- Export and re-import.
 
-// Wherever the scene was imported from, the deck of it that export writes is imported as a scene that goes the same way.
+// The Chrono export of any imported scene can be re-imported and gives the same motion.
 TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
     for (const char* name :
          {"generic__MultiLink.json", "generic__DoubleWishbone.json", "generic__SemiTrailingArm.json",
@@ -329,9 +609,7 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
                 const auto value = text.find_first_not_of(' ', at + std::strlen(key));
                 text.replace(value, text.find(',', value) - value, angle);
             }
-        Scene first = imported(text);
-        // Chrono's are of one hard-coded curve, which no entry says.
-        std::erase_if(first.elastics, [](const Elastic& e) { return e.written_as == WrittenAs::stop; });
+        const Scene first = imported(text);
         const Scene second = imported(importer::export_chrono(first, false).text);
         const auto end_of = [](const Scene& scene) {
             const Model model = compile(scene);
@@ -354,6 +632,57 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
     }
 }
 
+// Stops with Chrono's curve are exported as Chrono's own, both or one of the two; stops with other
+// curves are errors.
+TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
+    const Scene first =
+        parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json")), "scene");
+    const auto stops = [](const Scene& scene) {
+        std::vector<const AxialSpring*> list;
+        for (const Elastic& elastic : scene.elastics)
+            if (elastic.written_as == WrittenAs::stop) list.push_back(&std::get<AxialSpring>(elastic.kind));
+        return list;
+    };
+    ASSERT_EQ(stops(first).size(), 4u);
+    for (const bool both : {true, false}) {
+        Scene some = first;
+        if (!both)
+            std::erase_if(some.elastics, [](const Elastic& e) { return e.name.ends_with(".rebound_stop"); });
+        const Scene second = parse_scene(chrono_scene(importer::export_chrono(some, false).text), "scene");
+        const auto force_of_stops = [&](const Scene& scene, double length) {
+            double sum = 0;
+            for (const AxialSpring* stop : stops(scene)) sum += force(stop->law, length - stop->free_length);
+            return sum;
+        };
+        for (double length = 0.2; length < 0.8; length += 0.01)
+            EXPECT_NEAR(force_of_stops(second, length), force_of_stops(some, length), 1e-3) << length;
+    }
+    Scene other = first;
+    for (Elastic& elastic : other.elastics)  // changes the force at one row
+        if (elastic.name.ends_with(".bump_stop"))
+            std::get<Curve>(std::get<AxialSpring>(elastic.kind).law).pieces.at(4)[0] *= 1.01;
+    try {
+        importer::export_chrono(other, false);
+        ADD_FAILURE() << "another curve passes for Chrono's";
+    } catch (const SceneError& error) {
+        EXPECT_NE(std::string(error.what()).find("stops in Chrono are of one hard-coded curve"),
+                  std::string::npos)
+            << error.what();
+    }
+    Scene alone = first;
+    std::erase_if(alone.elastics, [](const Elastic& e) {
+        return e.written_as == WrittenAs::itself && std::holds_alternative<AxialSpring>(e.kind);
+    });
+    try {
+        importer::export_chrono(alone, false);
+        ADD_FAILURE() << "a stop without its spring";
+    } catch (const SceneError& error) {
+        EXPECT_NE(std::string(error.what()).find("belong to a spring between the same points"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
     const Scene strut = read_scene(fs::path(ELASTOCHECK_SCENES) / "mcpherson_strut.yaml");
     EXPECT_THROW(importer::export_chrono(strut, false), SceneError);
@@ -364,7 +693,24 @@ TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
 
 // ---- Samples
 
-// models/import/README.md shows this table, made by: elastocheck import --table tests/models/import/samples/*
+TEST(Import, APipeIsRefusedAtOnce) {
+    const support::Folder place;
+    for (const char* ending : {".adm", ".json", ".sub"}) {
+        const fs::path pipe = place.path / (std::string("model") + ending);
+        const support::Pipe nobody(pipe);
+        ASSERT_TRUE(nobody.is_there());
+        try {
+            importer::import_file(pipe, {});
+            ADD_FAILURE() << "read";
+        } catch (const SceneError& error) {
+            EXPECT_EQ(std::string(error.what()),
+                      pipe.string() + ": a pipe or a device; a regular file is needed");
+        }
+    }
+}
+
+// models/import/README.md shows this table, made by
+// `elastocheck import --table tests/models/import/samples/*`.
 TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
     std::istringstream recorded(support::text_of(folder / "outcomes.md"));
     int rows = 0;

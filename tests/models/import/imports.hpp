@@ -1,4 +1,4 @@
-// What tests of the importers share.
+// Helpers shared by the tests of the importers.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,7 +17,7 @@ inline std::string sample(const std::string& name) {
     return support::text_of(std::filesystem::path(ELASTOCHECK_IMPORT) / "samples" / name);
 }
 
-// Body-fixed 3-1-3 [deg].
+// Body-fixed Euler angles 3-1-3 [deg].
 inline Eigen::Matrix3d euler(double a, double b, double c) {
     using Eigen::AngleAxisd, Eigen::Vector3d;
     const double deg = std::numbers::pi / 180;
@@ -26,7 +26,7 @@ inline Eigen::Matrix3d euler(double a, double b, double c) {
         .toRotationMatrix();
 }
 
-// The start of the first branch: settled under what is held.
+// The start of the first branch, settled under the start values.
 inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
     const Model model = compile(scene);
     const auto path = compare::walk(compare::ways_of(model, model.branches.front(), 1), {.leg = leg});

@@ -1,7 +1,8 @@
-// Intervals, series, angles and the logarithm against MPFI and MPFR at 400 bits: whatever the compiler and its flags, the
-// exact result is inside. A program of its own, so that it can be built in as many ways as there are:
+// Interval arithmetic, series, angles and logarithm against MPFI and MPFR at 400 bits: the
+// enclosure contains the exact result, for any compiler and flags. A separate program, so that it
+// can be built with several of them:
 //
-//   against_mpfi [PAIRS]      exit code 1 at any violation; 100000 pairs of operands, all operators each
+//   against_mpfi [PAIRS]      exit code 1 at any violation; default 100000 pairs of operands
 #include <mpfi.h>
 #include <mpfr.h>
 
@@ -46,14 +47,14 @@ void note(bool fine, const char* what, const Interval& a, const Interval& b, con
                     got.hi);
 }
 
-// All of the exact result is in what was computed. A NaN in the exact one is a result that is not defined: then nothing may be
-// claimed.
+// The enclosure contains the whole exact result. A NaN in the exact result means undefined: then
+// the enclosure must be unbounded.
 void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Exact& exact) {
     if (mpfi_nan_p(exact.x)) return note(!bounded(got), what, a, b, got);
     note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what, a, b,
          got);
 }
-// MPFR's own rounding of 400 bits is far below any double's.
+// The rounding of MPFR at 400 bits is far below that of a double.
 void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Real& exact) {
     note(mpfr_nan_p(exact.x) == 0 && mpfr_cmp_d(exact.x, got.lo) >= 0 && mpfr_cmp_d(exact.x, got.hi) <= 0,
          what, a, b, got);

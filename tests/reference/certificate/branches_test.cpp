@@ -1,4 +1,4 @@
-// Whole branches as one curve, and limit points.
+// Interval proofs of whole branches as one curve, and of limit points.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(CertifyBranch, StatesThatAreOffOrAtOtherLoadsHaveNoTube) {
     EXPECT_EQ(certify_branch(walk.model, walk.branch, std::span(points).first(1)).answer, Answer::open);
 }
 
-// The apex at height z is held by F(z) = 2 k (ℓ - ℓ₀) z / ℓ, ℓ² = b² + z²: largest where ℓ³ = ℓ₀ b².
+// Force at the apex height z: F(z) = 2 k (ℓ - ℓ₀) z / ℓ, ℓ² = b² + z²; largest where ℓ³ = ℓ₀ b².
 struct Arch {
     static constexpr double k = 100e3, b = 0.3, h = 0.08;
     static double length() { return std::hypot(b, h); }
@@ -117,7 +117,7 @@ TEST(CertifyLimitPoint, ABranchThatDoesNotTurnHasNone) {
     EXPECT_FALSE(found.detail.empty());
 }
 
-// The height at a load a little less than the limit, on the side that stands and on the other.
+// Height at a load slightly below the limit, on the stable and on the unstable side.
 double height(double load, bool standing) {
     double low = standing ? Arch::limit_height() : 0, high = standing ? Arch::h : Arch::limit_height();
     for (int k = 0; k < 200; ++k) {
@@ -133,19 +133,20 @@ TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
     for (const double share : {1e-2, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
         const double load = limit * (1 - share);
         for (const bool standing : {true, false}) {
-            // The closed form, in doubles, is as far off as an ulp of the load over the stiffness left.
+            // The error of the closed form in doubles is an ulp of the load over the remaining
+            // stiffness.
             const Certificate c =
                 certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
             EXPECT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
             EXPECT_EQ(c.stable, standing) << share;
         }
     }
-    // Past it there is none.
+    // No equilibrium beyond the limit.
     const Certificate past = certify(on.model, on.branch, on.at(Arch::limit_height(), limit * (1 + 1e-6)));
     EXPECT_EQ(past.answer, Answer::excluded) << past.detail;
 }
 
-// The stiffness is gone half way to the other one.
+// The stiffness vanishes halfway to the other equilibrium.
 TEST(Certificate, OfTheArchNoneIsSaidToBeAloneFartherThanItIs) {
     const OnArch on = arch();
     const double limit = Arch::force(Arch::limit_height());

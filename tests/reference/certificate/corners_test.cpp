@@ -1,4 +1,4 @@
-// Stops that close: what is proved on the corner of a law, and of a branch that goes over it.
+// Interval proofs at corners: stops that close, at a point and along a branch.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@
 namespace elastocheck::reference::certificate {
 namespace {
 
-// A slider on a spring k, and a stop k_s that is c away [N/mm, mm]: x = F / k up to k c, then (F + k_s c) / (k + k_s).
+// A slider on a spring k with a stop k_s at a distance c [N/mm, mm]: x = F / k up to k c, then
+// (F + k_s c) / (k + k_s).
 struct Slider {
     double k = 20, k_s = 400, c = 1;
     double at(double F) const { return F <= k * c ? F / k : (F + k_s * c) / (k + k_s); }
@@ -35,7 +36,7 @@ struct Slider {
 struct On {
     Model model;
     Branch branch;
-    // By the closed form, as if the slider were of `other`.
+    // Closed form of the state of slider `other`.
     Equilibrium state(double F, const Slider& other) const {
         Equilibrium state;
         state.load = F;
@@ -70,7 +71,7 @@ TEST(CertifyBranch, GoesThroughAStopThatClosesHoweverStiffItIs) {
 TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
     const Slider slider;
     const On way = on(slider);
-    // Just before the corner nobody knows of the stop.
+    // Just before the corner the stop has no effect.
     EXPECT_EQ(way.tube(slider, 0.9999, 19.998).answer, Answer::proved);
     for (const Slider& other :
          {Slider{20, 400, 1 + 1e-5}, Slider{20, 400 * (1 + 1e-4), 1}, Slider{20, 0, 1}}) {
@@ -81,7 +82,8 @@ TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
     }
 }
 
-// Its law with a slope of -k_n behind the corner instead: beyond the load there no equilibrium goes on, the curve turns back.
+// With a slope of -k_n beyond the corner: no equilibrium continues beyond that load, the curve
+// turns back.
 TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
     for (const double k_n : {25., 40., 1000.}) {
         const Slider slider;
@@ -99,7 +101,7 @@ TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
         EXPECT_EQ(tube.answer, Answer::open) << k_n;
         EXPECT_NEAR(tube.to, 20, 1e-5) << k_n;
     }
-    // A little less than what holds it: soft, and it goes on.
+    // Slightly less than the holding stiffness: soft, and the branch continues.
     On soft = on({20, 400, 1});
     for (auto& elastic : soft.model.elastics)
         if (auto* curve = std::get_if<Curve>(&std::get<AxialSpring>(elastic.kind).law))
@@ -114,7 +116,8 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
         for (const double by : {0., 1e-12, -1e-12, 1e-9, -1e-9, 1e-3, -1e-3}) {
             const Certificate c = certify(way.model, way.branch, way.state(20 + by, slider));
             EXPECT_EQ(c.answer, Answer::proved) << k_s << " " << by << ": " << c.detail;
-            // 1e-9 N beyond the corner a stop of 2e9 N/m is 5e-19 m in: no double tells which side that is.
+            // 1e-9 N beyond the corner a stop of 2e9 N/m is compressed by 5e-19 m: doubles cannot
+            // resolve the side.
             EXPECT_TRUE(c.stable || k_s > 1e6) << k_s << " " << by;
             EXPECT_GT(c.unique.length, c.error.length) << k_s << " " << by;
         }
@@ -127,7 +130,7 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
     }
 }
 
-// An arm on one bushing that is soft at first in every direction, and on its corner in some.
+// An arm on one bushing that is soft at first in all directions, and at its corner in some.
 On cornered(const Formulation& formulation) {
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
@@ -179,7 +182,7 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
                     };
                     const auto E = of(plain), E_apart = of(apart);
                     for (std::size_t row = 0; row < 6; ++row) {
-                        // x and f are doubles: what of them is rounded, times the stiffest slope.
+                        // x and f are doubles: their rounding times the largest slope.
                         EXPECT_LT(mag(E[row] - E_apart[row]), 1e-7 * (1 + mag(E[row]))) << row;
                         EXPECT_GT(mag(E[row]), 1e-3) << row;
                     }
@@ -203,7 +206,7 @@ TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
     }
 }
 
-// Each piece has to be a bridge then, and there is no end to them.
+// Every piece would have to cross the corner, without end.
 TEST(CertifyBranch, AWayThatStaysOnACornerIsProvedOrGivenUp) {
     const Model model = compile(parse_scene(R"(
 elastocheck: 1

@@ -1,4 +1,5 @@
-// What the theorem is about: numbers that are not rounded beforehand, joints that hold twice, knots, formulations, followers.
+// Equations of the certificate: exact stored numbers, redundant joints, knots, formulations,
+// followers.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -46,7 +47,7 @@ std::string swing(const std::string& joints, const std::string& elements = "") {
 const std::string hinge = "a: {type: revolute, bodies: [arm, ground], at: o, axis: y}",
                   hinge_again = "b: {type: revolute, bodies: [arm, ground], at: q, axis: y}";
 
-// a · b exactly is p + e, e of the fused product.
+// a · b equals p + e exactly, with e from the fused product.
 bool holds_product(const Interval& x, double a, double b) {
     const double p = a * b, e = std::fma(a, b, -p);
     return (x.lo < p || (x.lo == p && e >= 0)) && (x.hi > p || (x.hi == p && e <= 0));
@@ -76,7 +77,8 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
     EXPECT_GT(c.gap, 0);
     EXPECT_LT(c.gap, 1e-12);
     EXPECT_TRUE(c.stable);
-    // A part of a millimetre apart along the axis, where both hold: the middle is no equilibrium.
+    // Offset along the axis by a part of a millimetre, where both joints constrain: the mean
+    // position is no equilibrium.
     for (auto& constraint : way.model.constraints)
         if (auto* points = std::get_if<CoincidentPoints>(&constraint.kind))
             if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05) points->j.s_local[1] += 1e-6;
@@ -84,7 +86,8 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
     EXPECT_EQ(apart.answer, Answer::excluded) << apart.detail;
 }
 
-// A rod on a ball joint, held by two springs at its other end: it may spin about the line between. Its origin is beside that line.
+// A rod on a ball joint, held by two springs at its other end, is free to spin about the line
+// between. Its origin lies beside that line.
 TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExcluded) {
     On way = on(
         "elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
@@ -111,7 +114,7 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
         return certify(way.model, way.branch, spun);
     };
     for (const double angle : {1e-6, 1e-3, 0.3, -2.}) {
-        // Another equilibrium, each with the spin where the state has it.
+        // Each is another equilibrium with its own spin.
         const Certificate spun = turned(angle, true, false);
         EXPECT_EQ(spun.answer, Answer::proved) << angle << ": " << spun.detail;
         EXPECT_LT(spun.held, 1e-9) << angle;
@@ -120,7 +123,8 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
         for (const bool origin_too : {true, false}) {
             const Certificate off = turned(angle, origin_too, true);
             EXPECT_EQ(off.answer, Answer::excluded) << angle << origin_too << ": " << off.detail;
-            // Straight on by 1e-3 rad is 4e-5 mm off the circle; far off it nobody knows any more what is idle.
+            // A straight displacement of 1e-3 rad is 4e-5 mm off the circle; far off the circle the
+            // idle motion is not identified.
             const bool near = std::abs(angle) < 2e-3 && origin_too;
             EXPECT_NE(
                 off.detail.find(near ? "with the idle motion of 'rod' where the state has it" : "found"),
@@ -129,7 +133,7 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
         }
 }
 
-// A stop that the load just closes: where the slopes jump, on its knot and to both sides of it.
+// A stop that the load just closes: at its knot, where the slopes jump, and on both sides.
 TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     const auto stopped = [](double rate) {
         return on(swing(hinge,
@@ -139,7 +143,7 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
                                     rate)));
     };
     On way = stopped(500);
-    // The load at which the spring is 10 mm shorter, by halves.
+    // Load at which the spring is 10 mm shorter, by bisection.
     double low = 0, high = 1000;
     const auto gap = [&](const Equilibrium& state) {
         const Pose& pose = state.poses[0];
@@ -167,7 +171,7 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     EXPECT_GE(tube.corners, 1);
 }
 
-// Whatever a bushing measures, at small turns and large ones: the equilibrium leg's points are proved.
+// For every formulation, at small and large rotations, the equilibrium leg's points are proved.
 TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) {
     using F = Formulation;
     int proved = 0;

@@ -1,4 +1,5 @@
-// Points of the shipped scenes, by every leg: the right ones are proved, wrong ones are not.
+// Interval proofs of points of the built-in scenes, by every leg: correct points are proved, wrong
+// ones are not.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A model, one way of it, and what a leg found there.
+// A model, one side of its branch, and the result of a leg.
 struct Walked {
     compare::Way way;
     compare::Leg leg;
@@ -45,7 +46,8 @@ std::string at(const std::string& scene, const Walked& walk, const Equilibrium& 
                        state.load, name(c.answer), c.detail);
 }
 
-// The legs' own equations at the centre of the box, over what acts: nobody's fault is inherited, and none is made.
+// Residuals of the legs at the centre of the box, relative to the acting forces: the certificate
+// has the same equations.
 void expect_met(const Residuals& r, double force, double length, const std::string& where) {
     EXPECT_LE(r.length, 1e-11 * length) << where;
     EXPECT_LE(r.direction, 1e-11) << where;
@@ -76,7 +78,7 @@ TEST(Certificate, TheOtherLegsEquationsHoldAtTheCentreOfTheBox) {
                 const Certificate c = certify(walk.way.model, walk.way.branch, state);
                 const auto where = at(scene, walk, state, c);
                 ASSERT_EQ(c.centre.poses.size(), state.poses.size()) << where;
-                // Rounding of the stiffest element over the model: some 1e10 N/m times an ulp of a metre.
+                // Rounding of the stiffest element: about 1e10 N/m times an ulp of a metre.
                 expect_met(equilibrium::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
                 if (!support::has_potential(support::scene(scene))) continue;
                 expect_met(energy::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
@@ -136,21 +138,21 @@ TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
         excluded(fmt::format("judged at {} N more", by), [&](Equilibrium& s) { s.load += by; });
 }
 
-// A spun strut is an equilibrium as well as the other; what pushes the spin is none.
+// A spun strut is another equilibrium; a load on the spin has none.
 TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
     const Point p = mcpherson(0.4);
     const Certificate before = certify(p.model, p.branch, p.state);
     EXPECT_NE(before.detail.find("idle motion of 'strut'"), std::string::npos) << before.detail;
     EXPECT_GT(before.held, 0);
     EXPECT_LT(before.held, 1e-9);
-    // About the axis of its tube, which goes through its origin, the top.
+    // Rotates the strut about the axis of its tube, which passes through its origin, the top.
     Equilibrium spun = p.state;
+    std::vector<Vector3d> across;
     Pose& strut = spun.poses[2];
     for (const auto& constraint : p.model.constraints)
         if (const auto* row = std::get_if<PerpendicularDirections>(&constraint.kind)) {
             if (row->i.body != 2 && row->j.body != 2) continue;
-            // axis_i ⟂ two directions across it on the strut: their cross product on the strut is the axis.
-            static std::vector<Vector3d> across;
+            // The axis is the cross product of two directions on the strut that are normal to it.
             across.push_back((row->i.body == 2 ? row->i : row->j).u_local);
             if (across.size() < 2) continue;
             strut.p =
@@ -161,10 +163,17 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
     EXPECT_EQ(after.answer, Answer::proved) << after.detail;
 
     Model pushed = p.model;
-    pushed.static_loads.push_back({"push", FollowerMoment{2, Vector3d(0.1, 0.1, 0.1)}});
-    const Certificate c = certify(pushed, p.branch, p.state);
-    EXPECT_EQ(c.answer, Answer::excluded) << c.detail;
-    EXPECT_NE(c.detail.find("is pushed by"), std::string::npos) << c.detail;
+    for (const double moment : {0.1, 1e-7}) {
+        const Vector3d axis = across[0].cross(across[1]).normalized();
+        pushed.static_loads = {{"push", FollowerMoment{2, moment * axis}}};
+        const Certificate c = certify(pushed, p.branch, p.state);
+        EXPECT_EQ(c.answer, Answer::excluded) << moment << ": " << c.detail;
+        EXPECT_NE(c.detail.find("is pushed by"), std::string::npos) << moment << ": " << c.detail;
+    }
+    // A follower moment with a part across the axis rotates with the strut, so that the load on the
+    // wheel depends on the spin: it is not idle.
+    pushed.static_loads = {{"push", FollowerMoment{2, Vector3d(0.1, 0.1, 0.1)}}};
+    EXPECT_EQ(certify(pushed, p.branch, p.state).answer, Answer::excluded);
 }
 
 TEST(Certificate, AStateThatIsNotOfTheModelIsRefusedAndNaNIsOpen) {

@@ -1,5 +1,5 @@
-// Beams as chains of bushings, each in the middle of its length with its frame in the middle, against what is known of
-// the continuous beam. Every chain is clamped to ground at the origin and lies along x.
+// Beams as chains of bushings, each with its frame at the middle of its segment, against the
+// continuous beam. Every chain is clamped to ground at the origin and lies along x.
 #include <Eigen/Eigenvalues>
 #include <numbers>
 
@@ -22,7 +22,7 @@ struct Beam {
         K.diagonal() << EA / l, 12 * EI_z / (l * l * l), 12 * EI_y / (l * l * l), GJ / l, EI_y / l, EI_z / l;
         return K;
     }
-    // A body at every node but the first; `at` the tip.
+    // A body at every node except the first; `at` is the tip.
     Model model() const {
         Model model;
         model.name = "beam";
@@ -46,12 +46,12 @@ EquilibriumPath bend(const Beam& beam, const LoadKind& load, double to, int step
     return solve(beam.model(), branch, sweep(branch));
 }
 
-// T = G J φ / L, however many segments, over more than a whole turn of the tip. Stiff enough in bending not to give way
-// sideways, which a shaft under torque does (Greenhill).
+// T = G J φ / L for any number of segments, over more than one turn of the tip. The bending
+// stiffness prevents the lateral buckling of a shaft under torque (Greenhill).
 TEST(Beams, ABarTwistsByItsTorqueTimesLengthOverGJ) {
     for (const int n : {1, 3, 10}) {
         const Beam beam{.EI_y = 24e3, .EI_z = 24e3, .n = n};
-        const double turn = n == 1 ? 3 : 7;  // one segment alone ends at half a turn
+        const double turn = n == 1 ? 3 : 7;  // one segment ends at half a turn
         const auto path =
             bend(beam, DeadMoment{beam.tip(), Vector3d::UnitX()}, turn * beam.GJ / beam.length, 5);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -64,9 +64,9 @@ TEST(Beams, ABarTwistsByItsTorqueTimesLengthOverGJ) {
     }
 }
 
-// Under a moment M at its tip every segment turns by θ = M l / EI about its middle: the nodes lie on a circle of radius
-// (l/2) cot(θ/2), which is (l/θ)(1 - θ²/12 + ...): the beam's own circle EI/M to second order in 1/n. Wide enough not to
-// give way sideways.
+// Under a moment M at its tip every segment turns by θ = M l / EI about its middle: the nodes lie
+// on a circle of radius (l/2) cot(θ/2) = (l/θ)(1 - θ²/12 + ...): the beam's own circle EI/M to
+// second order in 1/n. The width prevents lateral buckling.
 TEST(Beams, ATipMomentRollsTheBeamIntoACircle) {
     std::vector<double> errors;
     for (const int n : {5, 10, 20}) {
@@ -92,7 +92,8 @@ TEST(Beams, ATipMomentRollsTheBeamIntoACircle) {
         EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.1) << errors[i];
 }
 
-// The elastica under a dead tip force F across:  EI θ'' = -F cos θ,  θ(0) = 0,  θ'(L) = 0, by shooting for θ'(0).
+// The elastica under a dead tip force F across:  EI θ'' = -F cos θ,  θ(0) = 0,  θ'(L) = 0, by
+// shooting for θ'(0).
 struct Tip {
     double x, z;
 };
@@ -130,10 +131,11 @@ TEST(Beams, ATipForceBendsTheBeamIntoTheElastica) {
     const Beam one;
     const double F = 4 * one.EI_y / (one.length * one.length);
     const Tip exact = elastica(F, one.EI_y, one.length);
-    EXPECT_NEAR(exact.z / one.length, 0.66996, 1e-5);  // tabulated by Mattiasson (1981) for F L²/EI = 4
+    // tabulated by Mattiasson (1981) for F L²/EI = 4
+    EXPECT_NEAR(exact.z / one.length, 0.66996, 1e-5);
     std::vector<double> errors;
     for (const int n : {4, 8, 16}) {
-        const Beam beam{.EA = 1e9, .n = n};  // the elastica does not stretch
+        const Beam beam{.EA = 1e9, .n = n};  // inextensible, as the elastica
         const auto path = bend(beam, DeadForce{{beam.tip()}, Vector3d::UnitZ()}, F, 4);
         ASSERT_EQ(path.outcome, Outcome::converged) << n << ": " << path.detail;
         const Vector3d r = beam.tip(path.points.back()).r;
@@ -144,8 +146,9 @@ TEST(Beams, ATipForceBendsTheBeamIntoTheElastica) {
     EXPECT_LE(errors.back(), 3e-3 * one.length);
 }
 
-// The least P at which ½ xᵀ (K - P G) x of small deflections is singular, x = (w, φ) of every node: a segment bends by
-// its ends' w_j - w_i - ½ l (φ_i + φ_j) =: d and φ_j - φ_i, and shortens by ¼ l (φ_i² + φ_j²) + ½ d (φ_i + φ_j).
+// Least P at which ½ xᵀ (K - P G) x of small deflections is singular, x = (w, φ) of every node. A
+// segment is deformed by d := w_j - w_i - ½ l (φ_i + φ_j) and φ_j - φ_i, and shortens by ¼ l
+// (φ_i² + φ_j²) + ½ d (φ_i + φ_j).
 double critical_load(double EI, double L, int n) {
     const double l = L / n;
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2 * n + 2, 2 * n + 2), G = K;
@@ -161,12 +164,12 @@ double critical_load(double EI, double L, int n) {
     return 1 / free_K.ldlt().solve(free_G).eval().eigenvalues().real().maxCoeff();
 }
 
-// Pressed along its axis the chain stops being a minimum at its own critical load, which meets Euler's
-// P = π² EI / (4 L²) to second order in 1/n.
+// Under axial pressure the chain ceases to be a minimum at its own critical load, which converges
+// to Euler's P = π² EI / (4 L²) with second order in 1/n.
 TEST(Beams, AColumnIsLostAtEulersLoad) {
     std::vector<double> errors;
     for (const int n : {2, 4, 8}) {
-        const Beam beam{.EA = 1e10, .EI_y = 3000, .n = n};  // gives way about z
+        const Beam beam{.EA = 1e10, .EI_y = 3000, .n = n};  // buckles about z
         const double P = critical_load(beam.EI_z, beam.length, n);
         errors.push_back(P / (pi * pi * beam.EI_z / (4 * beam.length * beam.length)) - 1);
         const Branch branch =

@@ -1,5 +1,5 @@
-// Every scene with a solution on paper, met at every point of every branch. The formulas are derived in the
-// scenes' comments.
+// Scenes with a closed-form solution, at every point of every branch. The scene files contain the
+// derivations.
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -17,8 +17,8 @@ double root(F f, double low, double high) {
     return 0.5 * (low + high);
 }
 
-// `displacement(load, state)` returns {computed, expected} displacements of a point; they must agree to 1e-8
-// of the largest displacement of the branch.
+// `displacements(load, state)` returns {computed, expected} displacements of a point; they must
+// agree to 1e-8 of the largest displacement of the branch.
 template <class F>
 void expect_closed_form(const std::string& name, F displacements) {
     const Scene scene = scene_named(name);
@@ -97,7 +97,7 @@ TEST(ClosedForm, Pendulum) {
     });
 }
 
-// Without its weight the plate settles where the first spring's preload has pushed it.
+// Without its weight the plate settles at the displacement caused by the first spring's preload.
 TEST(ClosedForm, PreloadSettlesBeforeTheBranchStarts) {
     Scene scene = scene_named("parallel_springs");
     scene.static_loads.clear();
@@ -107,10 +107,10 @@ TEST(ClosedForm, PreloadSettlesBeforeTheBranchStarts) {
         EXPECT_NEAR(position(state, scene.probes[0].at).z() - 0.4, (600 + state.load) / 75e3, 1e-13);
 }
 
-// A dead moment m has no potential for finite rotations, but re-centred charts find where it balances:
-// a body held by a rotational bushing K_R on ground (frame on the body) turns
-// by θ with J⁻ᵀ(-θ) K_R θ = Aᵀ m. Here the rotation is chosen and the moment
-// that holds it computed, by differences of the energy, and then found again.
+// A dead moment m has no potential for finite rotations, but re-centred charts find its
+// equilibrium: a body held by a rotational bushing K_R on ground (frame on the body) rotates by θ
+// with J⁻ᵀ(-θ) K_R θ = Aᵀ m. The test chooses the rotation, computes the holding moment by
+// differences of the energy, and solves for the rotation.
 TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
     Random random;
     const Vector3d K_R(300, 600, 900);
@@ -142,7 +142,7 @@ TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
         ASSERT_EQ(path.outcome, Outcome::converged)
             << path.detail << " angle " << Eigen::AngleAxisd(p).angle();
         worst = std::max(worst, path.points.back().poses[0].p.angularDistance(p));
-        EXPECT_GT(path.counts.iterations, 4);  // it took more than one chart a point
+        EXPECT_GT(path.counts.iterations, 4);  // more than one chart per point
     }
     EXPECT_LE(worst, 1e-8);
 }
@@ -150,8 +150,8 @@ TEST(ClosedForm, DeadMomentTurnsABodyByTheExactFiniteRotation) {
 TEST(ClosedForm, DeadMomentOnEqualRatesTurnsAboutItsOwnAxis) {
     Scene scene = scene_named("pendulum");
     const Vector3d axis(0.6, 0, 0.8);
-    scene.branches = {
-        load_branch("turn", {{"moment", DeadMoment{0, axis}}}, 1800, 60)};  // up to 3 rad at 600 N·m/rad
+    scene.branches = {// up to 3 rad at 600 N·m/rad
+                      load_branch("turn", {{"moment", DeadMoment{0, axis}}}, 1800, 60)};
     const auto path = solve(scene, 0, sweep(scene.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {

@@ -1,4 +1,4 @@
-// Where there is no energy this leg says so, and names what has none.
+// Systems without energy: the energy leg reports not_conservative and names the load or bushing.
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {

@@ -1,4 +1,5 @@
-// Taylor tests of everything derived by hand: V(x + h s) = V(x) + h g·s + O(h²), the same for every row of Φ.
+// Taylor tests of all hand-derived derivatives: V(x + h s) = V(x) + h g·s + O(h²), and the same for
+// every row of Φ.
 #include <Eigen/QR>
 
 #include <numbers>
@@ -21,7 +22,7 @@ struct Case {
     Prescribed prescribed;
 };
 
-// Two bodies in random poses; what joins them, or one of them and ground, is added by the cases.
+// Two bodies in random poses; each case adds elements or constraints between them or to ground.
 Model two_bodies(Random& random) {
     Model model;
     model.bodies = {{"a", random.pose()}, {"b", random.pose()}};
@@ -33,7 +34,7 @@ constexpr std::pair<BodyId, BodyId> pairs[] = {{0, 1}, {1, 0}, {0, ground}, {gro
 Matrix6 coupled_stiffness(Random& random) {
     Matrix6 R;
     for (int i = 0; i < 6; ++i) R.col(i) = random.many(6);
-    return R * R.transpose();  // positive definite, anisotropic, every entry different from zero
+    return R * R.transpose();  // positive definite, anisotropic, without zero entries
 }
 
 Point point(Random& random, BodyId body) { return {body, random.vector()}; }
@@ -72,7 +73,7 @@ std::vector<Case> potentials(Random& random) {
     return cases;
 }
 
-// Every kind as it stands, and with its length, offset or angle moved.
+// Every kind of constraint, unchanged and with its length, offset or angle moved.
 std::vector<Case> constraint_cases(Random& random) {
     std::vector<Case> cases;
     const auto add = [&](const std::string& name, const ConstraintKind& kind) {
@@ -105,8 +106,8 @@ struct Values {
     MatrixXd f_x;
 };
 
-// Remainders of the first-order expansion in several directions, at h and h/2. Returns the observed order; 2
-// when there is no remainder at all.
+// Remainders of the first-order expansion in several directions, at h and h/2. Returns the observed
+// order; 2 when there is no remainder at all.
 template <class F>
 double observed_order(Random& random, int n, const VectorXd& x, F values_at, double roundoff = 1e-14) {
     const Values at = values_at(x);
@@ -152,7 +153,7 @@ TEST(Derivatives, JacobianOfEveryConstraintIsFirstOrderExact) {
     }
 }
 
-// Everything a driver can move, all at once or one by one: what is prescribed moves with `rate`.
+// Random rates of everything a driver can move, together or one by one.
 Prescribed random_rate(const Model& model, Random& random) {
     Prescribed rate = nothing_prescribed(model);
     for (BodyId b = 0; b < 2; ++b) {
@@ -166,7 +167,8 @@ Prescribed random_rate(const Model& model, Random& random) {
     return rate;
 }
 
-// g(a + h) = g(a) + ∂g/∂a h + O(h²), for the gradient of V under every driver, along two rates at once.
+// g(a + h) = g(a) + ∂g/∂a h + O(h²), for the gradient of V under every driver, along two rates at
+// once.
 TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
     Random random;
     for (int repeat = 0; repeat < 25; ++repeat) {
@@ -185,7 +187,7 @@ TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
     }
 }
 
-// The same for every constraint and for its Jacobian.
+// The same for every constraint and its Jacobian.
 TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
     Random random;
     for (int repeat = 0; repeat < 25; ++repeat) {
@@ -211,7 +213,7 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
     }
 }
 
-// A driven angle may stand the other way round and satisfy Φ = 0; the judge is to know.
+// A driven angle in the opposite direction satisfies Φ = 0 too; the residuals must distinguish it.
 TEST(Constraints, AnAngleKnowsItsOwnDirectionFromTheOpposite) {
     Model model;
     model.bodies = {{"a", {}}};
@@ -229,7 +231,7 @@ TEST(Constraints, AnAngleKnowsItsOwnDirectionFromTheOpposite) {
     }
 }
 
-// The bushing's law is regular where it usually is: at rest, θ = 0 and d = 0.
+// The bushing's law is regular at rest, θ = 0 and d = 0.
 TEST(Derivatives, BushingAtRestIsRegular) {
     Random random;
     Model model = two_bodies(random);
@@ -284,7 +286,7 @@ TEST(Derivatives, HessianAgreesWithDifferencesOfTheGradient) {
     }
 }
 
-// The laws of models/mechanism.hpp, written out once more from the poses alone.
+// The laws of models/mechanism.hpp, implemented independently from the poses.
 double energy(const Model& model, const std::vector<Pose>& poses) {
     const auto at = [&](BodyId body) {
         return body == ground ? Pose{} : poses[static_cast<std::size_t>(body)];
@@ -315,8 +317,8 @@ TEST(Potential, IsTheLawsOfTheElements) {
             if (one.name.starts_with("driven") || one.name == "force" || one.name == "moment") continue;
             const std::vector<Pose> centre{random.pose(), random.pose()};
             Chart chart = chart_about(centre);
-            // Small enough for the logarithm to stay on its sheet
-            // most of the time; the few others are left out.
+            // Small enough for the logarithm to stay on its sheet in most cases; the others are
+            // skipped.
             move_to(chart, random.many(12, 0.1));
             const double expected = energy(one.model, poses(chart)) - energy(one.model, centre);
             if (rotations(one.model, turning_bushings(one.model, {one.prescribed, one.prescribed}), centre)
@@ -361,8 +363,8 @@ TEST(Potential, IsUnchangedByARigidMotionOfEverything) {
     EXPECT_LE(worst_force, 1e-14);
 }
 
-// A change of 1e-10 at a level of 1 is known to 1e-13 of itself: by the trapezium rule V(x) - V(0) = ½ (g(0)
-// + g(x))·x + O(x³).
+// A change of 1e-10 at a level of 1 has a relative error of 1e-13: by the trapezoidal rule
+// V(x) - V(0) = ½ (g(0) + g(x))·x + O(x³).
 TEST(Potential, ChangesKeepTheirRelativeAccuracy) {
     Random random;
     double worst = 0;

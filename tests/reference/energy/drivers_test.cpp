@@ -1,4 +1,4 @@
-// Branches that move something else than a load: joints, free lengths, preloads, and several at once.
+// Branches driven by joints, free lengths and preloads, alone and together.
 #include <numbers>
 
 #include "support.hpp"
@@ -35,8 +35,8 @@ EquilibriumPath walk(Scene scene, const Branch& branch, const std::vector<double
     return solve(scene, 0, values);
 }
 
-// Of origins, and of orientations where they are determined: the strut's spin, body 2, is idle and depends on
-// the way.
+// Distance of origins and of determined orientations: the strut's spin, body 2, is idle and
+// path-dependent.
 double furthest(const Equilibrium& one, const Equilibrium& two) {
     double worst = 0;
     for (std::size_t b = 0; b < one.poses.size(); ++b) {
@@ -52,8 +52,8 @@ std::size_t joint_named(const Model& model, const std::string& name) {
     throw std::out_of_range(name);
 }
 
-// A crank about z at `pivot`, drawn at angle `theta` from x, its pin at distance `radius`; body axes as drawn
-// in ground axes, so that the drawn angle is the zero of the drive.
+// A crank about z at `pivot`, in the design position at angle `theta` from x, its pin at distance
+// `radius`; body axes parallel to ground axes, so that the design angle is the zero of the drive.
 BodyId add_crank(Scene& scene, const std::string& name, const Vector3d& pivot) {
     const auto body = static_cast<BodyId>(scene.bodies.size());
     scene.bodies.push_back({name, {pivot, Quaterniond::Identity()}});
@@ -95,8 +95,8 @@ TEST(Drivers, SliderCrankTurnsFullyAsItsGeometrySays) {
     }
 }
 
-// Four-bar: the rocker's pin is where two circles meet, on the side where it was drawn. Once with the coupler
-// as a distance, once as a body whose joints say one thing twice.
+// Four-bar: the rocker's pin is the intersection of two circles on the side of the design position.
+// Once with the coupler as a distance, once as a body with redundant joints.
 TEST(Drivers, FourBarTurnsFullyAsItsGeometrySays) {
     const double crank_radius = 0.1, coupler = 0.35, rocker_radius = 0.25, base = 0.4;
     const auto pin = [&](double theta) {
@@ -135,7 +135,7 @@ TEST(Drivers, FourBarTurnsFullyAsItsGeometrySays) {
     }
 }
 
-// ---- The arch of models/scenes, its apex on a jack.
+// ---- The arch of models/scenes with a jack at its apex.
 
 struct Arch {
     double b = 0.3, h = 0.08, k = 1e5, l_0 = std::hypot(b, h);
@@ -149,7 +149,8 @@ Scene jacked_arch() {
     return scene;
 }
 
-// ∫ f da over [0, to] by five-point Gauss-Legendre in each of `panels`: the values to ask for, and the sum.
+// ∫ f da over [0, to] by five-point Gauss-Legendre in each of `panels`: the evaluation points, and
+// the sum.
 struct Quadrature {
     std::vector<double> a, weight;
     Quadrature(double to, int panels) {
@@ -185,7 +186,7 @@ TEST(Drivers, JackTakesTheArchThroughBothLimitPoints) {
         least = std::min(least, force);
         most = std::max(most, force);
         work -= quadrature.weight[k] * force;
-        // Through the middle, where all is spent that is stored, and out again.
+        // Through the middle, where no energy is stored, and out again.
         EXPECT_NEAR(state.reactions[jack].force.head<2>().norm(), 0, 1e-9);
     }
     EXPECT_LE(least, -211);  // the limit loads are ∓ 211.5 N
@@ -227,7 +228,7 @@ Driver force_on_wheel(const Scene& scene, const Vector3d& f, double rate, double
     return {Load{"force", DeadForce{{scene.wheels[0].body, scene.wheels[0].centre_local}, f}}, start, rate};
 }
 
-// The energy of the linear elements, written out once more.
+// Energy of the linear elements, implemented independently.
 double stored(const Scene& scene, const Equilibrium& state) {
     double U = 0;
     for (const auto& elastic : scene.elastics) {
@@ -280,7 +281,8 @@ TEST(Drivers, TravelAndLoadMeetAtTheSameStates) {
                 worst_force =
                     std::max(worst_force,
                              (up.points[k].reactions[j].force - pushed.points[k].reactions[j].force).norm());
-            EXPECT_EQ(pushed.points[k].reactions.size(), jack);  // no jack where no branch drives it
+            // no jack where no branch drives it
+            EXPECT_EQ(pushed.points[k].reactions.size(), jack);
         }
         EXPECT_GT(std::abs(forces.back()), 1000);
         EXPECT_LE(worst, 1e-9);
@@ -290,7 +292,7 @@ TEST(Drivers, TravelAndLoadMeetAtTheSameStates) {
     }
 }
 
-// Jounce at a constant braking force: held by the branch, or a static load of the scene.
+// Jounce at a constant braking force: held by the branch, or as a static load of the scene.
 TEST(Drivers, AHeldLoadIsAStaticLoad) {
     const Scene scene = jacked_strut();
     const Vector3d brake(-800, 0, 0);
@@ -308,12 +310,12 @@ TEST(Drivers, AHeldLoadIsAStaticLoad) {
         EXPECT_LE(furthest(held.points[k], fixed.points[k]), 1e-10) << values[k];
 }
 
-// A fore-and-aft sweep at three heights begins where the jack's own branch has that height, and drivers of
-// two kinds end where they end one after the other: the curve of minima is one.
+// A fore-and-aft sweep at three heights starts at the states of the jack's own branch, and two
+// simultaneous drivers end in the same state as two consecutive ones: the curve of minima is
+// unique.
 TEST(Drivers, HeldHeightsAreReachedBySettling) {
     Scene scene = jacked_strut();
-    scene.joints.erase(scene.joints.begin() +
-                       3);  // the fore-and-aft plane gives way to a bushing's compliance
+    scene.joints.erase(scene.joints.begin() + 3);  // a bushing's compliance replaces the fore-and-aft plane
     for (const double height : {-0.06, 0.03, 0.08}) {
         const auto lifted =
             walk(scene, driven_branch("lift", {motion_of(scene, "jack", 1)}, height), {height});
@@ -335,7 +337,8 @@ TEST(Drivers, HeldHeightsAreReachedBySettling) {
     }
 }
 
-// A tie rod 3 mm longer than it is drawn is the same as one that a branch has lengthened by 3 mm.
+// A tie rod 3 mm longer than in the design position equals one that a branch has lengthened by 3
+// mm.
 TEST(Drivers, ADistanceMayHaveAnotherLengthThanDrawn) {
     const Scene scene = scene_named("chrono_mcpherson");
     for (const double longer : {0.003, -0.02}) {
@@ -354,8 +357,8 @@ TEST(Drivers, ADistanceMayHaveAnotherLengthThanDrawn) {
     }
 }
 
-// A mechanism drawn open closes: a hinge 10 mm beside its axis, a plane at another offset, an angle
-// elsewhere.
+// Open joints of the design position are closed: a hinge 10 mm beside its axis, a plane at another
+// offset, another angle.
 TEST(Drivers, WhatIsDrawnOpenIsClosed) {
     Scene scene;
     const BodyId crank = add_crank(scene, "crank", Vector3d::Zero());
@@ -411,7 +414,7 @@ TEST(Drivers, PreloadPushesAsItsStiffnessSays) {
     }
 }
 
-// ---- What cannot be.
+// ---- Invalid or impossible branches.
 
 TEST(Drivers, OnlyModelsThatStandOnTheBranchAreTaken) {
     Scene scene = jacked_arch();
@@ -427,7 +430,7 @@ TEST(Drivers, OnlyModelsThatStandOnTheBranchAreTaken) {
     EXPECT_THROW(solve(model, both_ways, values), std::invalid_argument);
 }
 
-// A rod that a branch lengthens until it no longer reaches: said with the joint, in the branch's own unit.
+// A rod lengthened beyond reach: reported with the joint, in the branch's own unit.
 TEST(Drivers, WhatIsOutOfReachNamesAJoint) {
     Scene scene = scene_named("pinned_bar");
     scene.joints.push_back({"rod", Distance{{0, {0.5, 0, 0}}, {ground, {0, 0, -1}}, std::hypot(0.5, 1)}});
@@ -441,12 +444,12 @@ TEST(Drivers, WhatIsOutOfReachNamesAJoint) {
         EXPECT_NE(path.detail.find("cannot be closed"), std::string::npos) << path.detail;
         for (const auto& state : path.points) EXPECT_LE(state.load, 1.5 - std::hypot(0.5, 1));
     }
-    // Held there, it cannot even settle.
+    // Held there from the start, it cannot settle.
     auto path = walk(scene, driven_branch("held", {motion_of(scene, "rod", 0, 1)}, 1), {0, 1});
     EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << path.detail;
     EXPECT_NE(path.detail.find("settling from the design pose: joint '"), std::string::npos) << path.detail;
     EXPECT_TRUE(path.points.empty());
-    // Or shorter than nothing.
+    // Or of negative length.
     path = walk(scene, driven_branch("shorten", {motion_of(scene, "rod", -1)}, 2), {0, 0.1, 2});
     EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << path.detail;
     EXPECT_NE(path.detail.find("joint 'rod' would have the length -0.88"), std::string::npos) << path.detail;
@@ -484,7 +487,7 @@ TEST(Drivers, DriversThatAreNoNumbersNeverConverge) {
     }
 }
 
-// An angle satisfies its equation the other way round too: a judge must not be taken in.
+// An angle satisfies its equation in the opposite direction too: the residuals must detect it.
 TEST(Drivers, AnAngleTheOtherWayRoundIsNoGoodState) {
     Scene scene;
     const BodyId crank = add_crank(scene, "crank", Vector3d::Zero());
@@ -498,8 +501,8 @@ TEST(Drivers, AnAngleTheOtherWayRoundIsNoGoodState) {
     EXPECT_EQ(residuals(model, model.branches[0], state).direction, 2);
 }
 
-// An angle that is held far from where it is drawn is reached by turning there: at more than a right angle the other way
-// round satisfies Φ = 0 as well and lies nearer.
+// An angle held far from its design value is reached by rotation: beyond a right angle the opposite
+// direction satisfies Φ = 0 as well and is nearer.
 TEST(Drivers, AnAngleHeldBeyondARightAngleSettlesTheRightWayRound) {
     for (const double held : {-2.9, -2.0, -0.5, 0.5, 1.7, 2.5, 3.0}) {
         Scene scene;

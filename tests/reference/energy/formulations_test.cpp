@@ -1,5 +1,5 @@
-// Every formulation of a bushing that is an energy, with every law: the energy is the one stated, its gradient and
-// Hessian are its own, and where it ends the branch says so.
+// Bushing formulations with an energy, with every law: the stated energy, its gradient and Hessian,
+// and the end of the branch at the end of a law.
 #include <numbers>
 
 #include "models/curve.hpp"
@@ -37,8 +37,8 @@ SpatialLaw random_law(Random& random, bool curved) {
 
 struct Case {
     std::string name;
-    Bushing bushing;  // as asked for, its frame on j too
-    Model model;      // as a leg sees it
+    Bushing bushing;  // as requested, with its frame on j too
+    Model model;      // as compiled
 };
 
 std::vector<Case> cases(Random& random) {
@@ -70,8 +70,8 @@ Quaterniond relative(const Bushing& b, const std::vector<Pose>& poses) {
     return axes(b.i).conjugate() * axes(b.j);
 }
 
-// Poses at which the formulation is well inside its range, not close to the design, and on the sheet of `B`'s principal
-// values; x leads to a second such place.
+// Poses well inside the range of the formulation, far from the design pose, on the sheet of the
+// principal values of `B`; x leads to a second such set of poses.
 struct Places {
     std::vector<Pose> centre;
     VectorXd x;
@@ -89,11 +89,12 @@ Places inside(Random& random, const Case& one, double size) {
     }
 }
 
-// ---- models/mechanism.hpp, written out once more from the poses alone.
+// ---- The laws of models/mechanism.hpp, implemented independently from the poses.
 
 double u(const ScalarLaw& law, double x) {
     if (const auto* line = std::get_if<LinearRate>(&law)) return 0.5 * line->k * x * x;
-    return values(law, Vector1(0.0), Vector1(x)).change;  // laws_test.cpp: the integral of f from 0
+    // verified in laws_test.cpp: the integral of f from 0
+    return values(law, Vector1(0.0), Vector1(x)).change;
 }
 double u(const SpatialLaw& law, const Vector6& x) {
     if (const auto* line = std::get_if<LinearStiffness>(&law)) return 0.5 * x.dot(line->K * x);
@@ -132,7 +133,7 @@ Vector6 deformation(const Bushing& b, const std::vector<Pose>& poses) {
     return e;
 }
 
-// A frame on j has the angles of the bushing with its markers changed over, counted the other way.
+// A frame on j has the angles of the bushing with exchanged markers, with opposite sign.
 double stated_energy(const Bushing& b, const std::vector<Pose>& poses) {
     Vector6 e = deformation(b, poses);
     if (b.formulation.frame == Frame::on_j) {
@@ -188,7 +189,7 @@ TEST(Formulations, GradientIsFirstOrderExact) {
     }
 }
 
-// The Hessian at the centre of a chart against central differences of the gradient within it.
+// The Hessian at the centre of a chart against central differences of the gradient.
 TEST(Formulations, HessianAgreesWithDifferencesOfTheGradient) {
     Random random;
     const Scales scales;
@@ -224,7 +225,8 @@ TEST(Formulations, ChangesKeepTheirRelativeAccuracy) {
     EXPECT_LE(worst, 2e-14);
 }
 
-// Formulations differ to second order: in a small deformation ε the energies of all nine, by ε³.
+// Formulations differ to second order: for a small deformation ε, the energies of all nine differ
+// by ε³.
 TEST(Formulations, AllAreTheSameWhereTheDeformationIsSmall) {
     Random random;
     const SpatialLaw law = random_law(random, false);
@@ -246,7 +248,8 @@ TEST(Formulations, AllAreTheSameWhereTheDeformationIsSmall) {
     EXPECT_NEAR(std::log2(spread[0] / spread[1]), 3, 0.1);
 }
 
-// A body on one bushing, turned about an axis by a moment until the law ends: no half turn, no gimbal lock is passed.
+// A body on one bushing, rotated about an axis by a moment until the law ends: no half turn, no
+// gimbal lock is passed.
 TEST(Formulations, WhereALawEndsTheBranchEnds) {
     const double k = 500, pi = std::numbers::pi;
     struct End {
@@ -263,7 +266,8 @@ TEST(Formulations, WhereALawEndsTheBranchEnds) {
         Model model;
         model.bodies = {{"body", {}}};
         Bushing b{Marker{ground}, Marker{0}, LinearStiffness{}};
-        // Stiff across the axis: a dead moment makes a body give way about the others before that.
+        // Stiff across the axis: otherwise a dead moment would buckle the body about the other axes
+        // first.
         stiffness_of(b).diagonal() << 1e5, 1e5, 1e5, 50 * k, 50 * k, 50 * k;
         stiffness_of(b)(3 + axis, 3 + axis) = k;
         b.formulation = {frame, measure};
@@ -283,7 +287,7 @@ TEST(Formulations, WhereALawEndsTheBranchEnds) {
     }
 }
 
-// F along e₀ alone: a bushing that is drawn deformed settles where its law has no force.
+// F only along e₀: a bushing deformed in the design position settles where its force is zero.
 TEST(Formulations, ABushingSettlesToItsUndeformedOffset) {
     for (const Frame frame : {Frame::on_i, Frame::middle}) {
         Model model;

@@ -1,4 +1,4 @@
-// What provably does not matter: unit of length, ground frame, body frames, order, side of the car.
+// Invariance of the energy leg: unit of length, ground frame, body frames, order, mirror image.
 #include <numeric>
 
 #include "support.hpp"
@@ -10,7 +10,7 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// What happens to everything a scene is made of. A change leaves alone what it does not mention.
+// Transform of a scene, by the kind of its parts; the identity by default.
 struct Change {
     std::function<void(Body&)> body = [](Body&) {};
     std::function<void(Point&)> point = [](Point&) {};
@@ -96,7 +96,7 @@ Scene changed(Scene scene, const Change& change) {
     return scene;
 }
 
-// McPherson, made harder: preload, a moment, coupling in a bushing, a static load.
+// McPherson scene with more effects: preload, a moment, coupling in a bushing, a static load.
 std::vector<Scene> scenes() {
     Random random;
     Scene hard = scene_named("chrono_mcpherson");
@@ -112,7 +112,8 @@ std::vector<Scene> scenes() {
         {"moment", DeadMoment{hard.wheels[0].body, {5, -10, 7}}}};
     hard.branches[0].drivers.push_back(
         {Load{"turn", DeadMoment{hard.wheels[0].body, {0.002, -0.01, 0.005}}}, 0, 1});
-    // A scene on which all kinds of drivers move: jack, tie rod, free length, preload, a load held and moved.
+    // A scene with all kinds of drivers: jack, tie rod, free length, preload, a load held and
+    // moved.
     Scene driven = hard;
     driven.name = "driven McPherson";
     const Wheel& wheel = driven.wheels[0];
@@ -147,10 +148,10 @@ using Map = std::function<Vector3d(const Vector3d&)>;
 
 Vector3d same(const Vector3d& v) { return v; }
 
-// How to undo a change.
+// Inverse of a transform.
 struct Back {
     Map position = same, force = same, moment = same;
-    std::vector<std::size_t> joint = {};  // where a joint has gone; empty: nowhere
+    std::vector<std::size_t> joint = {};  // new positions of the joints; empty: unchanged
 };
 
 struct Compared {
@@ -158,8 +159,8 @@ struct Compared {
     double force = 0, worst_force = 0;  // [N], [N·m]
 };
 
-// Where everything attached to a body is, and all reactions, at points of every branch. Points, not poses: a
-// body frame may be anything.
+// Compares positions of all attachment points and all reactions at points of every branch. Points
+// instead of poses, since body frames differ.
 void compare(Compared& c, const Scene& scene, const Scene& other, const Back& back) {
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {
         const auto loads = sweep(scene.branches[b], 12);
@@ -201,7 +202,7 @@ void compare(Compared& c, const Scene& scene, const Scene& other, const Back& ba
 
 void expect_same(const Compared& c, const std::string& what) {
     EXPECT_GT(c.moved, 1e-3) << what;
-    EXPECT_LE(c.worst, 1e-9 * c.moved) << what;  // needed: 1e-7
+    EXPECT_LE(c.worst, 1e-9 * c.moved) << what;  // required: 1e-7
     EXPECT_LE(c.worst_force, 1e-8 * (1 + c.force)) << what;
 }
 
@@ -232,7 +233,8 @@ TEST(Invariance, GroundFrameDoesNotMatter) {
     }
 }
 
-// Where a double knows a place to 2e-12 m, the leg still finds what it finds at home, to some thousand of these.
+// At a distance where a double resolves 2e-12 m, the results are the same to some thousand of
+// these.
 TEST(Invariance, TenKilometresFromTheOriginIsAsGoodAsAtHome) {
     const Vector3d t(1e4, 0, 0);
     Change change;
@@ -343,7 +345,7 @@ TEST(Invariance, SideOfTheCarDoesNotMatter) {
     }
 }
 
-// The same numbers in millimetres: every length 1000 times as large, the same forces.
+// The same numbers in millimetres: every length times 1000, the same forces.
 TEST(Invariance, UnitOfLengthDoesNotMatter) {
     for (const double unit : {1e-3, 1e3}) {
         for (const auto& scene : scenes()) {
@@ -372,7 +374,7 @@ TEST(Invariance, UnitOfLengthDoesNotMatter) {
     }
 }
 
-// Twins on paper: the same bar written in mm and degrees, and in m and radians.
+// The same bar in two scene files: in mm and degrees, and in m and radians.
 TEST(Invariance, MillimetreTwinGivesTheSame) {
     const Scene twin = parse_scene(R"(
 elastocheck: 1

@@ -1,4 +1,4 @@
-// Large scenes: what this leg is asked, what it foresees, and that it judges them whatever their size.
+// Large scenes: predicted cost, the limit of solving, and judging at any size.
 #include <Eigen/QR>
 
 #include "reference/energy/balance.hpp"
@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// A cantilever of one metre in n links along x, one to the next by a bushing or by a hinge about y with a torsion spring;
-// a force up at its tip. Straight as drawn.
+// A cantilever of one metre in n links along x, connected by bushings or by hinges about y with
+// torsion springs; an upward force at its tip. Straight in the design position.
 Scene chain(int n, bool hinged) {
     const double h = 1.0 / n, k = 100 / h;
     Scene scene;
@@ -39,7 +39,7 @@ Scene chain(int n, bool hinged) {
     return scene;
 }
 
-// Straight, turned by `angle` from link to link: no equilibrium, but every joint is closed.
+// Straight links with a constant angle between them: no equilibrium, but every joint is closed.
 Equilibrium bent(const Model& model, double angle) {
     const double h = 1.0 / static_cast<double>(model.bodies.size());
     Equilibrium state{.load = 50, .poses = {}, .reactions = {}};
@@ -67,7 +67,7 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
         const auto values = sweep(branch);
         const Cost cost = cost_of(model, values.size());
         const Counts counts = solve(model, branch, values).counts;
-        // Beside evaluations in charts, a state takes one and those of its Hessian, and so one of each is a state's.
+        // Besides the evaluations in charts, a state takes one and those of its Hessian.
         const double states =
             static_cast<double>(counts.evaluations - counts.factorisations) / hessian_evaluations(model);
         const double evaluations = static_cast<double>(counts.factorisations) - states;
@@ -101,7 +101,7 @@ TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
     }
 }
 
-// The built-in scenes are asked, with all the values their branches have.
+// The energy leg solves all built-in suspensions with all values of their branches.
 TEST(LargeScenes, NoSuspensionIsOne) {
     for (const char* name : {"mcpherson", "solid_axle_leaf", "front_axle", "twist_beam"}) {
         const Model all = compile(scene_named(name));
@@ -113,7 +113,7 @@ TEST(LargeScenes, NoSuspensionIsOne) {
     }
 }
 
-// Sparse QR leaves of a gradient what dense QR does, with rows that repeat each other as well.
+// Sparse and dense QR give the same projected gradient, also with redundant rows.
 TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
     Random random;
     for (const bool doubled : {false, true}) {
@@ -137,13 +137,13 @@ TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
     }
 }
 
-// What the equilibrium's own poses leave is nothing; moved by a micrometre, bushings of a thousand links pull, and hinges
-// are open.
+// At the equilibrium's own poses the residual is zero; moved by a micrometre, bushings in a chain
+// of a thousand links exert forces, and hinges open.
 TEST(LargeScenes, AMicrometreIsSeenInAThousandLinks) {
     for (const bool hinged : {false, true}) {
         const Model model = compile(chain(1000, hinged));
         Equilibrium state = bent(model, 0);
-        state.load = 0;  // straight as drawn
+        state.load = 0;  // straight in the design position
         const Residuals before = residuals(model, model.branches[0], state);
         EXPECT_LE(largest(before), 1e-6);  // 1e9 N/m times the round-off of a metre
         state.poses[500].r.z() += 1e-6;
@@ -155,7 +155,8 @@ TEST(LargeScenes, AMicrometreIsSeenInAThousandLinks) {
     }
 }
 
-// With every hinge closed the moments are all that is left: those of the springs' share that the force does not balance.
+// With all hinges closed only moments remain: the part of the springs' moments that the force does
+// not balance.
 TEST(LargeScenes, AnUnbalancedChainOfHingesIsSeen) {
     const Model model = compile(chain(300, true));
     const Residuals left = residuals(model, model.branches[0], bent(model, 1e-3));

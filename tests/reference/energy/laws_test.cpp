@@ -1,4 +1,4 @@
-// Laws by themselves: the energy of a curve is the integral of its force, to the last digits.
+// Elastic laws: the energy of a curve is the integral of its force, to the last digits.
 #include "reference/energy/laws.hpp"
 
 #include "support.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-// f as models/mechanism.hpp states it.
+// f as defined in models/mechanism.hpp.
 double force(const Curve& curve, double x) {
     std::size_t k = 0;
     while (k < curve.knots.size() && x >= curve.knots[k]) ++k;
@@ -17,7 +17,8 @@ double force(const Curve& curve, double x) {
     return c[0] + c[1] * t + c[2] * t * t + c[3] * t * t * t;
 }
 
-// ∫ f from a to b by Simpson's rule between knots, where it is exact; the open ends of a piece are taken from within.
+// ∫ f from a to b by Simpson's rule between knots, where it is exact; at jumps the one-sided values
+// are used.
 double quadrature(const Curve& curve, double a, double b) {
     if (b < a) return -quadrature(curve, b, a);
     std::vector<double> ends{a, b};
@@ -68,7 +69,8 @@ TEST(Curves, StiffnessIsTheSlopeOfTheForce) {
     EXPECT_LE(worst, 1e-5);  // c_3 h²
 }
 
-// Changes of 1e-12 at a level of 1 keep their own digits, a knot between or not: ½ (f_c + f) δ + O(δ²) of a kink.
+// Changes of 1e-12 at a level of 1 keep their relative accuracy, also across a knot: ½ (f_c + f)
+// δ + O(δ²) at a kink.
 TEST(Curves, ChangesKeepTheirRelativeAccuracy) {
     Random random;
     double worst = 0;
@@ -83,7 +85,7 @@ TEST(Curves, ChangesKeepTheirRelativeAccuracy) {
     EXPECT_LE(worst, 1e-11);
 }
 
-// Wherever the walk from knot to knot could stand still or lose itself.
+// Termination of the integration from knot to knot for every critical start and end.
 TEST(Curves, TheWalkEndsFromOnOverAndBeyondEveryKnot) {
     Random random;
     const Curve curve = random.kinked_curve(5);
@@ -114,7 +116,8 @@ TEST(Laws, AxisByAxisIsTheDiagonalStiffness) {
             auto& axis = axes.axis[static_cast<std::size_t>(i)];
             axis = LinearRate{k[i]};
             if (i % 2)
-                axis = Curve{{0.1}, {{{0.1 * k[i], k[i], 0, 0}, {0.1 * k[i], k[i], 0, 0}}}};  // the same line
+                // the same line
+                axis = Curve{{0.1}, {{{0.1 * k[i], k[i], 0, 0}, {0.1 * k[i], k[i], 0, 0}}}};
         }
         const auto a = values(SpatialLaw(axes), x_c, delta),
                    b = values(SpatialLaw(LinearStiffness{k.asDiagonal()}), x_c, delta);

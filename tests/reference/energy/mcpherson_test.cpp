@@ -1,4 +1,4 @@
-// The scene the house was built for: both branches, 301 points each.
+// The McPherson strut of the paper, by the energy leg: both branches, 301 points each.
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -45,8 +45,7 @@ TEST(McPherson, EveryPointSatisfiesItsOwnConditions) {
     }
 }
 
-// The wheel goes where the wheel should go: up under an upward load,
-// and by what wheel and spring rates allow.
+// The wheel moves up under an upward load, by an amount that agrees with wheel and spring rates.
 TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
     const Solved& s = solved();
     for (std::size_t b = 0; b < s.paths.size(); ++b) {
@@ -64,7 +63,7 @@ TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
     }
 }
 
-// Whatever way the load is reached, the equilibrium is the same: in 3 steps or 300, up or on the way back.
+// Path independence: the same equilibrium in 3 or 300 steps, upwards or on the way back.
 TEST(McPherson, EquilibriumDoesNotDependOnTheWayThere) {
     const Solved& s = solved();
     double worst_r = 0, worst_p = 0;
@@ -91,8 +90,7 @@ TEST(McPherson, EquilibriumDoesNotDependOnTheWayThere) {
     EXPECT_LE(worst_p, 1e-10);  // [rad]
 }
 
-// From point to point the strut turns across its axis only, as far as a finite step can tell: the rest is
-// second order.
+// Between points the strut rotates only across its axis; the spin is of second order in the step.
 TEST(McPherson, IdleStrutDoesNotSpin) {
     const Solved& s = solved();
     const auto strut = std::find_if(s.model.bodies.begin(), s.model.bodies.end(),
@@ -107,7 +105,7 @@ TEST(McPherson, IdleStrutDoesNotSpin) {
             turned = std::max(turned, turn.angle());
         }
     }
-    EXPECT_GT(turned, 1e-4);  // [rad] a step
+    EXPECT_GT(turned, 1e-4);  // [rad] per step
     EXPECT_LE(worst, 1e-6);
 }
 
@@ -129,8 +127,7 @@ TEST(McPherson, ResultsAreIdenticalFromRunToRun) {
     EXPECT_EQ(again.counts.evaluations, s.paths[0].counts.evaluations);
 }
 
-// Energy is what it costs: warm-started points need one chart and few evaluations (36 of them for the
-// Hessian, twice).
+// Cost: warm-started points take one chart and few evaluations (36 of them for the Hessian, twice).
 TEST(McPherson, WarmStartedPointsAreCheap) {
     for (const auto& path : solved().paths) {
         EXPECT_LE(path.counts.iterations, 310);
@@ -138,7 +135,7 @@ TEST(McPherson, WarmStartedPointsAreCheap) {
     }
 }
 
-// With preload and the wheel's own weight the scene settles elsewhere, then goes on from there.
+// With preload and the wheel's weight the scene settles elsewhere and continues from there.
 TEST(McPherson, SettlesUnderPreloadAndWeight) {
     Scene scene = scene_named("chrono_mcpherson");
     auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);

@@ -1,4 +1,4 @@
-// Right, or an honest outcome; never a quiet wrong number.
+// Outcomes of the energy leg: a correct result or a reported failure, never a wrong number.
 #include <numbers>
 
 #include "models/lowering.hpp"
@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-// A von Mises truss as the scene, with height h [m]; its limit load [N] from ℓ³ = ℓ₀ b².
+// The von Mises truss of the scene with height h [m]; its limit load [N] from ℓ³ = ℓ₀ b².
 Scene arch(double h) {
     Scene scene = scene_named("two_spring_arch");
     scene.bodies[0].design.r.z() = h;
@@ -56,8 +56,58 @@ TEST(Outcomes, SolvesUpToTheLimitPoint) {
     }
 }
 
-// The same when it is not a load but a preload that pushes: a long soft spring pulls the apex down by 150 or
-// by 300 N before the branch starts.
+// Only the weight resists a pendulum, so the homotopy with a growing weight starts without
+// resistance, in every design position.
+TEST(Outcomes, APendulumSettlesWhereverItIsDrawn) {
+    // angle from straight down, in quarter turns
+    for (const double drawn : {-0.9, -0.3, 0.0, 0.4, 1.2}) {
+        const double angle = drawn * std::numbers::pi / 2;
+        const Model model = compile(parse_scene(fmt::format(R"(
+elastocheck: 1
+name: pendulum
+units: {{length: m, angle: rad, force: N}}
+points: {{o: [0, 0, 0], c: [{:.17g}, 0, {:.17g}]}}
+bodies: {{b: {{origin: c}}}}
+joints: {{hinge: {{type: revolute, bodies: [b, ground], at: o, axis: y}}}}
+static_loads: {{weight: {{on: b, at: c, force: [0, 0, -10]}}}}
+loads: {{f: {{on: b, at: c, force: [1, 0, 0]}}}}
+branches: {{push: {{load: f, to: 10, steps: 2}}}}
+probes: {{tip: {{on: b, at: c}}}}
+)",
+                                                            std::sin(angle), -std::cos(angle)),
+                                                "pendulum.yaml"));
+        const EquilibriumPath path = solve(model, model.branches[0], sweep(model.branches[0]));
+        ASSERT_EQ(path.outcome, Outcome::converged) << drawn << ": " << path.detail;
+        for (const auto& state : path.points) {
+            const Vector3d expected = Vector3d(state.load, 0, -10).normalized();
+            EXPECT_LE((state.poses[0].r - expected).norm(), 1e-10) << drawn << ", " << state.load;
+        }
+    }
+}
+
+// Column on a ball joint and one bushing, loaded beyond its buckling load: the lever of 1e-7 m
+// alone determines the direction of buckling and the stiffness across it.
+TEST(Outcomes, WhatIsSoftIsAsNearAsWhatIsStiff) {
+    const Model model = compile(parse_scene(R"(
+elastocheck: 1
+name: column
+units: {length: m, angle: rad, force: N}
+points: {c: [0, 0, 0.25], o: [0, 0, 0], top: [1e-7, 0, 0.5]}
+bodies: {b: {origin: c}}
+joints: {ball: {type: spherical, bodies: [b, ground], at: o}}
+bushings: {k: {bodies: [b, ground], at: o, rates: [0, 0, 0], rotational_rates: [1000, 1000, 1000]}}
+loads: {f: {on: b, at: top, force: [0, 0, -1]}}
+branches: {push: {load: f, to: 6100, steps: 20}}
+probes: {tip: {on: b, at: c}}
+)",
+                                            "column.yaml"));
+    const EquilibriumPath path = solve(model, model.branches[0], sweep(model.branches[0]));
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    for (const auto& state : path.points) EXPECT_LE(std::abs(state.poses[0].r.y()), 1e-9) << state.load;
+}
+
+// The same when it is not a load but a preload that pushes: a long soft spring pulls the apex down
+// by 150 or by 300 N before the branch starts.
 TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
     for (const double pull : {150.0, 300.0}) {
         Scene scene = arch(0.08);
@@ -78,8 +128,8 @@ TEST(Outcomes, PreloadBeyondTheLimitPointIsNotSettled) {
     }
 }
 
-// A column of one spring and a sideways one: straight up to P = k L,
-// where standing straight stops being a minimum.
+// A column of one spring and a lateral one: straight up to P = k L, where the straight position
+// ceases to be a minimum.
 TEST(Outcomes, BucklingIsNotPassedOver) {
     Model model;
     model.name = "column";
@@ -97,7 +147,8 @@ TEST(Outcomes, BucklingIsNotPassedOver) {
     const auto path = solve(model, branch, sweep(branch));
     EXPECT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
     EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
-    // Upright, the frame turns with the rod: lateral rate k at height L, so P_crit = k L (load [N]).
+    // Upright, the frame rotates with the rod: lateral rate k at height L, so P_crit = k L (load
+    // [N]).
     ASSERT_FALSE(path.points.empty());
     EXPECT_LE(path.points.back().load, 2e4 * 0.5);
     EXPECT_GE(path.points.back().load, 2e4 * 0.5 - 500 - 1);
@@ -151,7 +202,7 @@ TEST(Outcomes, ModelsThatAreNoNumbersNeverConverge) {
 }
 
 TEST(Outcomes, LoadedIdleModesAreNamedAsSuch) {
-    // The strut's spin, pushed.
+    // A load on the strut's idle spin.
     Scene scene = scene_named("chrono_mcpherson");
     const auto strut = static_cast<BodyId>(2);
     scene.branches[0] =
@@ -161,7 +212,7 @@ TEST(Outcomes, LoadedIdleModesAreNamedAsSuch) {
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
     EXPECT_EQ(path.points.size(), 1u);
 
-    // A body that nothing holds, pushed by a branch or by a static load.
+    // A free body, loaded by a branch or by a static load.
     Model free;
     free.bodies = {{"stone", {}}};
     const std::vector<Load> push{{"push", DeadForce{{0, Vector3d(0.1, 0, 0)}, Vector3d::UnitX()}}};
@@ -177,7 +228,7 @@ TEST(Outcomes, LoadedIdleModesAreNamedAsSuch) {
 
 TEST(Outcomes, ContradictingJointsAreNamed) {
     Scene scene = scene_named("chrono_mcpherson");
-    // A second tie rod beside the first, 5 mm too short; and one that cannot be reached at all.
+    // A second tie rod beside the first, 5 mm too short; and one beyond reach.
     auto rod = std::get<Distance>(scene.joints[2].kind);
     rod.length -= 0.005;
     scene.joints.push_back({"second_rod", rod});
@@ -199,7 +250,7 @@ TEST(Outcomes, ConsistentRedundantJointsChangeNothing) {
     Scene doubled = plain;
     for (const auto& joint : plain.joints) doubled.joints.push_back({joint.name + "_again", joint.kind});
     const auto loads = sweep(plain.branches[0], 30);
-    const Model whole = compile(doubled, Detail::everything);  // what is required is solved once
+    const Model whole = compile(doubled, Detail::everything);  // pruning would remove the duplicate
     const Branch& walked = whole.branches[0];
     const auto one = solve(plain, 0, loads), two = solve(on_branch(whole, walked), walked, loads);
     ASSERT_EQ(one.outcome, Outcome::converged) << one.detail;
@@ -210,7 +261,7 @@ TEST(Outcomes, ConsistentRedundantJointsChangeNothing) {
             worst = std::max(worst, (one.points[k].poses[b].r - two.points[k].poses[b].r).norm());
             worst = std::max(worst, one.points[k].poses[b].p.angularDistance(two.points[k].poses[b].p));
         }
-        // Multipliers of smallest norm share the load equally.
+        // Minimum-norm multipliers share the load equally.
         const std::size_t n = plain.joints.size();
         for (std::size_t j = 0; j < n; ++j) {
             worst_force =
@@ -225,7 +276,8 @@ TEST(Outcomes, ConsistentRedundantJointsChangeNothing) {
     EXPECT_LE(worst_force, 1e-6);
 }
 
-// A door on two hinges of one axis: 10 rows, 5 of them independent, with the door's own swing on a spring.
+// A door on two hinges of one axis: 10 rows, 5 of them independent, with the door's rotation on a
+// spring.
 TEST(Outcomes, TwoHingesOfOneDoorAreConsistent) {
     Scene scene = scene_named("pinned_bar");
     scene.joints.push_back(
@@ -264,7 +316,7 @@ TEST(Outcomes, NothingToSolveIsSolved) {
     EXPECT_TRUE(solve(free, branch, {}).points.empty());
 }
 
-// A rotational bushing can hold a moment up to K_R π; beyond there is no equilibrium.
+// A rotational bushing can carry a moment up to K_R π; beyond there is no equilibrium.
 TEST(Outcomes, HalfATurnOfABushingEndsTheBranch) {
     Scene scene = scene_named("pendulum");
     scene.branches = {load_branch("turn", {{"moment", DeadMoment{0, Vector3d(0.6, 0, 0.8)}}}, 2400, 8)};
@@ -303,7 +355,7 @@ TEST(Outcomes, TooFewEvaluationsAreReported) {
     EXPECT_LT(path.points.size(), 2u);
 }
 
-// Rates from nearly nothing to nearly rigid: solved, or said so.
+// Rates from almost zero to almost rigid: solved, or a reported failure.
 TEST(Outcomes, ExtremeRatesAreSolvedOrDeclined) {
     for (const double factor : {1e-9, 1e-6, 1e-3, 1e3, 1e5, 1e7, 1e9, 1e12}) {
         Scene scene = scene_named("chrono_mcpherson");
@@ -318,7 +370,7 @@ TEST(Outcomes, ExtremeRatesAreSolvedOrDeclined) {
         if (factor >= 1e-6 && factor <= 1e5) {
             EXPECT_EQ(path.outcome, Outcome::converged) << factor << path.detail;
         }
-        // What a rate of 12e6 N/m makes of the last bits of a position is a force.
+        // Force of a rate of 12e6 N/m on the rounding of a position.
         const double roundoff = 1e-7 + 12e6 * factor * 1e-15;
         for (const auto& state : path.points)
             EXPECT_LE(largest(residuals(model, model.branches[0], state)), roundoff)

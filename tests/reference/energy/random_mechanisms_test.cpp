@@ -1,5 +1,5 @@
-// Mechanisms nobody designed: one to three bodies on random bushings, springs and joints, pushed until most
-// of them are far from where they started.
+// Random mechanisms: one to three bodies on random bushings, springs and joints, loaded until most
+// are far from their start.
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -8,7 +8,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Everything is attached where it fits at the design pose, given in ground axes.
+// Attachments are consistent in the design pose and given in ground axes.
 struct Builder {
     Scene scene;
 
@@ -95,7 +95,7 @@ TEST(RandomMechanisms, AreSolvedAlikeInOneStepAndInTwentyOrDeclined) {
         }
     }
     EXPECT_GE(solved, 270);
-    EXPECT_LE(worst_residual, 1e-4);  // the last bit of a position times rates up to 1e8 N/m
+    EXPECT_LE(worst_residual, 1e-4);  // rounding of a position times rates up to 1e8 N/m
     RecordProperty("solved", solved);
     RecordProperty("worst", fmt::format("{:.1e} m", worst));
 }

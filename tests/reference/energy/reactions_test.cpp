@@ -1,4 +1,4 @@
-// Reactions where statics alone gives them.
+// Joint reactions of statically determinate systems.
 #include "models/lowering.hpp"
 #include "support.hpp"
 
@@ -13,8 +13,8 @@ void expect_near(const Vector3d& computed, const Vector3d& expected, double tole
         << what << ": " << computed.transpose() << " instead of " << expected.transpose();
 }
 
-// A body held by one joint and pulled by a force and a moment: the joint exerts the opposite, about its own
-// point. With ground as body i it exerts on ground what the body passes on, about the same point.
+// A body held by one joint under a force and a moment: the joint exerts the opposite, about its own
+// point. With ground as body i the wrench is the one on ground, about the same point.
 TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
     const Vector3d r(1, 2, 3), joint(0.2, -0.1, 0.4), handle(-0.3, 0.5, 0.1), f(100, -200, 300), m(7, 8, -9);
     Random random;
@@ -48,8 +48,9 @@ TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
     }
 }
 
-// The bar of the scene: its pin carries what load and bushing leave, and no moment about its own axis. The
-// bushing rides on the bar but is isotropic, so it pulls the tip by -k (tip - foot).
+// The bar of the scene: its pin carries the load minus the bushing force, and no moment about its
+// own axis. The bushing frame is on the bar but isotropic, so its force on the tip is -k
+// (tip - foot).
 TEST(Reactions, PinnedBarsPinCarriesLoadAndBushing) {
     for (const bool ground_first : {false, true}) {
         Scene scene = scene_named("pinned_bar");
@@ -69,7 +70,7 @@ TEST(Reactions, PinnedBarsPinCarriesLoadAndBushing) {
     }
 }
 
-// The guide of the plate carries the moment of a load beside its middle; the springs carry the load.
+// The guide of the plate carries the moment of an eccentric load; the springs carry the load.
 TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
     Scene scene = scene_named("parallel_springs");
     auto& load = std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind);
@@ -87,8 +88,7 @@ TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
     }
 }
 
-// The wheel of the McPherson strut by the method of sections:
-// four joints, the coil and the load, forces and moments.
+// Free-body diagram of the McPherson wheel: four joints, the coil and the load, forces and moments.
 TEST(Reactions, WheelIsInBalance) {
     const Scene scene = scene_named("chrono_mcpherson");
     const Model model = compile(scene);
@@ -116,8 +116,8 @@ TEST(Reactions, WheelIsInBalance) {
     EXPECT_LE(worst, 1e-7);
 }
 
-// A two-force member pulls along itself and transmits no moment;
-// the ball joint and the in-plane constraint likewise.
+// A two-force member transmits a force along itself and no moment; the ball joint and the in-plane
+// constraint likewise.
 TEST(Reactions, MembersCarryWhatTheirKindCanCarry) {
     const Model model = compile(scene_named("chrono_mcpherson"));
     const auto path = solve(model, model.branches[1], sweep(model.branches[1]));

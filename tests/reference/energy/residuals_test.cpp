@@ -1,4 +1,4 @@
-// This leg as judge of states, its own or others'.
+// Residuals of the energy leg, for its own states and those of other legs.
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -54,8 +54,8 @@ TEST(Residuals, AMovedBodyIsSeenAsAnImbalance) {
     const Eigen::AngleAxisd turn(1e-6, axis);          // about the pivot
     const double stiffness = 600 + 1000 * pose.r.z();  // k_R + F L sin θ [N·m/rad]
     pose = {turn * pose.r, turn * pose.p};
-    // About the tip, with the pivot's force still free:
-    // a moment of stiffness · 1e-6, or less where a force does it.
+    // About the tip, with the pivot's force still free: a moment of at most stiffness · 1e-6; a
+    // force may carry part of it.
     EXPECT_LE(block.now().moment, stiffness * 1e-6);
     EXPECT_GE(block.now().moment + block.now().force, 0.1 * stiffness * 1e-6);
 }

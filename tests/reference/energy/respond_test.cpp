@@ -1,4 +1,4 @@
-// What a state answers to small disturbances, by this leg: slopes of its own minima and closed forms.
+// Forward sensitivity of the energy leg: against slopes of its own minima and closed forms.
 #include "reference/energy/respond.hpp"
 
 #include "tests/reference/energy/support.hpp"
@@ -58,8 +58,8 @@ TEST(EnergyRespond, IsTheSlopeOfTheOwnMinimaOverADrivenOffset) {
     }
 }
 
-// A body on a bushing under a large dead moment, which has no potential: the answer to a small one is that of charts
-// centred anew.
+// A body on a bushing under a large dead moment, which has no potential: the response equals that
+// of re-centred charts.
 TEST(EnergyRespond, DeadMomentsThatActTurnWithNothing) {
     Scene scene = scene_named("single_bushing");
     scene.branches = {load_branch("twist", {{"m", DeadMoment{0, {200, -150, 120}}}}, 1, 4)};
@@ -84,7 +84,8 @@ TEST(EnergyRespond, OfThePendulum) {
     EXPECT_LE(apart(one(way, state, UnitWrench{{0, Vector3d::Zero()}, Vector3d::UnitZ()}), expected), 1e-11);
 }
 
-// Both ends of the coupler are as fast along it: ω c·e = a·e, a and c what unit rates make of B and C.
+// Both ends of the coupler have equal velocity along it: ω c·e = a·e, with a and c the velocities
+// of B and C at unit rates.
 TEST(EnergyRespond, OfAFourBarsCrank) {
     const OneWay way = way_of("four_bar", "turn", 1);
     for (const double phi : {0.0, 0.7, 2.0}) {

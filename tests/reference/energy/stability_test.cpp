@@ -1,4 +1,4 @@
-// What is said of a branch must not depend on where the points asked for lie.
+// Stability along a branch: the outcome is independent of the requested points.
 #include <numbers>
 
 #include "support.hpp"
@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The two-spring arch, its apex guided in the plane y-z without turning. Out of its plane it has the
-// stiffness
+// The two-spring arch with its apex guided in the plane y-z without rotation. Its out-of-plane
+// stiffness is
 //   k_y + 2 k (1 - ℓ₀/ℓ),  ℓ = √(b² + z²),
 // which is negative for |z| < z_c if k_y = 2 k (ℓ₀/√(b² + z_c²) - 1).
 struct Sideways {
@@ -42,7 +42,8 @@ std::vector<double> values_to(double to, int steps) {
     return values;
 }
 
-// Every point short of the stretch has its equilibrium; none beyond has, though the far side is stable again.
+// Every point before the unstable stretch has its equilibrium; none beyond, although the far side
+// is stable again.
 void expect_lost(const Scene& scene, double critical, int steps, const std::string& what) {
     const auto values = values_to(scene.branches[0].to, steps);
     const auto path = solve(scene, 0, values);
@@ -67,7 +68,7 @@ TEST(Stability, AnUnstableStretchIsSeenBehindSofterModes) {
     for (const double softer : {1.0, 20.0}) {
         const Sideways arch{.z_c = 0.021};
         Scene scene = arch.scene();
-        scene.joints[3] = scene.joints[4];  // yaw is free, on a spring of its own
+        scene.joints[3] = scene.joints[4];  // yaw is free, on its own spring
         scene.joints.pop_back();
         std::get<Motion>(scene.branches[0].drivers[0].what).joint = 3;
         stiffness_of(std::get<Bushing>(scene.elastics.back().kind))(5, 5) = softer;
@@ -84,11 +85,11 @@ TEST(Stability, LoadDrivenTheArchIsLostWhereItGivesWaySideways) {
     for (const int steps : counts) expect_lost(scene, arch.load(0.06), steps, fmt::format("{} steps", steps));
 }
 
-// Whatever a stretch does not make unstable is walked through, with as few points as one.
+// A stretch that stays stable is passed, with any number of points.
 TEST(Stability, AStretchThatStaysStableIsPassed) {
     const Sideways almost{.z_c = 0.02};
     Scene scene = almost.scene();
-    // At z = 0 the softest: 1 % above what would be unstable there.
+    // Softest at z = 0: 1 % above the limit of stability there.
     stiffness_of(std::get<Bushing>(scene.elastics.back().kind))(1, 1) = 1.01 * 2e5 * (almost.l_0 / 0.3 - 1);
     for (const int steps : counts) {
         const auto path = solve(scene, 0, values_to(0.16, steps));
@@ -96,7 +97,7 @@ TEST(Stability, AStretchThatStaysStableIsPassed) {
     }
 }
 
-// A straight column passes its buckling load P = k_R / L nowhere, in one step or many.
+// A straight column never passes its buckling load P = k_R / L, in one step or many.
 TEST(Stability, AColumnBucklesAtItsLoadInAnyNumberOfSteps) {
     const double k_R = 1e6, L = 0.5;
     Scene scene;
@@ -114,9 +115,10 @@ TEST(Stability, AColumnBucklesAtItsLoadInAnyNumberOfSteps) {
     }
 }
 
-// A block driven up by z, free sideways on k_y, pressed upon by a strut under it with the force of a curve: nothing, then
-// within 15 mm so much that it gives way sideways, and less again for good. No slope announces it and two equilibria on
-// either side are both minima; that the second is not as stiff as foreseen tells.
+// A block driven up by z, laterally free on k_y, under a strut with the force of a curve: zero,
+// then within 15 mm so large that the block buckles laterally, then permanently smaller. No slope
+// predicts it, and the equilibria on both sides are minima; it is detected because the second one
+// does not have the predicted stiffness.
 TEST(Stability, AStretchThatNothingAnnouncesIsSeenByWhatItLeavesBehind) {
     const double k_y = 1e4, l = 0.5;
     const Vector3d X = Vector3d::UnitX(), Y = Vector3d::UnitY(), Z = Vector3d::UnitZ();

@@ -1,4 +1,4 @@
-// Stops and curves on a branch: met by hand, wherever the points asked for lie.
+// Stops and curves on a branch, against closed forms, independent of the requested points.
 #include <numbers>
 
 #include "support.hpp"
@@ -16,8 +16,8 @@ std::vector<double> values_to(double to, int steps) {
     return values;
 }
 
-// A block that slides along z on a spring of rate k, with a stop that closes when it has gone up by c, and one that
-// closes d below.
+// A block sliding along z on a spring of rate k, with a stop that closes at c above and one that
+// closes at d below.
 struct Block {
     double k = 25e3, c = 0.03, up = 300e3, d = 0.05, down = 120e3;
 
@@ -38,7 +38,7 @@ struct Block {
                           {"stops", AxialSpring{foot, {0}, stops, 0.4}}};
         return model;
     }
-    // What the stops exert at z, and where a force F leads.
+    // Force of the stops at z, and displacement under a force F.
     double contact(double z) const { return z > c ? up * (z - c) : z < -d ? down * (z + d) : 0; }
     double height(double F) const {
         if (F > k * c) return c + (F - k * c) / (k + up);
@@ -65,8 +65,8 @@ TEST(Stops, ContactForceIsTheHandCalculation) {
     }
 }
 
-// An open stop is neither an idle mode nor singular; where nothing else holds the block it is one, and says so when
-// pushed.
+// An open stop is neither an idle mode nor singular if the block is held otherwise; if not, it is
+// an idle mode, and a load on it is reported.
 TEST(Stops, AnOpenStopAloneHoldsNothing) {
     const Block block{.k = 0};
     const Branch branch = load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, 3000, 4);
@@ -74,8 +74,9 @@ TEST(Stops, AnOpenStopAloneHoldsNothing) {
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
 }
 
-// An arm turns by a driven angle α; its tip, at height R sin α, lifts the block through a stop of clearance c between
-// them: z = up (R sin α - c)/(k + up) while that is positive. It closes, opens again, or just touches at α = π/2.
+// An arm at a driven angle α; its tip, at height R sin α, lifts the block through a stop of
+// clearance c: z = up (R sin α - c)/(k + up) where positive. The stop closes, opens again, or just
+// touches at α = π/2.
 TEST(Stops, AStopThatClosesOpensAgainOrJustTouchesIsPassed) {
     const double R = 0.3, pi = std::numbers::pi;
     for (const double c : {0.1, 0.29, R - 1e-6, R - 1e-12, R, R + 1e-12}) {
@@ -110,15 +111,16 @@ TEST(Stops, AStopThatClosesOpensAgainOrJustTouchesIsPassed) {
     }
 }
 
-// A strut that meets its bump stop within the branch: everything up to there as without it, and the same end by
-// whatever steps.
+// A strut that meets its bump stop within the branch: unchanged up to contact, and the same end for
+// any steps.
 TEST(Stops, ABumpStopInAStrutIsPassedByAnySteps) {
     const Model free = compile(scene_named("mcpherson"));
     Model stopped = free;
     for (const auto& elastic : free.elastics)
         if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
             AxialSpring bump = *spring;
-            // Curves count the lengthening: the bump stop closes where the spring is short.
+            // Curves are functions of the extension: the bump stop closes where the spring is
+            // short.
             bump.law = Curve{{-0.03}, {{{0, 300e3, 0, 0}, {0, 0, 0, 0}}}};
             stopped.elastics.push_back({"bump stop", bump});
             break;
@@ -135,10 +137,11 @@ TEST(Stops, ABumpStopInAStrutIsPassedByAnySteps) {
         EXPECT_LE((ends.back() - ends.front()).norm(), 1e-12) << steps;
     }
     const double end[] = {branch.to};
-    EXPECT_GT((solve(free, branch, end).points.at(0).poses[0].r - ends[0]).norm(), 1e-3);  // it did close
+    // the stop did close
+    EXPECT_GT((solve(free, branch, end).points.at(0).poses[0].r - ends[0]).norm(), 1e-3);
 }
 
-// A table of many knots, its slope continuous: the force at every height is that of the table.
+// A table of many knots with continuous slope: the force at every height is that of the table.
 TEST(Stops, AProgressiveCurveIsFollowedThroughItsKnots) {
     const Block block;
     Model model = block.model();
@@ -155,7 +158,7 @@ TEST(Stops, AProgressiveCurveIsFollowedThroughItsKnots) {
             const auto path = solve(model, branch, values_to(to, steps));
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& state : path.points) {
-                const double z = state.poses[0].r.z();  // within the table the cubic itself
+                const double z = state.poses[0].r.z();  // within the table: the cubic
                 EXPECT_LT(std::abs(z), 0.06);
                 EXPECT_NEAR((block.k + 2e4) * z + 8e6 * z * z * z, state.load, 1e-7);
             }

@@ -19,7 +19,7 @@ inline Scene scene_named(const std::string& name) {
     return read_scene(fmt::format("{}/{}.yaml", ELASTOCHECK_SCENES, name));
 }
 
-// The linear laws' numbers.
+// Rates of linear laws.
 inline double& rate_of(AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
 inline double rate_of(const AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
 inline Matrix6& stiffness_of(Bushing& bushing) { return std::get<LinearStiffness>(bushing.law).K; }
@@ -30,7 +30,8 @@ inline const Matrix6& stiffness_of(const Bushing& bushing) {
 // f = 0 up to `clearance`, then `rate` (x - clearance): a stop that closes with growing x.
 inline Curve stop(double clearance, double rate) { return {{clearance}, {{{0, 0, 0, 0}, {0, rate, 0, 0}}}}; }
 
-// Through (x, f) with these slopes between them, straight on outside: continuous with its slope.
+// Cubic Hermite interpolation through (x, f) with these slopes, linear outside: continuously
+// differentiable.
 inline Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
                      const std::vector<double>& slope) {
     Curve curve{x, {{f[0], slope[0], 0, 0}}};
@@ -43,7 +44,7 @@ inline Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
     return curve;
 }
 
-// A branch that its loads alone drive, from 0 to `to`.
+// A branch driven by these loads, from 0 to `to`.
 inline Branch load_branch(const std::string& name, const std::vector<Load>& loads, double to, int steps) {
     Branch branch{.name = name, .to = to, .steps = steps, .drivers = {}};
     for (const auto& load : loads) branch.drivers.push_back({load, 0, 1});
@@ -96,7 +97,8 @@ struct Random {
         return Eigen::Quaterniond(Eigen::AngleAxisd((*this)(0, largest_angle), unit()));
     }
     Pose pose() { return {vector(), rotation()}; }
-    // Rising or falling as it likes, `knots` of them over about [-1, 1], its slope continuous.
+    // Random curve, not monotonic, with `knots` knots over about [-1, 1], continuously
+    // differentiable.
     Curve smooth_curve(int knots) {
         std::vector<double> x, f, slope;
         for (int k = 0; k < knots; ++k) {

@@ -1,5 +1,5 @@
-// Beams as chains of bushings, each at the middle of its segment with its frame in the middle and the stiffness of the
-// segment, against what is known of the elastic line. All errors are of order n⁻² in the number of segments.
+// Beams as chains of bushings, each with its frame at the middle of its segment and the stiffness
+// of the segment, against the elastica. All errors are of order n⁻² in the number of segments.
 #include <fmt/format.h>
 
 #include "tests/reference/equilibrium/scenes.hpp"
@@ -10,7 +10,7 @@ namespace {
 constexpr double L = 1, EI = 100, EI_y = 400, GJ = 150,
                  EA = 4e6;  // [m], [N·m²], [N]: EA L² / EI of a rod 20 mm thick
 
-// Clamped at the origin, along x, its tip the last body. Bending in x-y has EI.
+// Clamped at the origin, along x; the tip is the last body. Bending in x-y has EI.
 Scene cantilever(int segments) {
     Scene s;
     s.name = fmt::format("cantilever of {}", segments);
@@ -40,11 +40,12 @@ Equilibrium at_full_load(const Scene& s, double load) {
     return path.points[0];
 }
 
-// log₂ of what is left of the error when the segments are halved.
+// log₂ of the error ratio for halved segments.
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-// Each segment turns by θ = M L / (n EI) and carries no force. A chain of chords: its nodes lie on a circle too, of
-// the radius R (θ/2) / tan(θ/2) with R = EI / M, so that it is 1 - θ²/12 of the circle, to the last digit.
+// Each segment turns by θ = M L / (n EI) without force. The nodes of this chain of chords lie on a
+// circle too, of radius R (θ/2) / tan(θ/2) with R = EI / M, so it is 1 - θ²/12 of the circle, to
+// the last digit.
 TEST(EquilibriumChains, UnderATipMomentACantileverRollsIntoACircle) {
     std::vector<double> errors;
     for (const int n : {4, 8, 16})
@@ -61,14 +62,15 @@ TEST(EquilibriumChains, UnderATipMomentACantileverRollsIntoACircle) {
                 worst.see((state.poses[static_cast<std::size_t>(k)].r - node).norm() / L,
                           fmt::format("{} segments, node {}", n, k + 1));
             }
-            EXPECT_TRUE(within(worst, 1e-9));  // 8e-10 was seen with EA = 1e8 N and 20 segments
+            EXPECT_TRUE(within(worst, 1e-9));  // 8e-10 occurred with EA = 1e8 N and 20 segments
             const Vector3d tip = R * Vector3d(std::sin(turn), 1 - std::cos(turn), 0);
             if (turn < 2) errors.push_back((state.poses.back().r - tip).norm() / L);
         }
     for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << k;
 }
 
-// The elastica: EI θ'' = -P cos θ, θ(0) = 0, θ'(L) = 0, by shooting with Runge and Kutta's fourth order.
+// The elastica: EI θ'' = -P cos θ, θ(0) = 0, θ'(L) = 0, by shooting with a fourth-order Runge-Kutta
+// method.
 Vector3d elastica_tip(double P) {
     constexpr int steps = 4000;
     const double h = L / steps;
@@ -86,7 +88,8 @@ Vector3d elastica_tip(double P) {
         tip = {y[2], y[3], 0};
         return y[1];
     };
-    double low = 0, high = P * L / EI;  // its slope at the clamp is less than that of a straight beam
+    // its slope at the clamp is less than that of a straight beam
+    double low = 0, high = P * L / EI;
     for (int n = 0; n < 60; ++n) {
         const double middle = (low + high) / 2;
         (end_curvature(middle) > 0 ? high : low) = middle;
@@ -113,7 +116,7 @@ TEST(EquilibriumChains, UnderATipForceACantileverFollowsTheElastica) {
     }
 }
 
-// The load at which the straight chain becomes singular, by halving, against π² EI / (4 L²).
+// Load at which the straight chain becomes singular, by bisection, against π² EI / (4 L²).
 TEST(EquilibriumChains, AStraightChainIsSingularAtEulersLoad) {
     const double euler = M_PI * M_PI * EI / (4 * L * L);
     std::vector<double> errors;
@@ -139,18 +142,20 @@ TEST(EquilibriumChains, AStraightChainIsSingularAtEulersLoad) {
     EXPECT_LT(errors.back(), 0.02);
 }
 
-// What a straight chain under N has as second variation (models/reader/beams.hpp), with nodes that turn by φ_k = sin(α k),
-// α = π / (2n), clamped at one end and free at the other: the segments' κ² and φ² sum to 4 sin²(α/2) : cos²(α/2), so that
+// Second variation of a straight chain under N (models/reader/beams.hpp), with nodes rotated by
+// φ_k = sin(α k), α = π / (2n), clamped at one end and free at the other: the segments' κ² and φ²
+// sum to 4 sin²(α/2) : cos²(α/2), so that
 //
 //   4 tan²(α/2) (½ k_r + ⅛ N ℓ) + ½ N ℓ - ½ N² (1/k_y - 1/k_x) = 0
 //
-// is where it is singular: under compression, Euler's load as n elements have it; under tension, never below
-// N = k_y ℓ = 12 EI / ℓ², where no beam is.
+// is its singularity: under compression, Euler's load for n elements; under tension, never below
+// N = k_y ℓ = 12 EI / ℓ², where the beam theory does not apply.
 TEST(EquilibriumChains, AStraightChainIsSingularInTensionWhereItsSegmentsEnd) {
     for (const int n : {1, 2, 4}) {
         const double l = L / n, k_x = EA / l, k_y = 12 * EI / (l * l * l), k_r = EI / l,
                      T = 4 * std::pow(std::tan(M_PI / (4 * n)), 2);
-        const double a = (1 / k_y - 1 / k_x) / 2, b = l / 2 + T * l / 8, c = T * k_r / 2;  // a N² - b N - c
+        // a N² - b N - c
+        const double a = (1 / k_y - 1 / k_x) / 2, b = l / 2 + T * l / 8, c = T * k_r / 2;
         const double root = std::sqrt(b * b + 4 * a * c), tension = (b + root) / (2 * a),
                      compression = (b - root) / (2 * a);
         EXPECT_GT(tension, k_y * l) << n;
@@ -169,7 +174,7 @@ TEST(EquilibriumChains, AStraightChainIsSingularInTensionWhereItsSegmentsEnd) {
     }
 }
 
-// M_x L / GJ, shared by all segments; and a straight pull P L / EA, small beside 12 EI n² / L².
+// M_x L / GJ, shared by all segments; and a tension P L / EA, small compared with 12 EI n² / L².
 TEST(EquilibriumChains, AChainTwistsAndStretchesAsTheWholeBar) {
     for (const int n : {1, 7}) {
         Scene s = cantilever(n);

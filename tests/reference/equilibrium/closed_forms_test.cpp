@@ -1,4 +1,4 @@
-// Scenes whose solution is a formula. The formulas stand in the scene files.
+// Scenes with a closed-form solution. The scene files contain the formulas.
 #include <fmt/format.h>
 
 #include "tests/reference/equilibrium/scenes.hpp"
@@ -6,8 +6,8 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-// Solves every branch of a scene and holds every point against `expected`, which gives the deviation relative
-// to the size of the scene.
+// Solves every branch of a scene and checks every point by `expected`, which returns the deviation
+// relative to the size of the scene.
 void expect_closed_form(const std::string& file,
                         const std::function<double(const Model&, const Equilibrium&)>& deviation) {
     const Model model = compile(scene(file));
@@ -86,8 +86,7 @@ TEST(EquilibriumClosedForm, PendulumTurnsInItsPlane) {
     });
 }
 
-// k_R θ = M about an axis that stays where it is,
-// up to nearly half a turn, whichever body the frame rides on.
+// k_R θ = M about a fixed axis, up to nearly half a turn, for a frame on either body.
 TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
     std::mt19937 random(11);
     Worst worst;
@@ -113,8 +112,8 @@ TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// About a principal axis of anisotropic rates the same holds with that axis' rate, for a frame that is not
-// the ground's.
+// About a principal axis of anisotropic rates, the same with that axis' rate, for a frame different
+// from the ground's.
 TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
     std::mt19937 random(12);
     Worst worst;
@@ -142,8 +141,7 @@ TEST(EquilibriumClosedForm, DeadMomentAboutAPrincipalAxisMeetsItsRateOnly) {
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// A pendulum without any element stands by its weight alone:
-// tan θ = F / W. Its spin is idle and does not matter.
+// A pendulum without any element, held by its weight: tan θ = F / W. Its spin is idle.
 TEST(EquilibriumClosedForm, WeightAloneHoldsAHangingPendulum) {
     Scene s;
     s.bodies = {{"bob", {{0, 0, -0.5}, Quaterniond::Identity()}}};
@@ -166,8 +164,8 @@ TEST(EquilibriumClosedForm, WeightAloneHoldsAHangingPendulum) {
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// Static loads and preloads that do not balance at the design pose are settled first: the plate of
-// parallel_springs with a weight of 900 N instead of 600 N sinks by 300 N / 75 N/mm.
+// Static loads and preloads that are not in balance at the design pose are settled first: the plate
+// of parallel_springs with a weight of 900 N instead of 600 N sinks by 300 N / 75 N/mm.
 TEST(EquilibriumClosedForm, UnbalancedStaticLoadSettlesBeforeTheBranchBegins) {
     Scene s = scene("parallel_springs");
     std::get<DeadForce>(s.static_loads.at(0).kind).f = {0, 0, -900};

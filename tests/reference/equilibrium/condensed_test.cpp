@@ -1,5 +1,5 @@
-// What compile() leaves out or condenses changes no answer: a scene as a CAD model would have it, solved as it is written
-// and as it is required.
+// Pruning and condensation by compile() change no result: a scene as from a CAD model, solved as
+// written and as condensed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 namespace elastocheck {
 namespace {
 
-// Five rods as bodies with a ball at each end, one ball doubled; the knuckle of two bodies fixed to each other and held once
-// more; a subframe of two, on bushings; a bracket fixed to ground, on it the spring and something that hangs idly; a spring
-// within the subframe.
+// Five rods as bodies with a ball at each end, one ball duplicated; the knuckle of two welded
+// bodies with a redundant joint; a subframe of two bodies on bushings; a bracket welded to ground
+// with the spring and an idle appendage; a spring within the subframe.
 const std::string as_built = R"(elastocheck: 1
 name: as built
 units: {length: m, angle: deg, force: N}
@@ -130,7 +130,7 @@ TEST(Condensed, AnswersAsWhatIsWritten) {
                         << way.name << " " << k << " " << body;
                     worst = std::max(worst, apart);
                 }
-                // A rod pushes at both its ends with the force of its distance.
+                // A rod exerts at both ends the force of its distance constraint.
                 for (const int rod : {1, 2, 3, 5})
                     for (const char* end : {"inner", "outer"}) {
                         const double apart = std::abs(s.force(k, fmt::format("rod_{}", rod)) -

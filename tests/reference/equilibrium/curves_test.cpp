@@ -1,4 +1,4 @@
-// Laws with knots: stops, curves from tables, pieces that are flat or fall.
+// Laws with knots: stops, tabulated curves, flat or falling pieces.
 #include <fmt/format.h>
 
 #include "models/branch.hpp"
@@ -7,13 +7,13 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-// f = 0 up to the clearance c, k (x - c) behind it; or the other way round for c < 0.
+// f = 0 up to the clearance c, k (x - c) beyond; reversed for c < 0.
 Curve stop(double c, double k) {
     const std::array<double, 4> open{}, closed = {0, k, 0, 0};
     return c > 0 ? Curve{{c}, {open, closed}} : Curve{{c}, {closed, open}};
 }
 
-// f and its exact slopes at the knots, cubics between, straight outside.
+// f and its exact slopes at the knots, cubics between, linear outside.
 Curve through(const std::vector<double>& x, const std::vector<double>& f, const std::vector<double>& slope) {
     Curve curve{x, {{f[0], slope[0], 0, 0}}};
     for (std::size_t k = 0; k + 1 < x.size(); ++k) {
@@ -25,7 +25,7 @@ Curve through(const std::vector<double>& x, const std::vector<double>& f, const 
     return curve;
 }
 
-// A block on a guide along z, held by springs whose deformation is z.
+// A block on a guide along z, held by springs of deformation z.
 Scene block(const std::vector<ScalarLaw>& laws) {
     Scene s;
     s.name = "block";
@@ -50,8 +50,9 @@ void expect_heights(const Scene& s, const std::vector<double>& loads, const std:
     EXPECT_EQ(path.points.size(), loads.size());
 }
 
-// By hand: z = F / k until the clearance is used up, then both springs share: F = k z + k_s (z - c). Two stops, any
-// number of steps (one that jumps both knots, ones that end on a knot), any order, stops from soft to a wall.
+// Closed form: z = F / k up to the clearance, then both springs share: F = k z + k_s (z - c). Two
+// stops, any number of steps (one across both knots, some ending on a knot), any order, stops from
+// soft to rigid.
 TEST(EquilibriumCurves, AStopCarriesWhatTheSpringDoesNot) {
     const double k = 20e3, c = 0.02, back = -0.03;
     for (const double k_s : {5e3, 300e3, 2e7, 2e9})
@@ -64,7 +65,8 @@ TEST(EquilibriumCurves, AStopCarriesWhatTheSpringDoesNot) {
             };
             std::vector<double> loads;
             double from = 0;
-            for (const double to : {800., -1500., 400., -600., 0., 3000.}) {  // 400 and -600 N: at a knot
+            // 400 and -600 N: at a knot
+            for (const double to : {800., -1500., 400., -600., 0., 3000.}) {
                 for (int n = 1; n <= steps; ++n) loads.push_back(from + (to - from) * n / steps);
                 from = to;
             }
@@ -73,7 +75,8 @@ TEST(EquilibriumCurves, AStopCarriesWhatTheSpringDoesNot) {
         }
 }
 
-// A stop without clearance: the design position is on the knot, and the branch may leave it to either side.
+// A stop without clearance: the design position is on the knot, and the branch may leave it to
+// either side.
 TEST(EquilibriumCurves, AStopThatTouchesAtTheDesignPositionOpensAndCloses) {
     const double k = 20e3, k_s = 300e3;
     const Curve touching{{0}, {{0, 0, 0, 0}, {0, k_s, 0, 0}}};
@@ -92,12 +95,13 @@ TEST(EquilibriumCurves, ASpringFollowsItsCurve) {
         while (x.size() < 15) {
             const double dx = 0.01 * in(random), chord = 60e3 * in(random);
             x.push_back(x.back() + dx), f.push_back(f.back() + chord * dx);
-            slope.push_back(1.5 * chord * in(random));  // such that f rises over the piece before
+            // such that f increases over the previous piece
+            slope.push_back(1.5 * chord * in(random));
         }
         for (std::size_t k = 0; k + 1 < x.size(); ++k)
             slope[k] = std::min(slope[k], 1.5 * (f[k + 1] - f[k]) / (x[k + 1] - x[k]));
         const Curve curve = through(x, f, slope);
-        const auto at = [&](double z) {  // by hand, piece by piece
+        const auto at = [&](double z) {  // closed form, piece by piece
             std::size_t k = 0;
             while (k < x.size() && z >= x[k]) ++k;
             const auto& c = curve.pieces[k];
@@ -118,9 +122,9 @@ TEST(EquilibriumCurves, ASpringFollowsItsCurve) {
     }
 }
 
-// A bar is turned by its drive, a stop spring between its tip and a point of ground is longest, r + d, where the bar
-// points away. The clearance ends there to the last digit, or short of it: what the drive feels is
-// f · ∂ℓ/∂α, with ℓ² = r² + d² - 2 r d cos α.
+// A bar is rotated by its drive; a stop spring between its tip and a point on ground is longest,
+// r + d, where the bar points away. The clearance ends exactly there, or before: the drive effort
+// is f · ∂ℓ/∂α, with ℓ² = r² + d² - 2 r d cos α.
 TEST(EquilibriumCurves, AStopThatJustTouchesIsPassed) {
     const double r = 0.3, d = 0.5, k = 1e5;
     for (const double short_of : {0., 1e-15, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2})
@@ -154,7 +158,7 @@ TEST(EquilibriumCurves, AStopThatJustTouchesIsPassed) {
         }
 }
 
-// Beside a spring that goes on, a law may be flat or fall.
+// In parallel with a regular spring, a law may be flat or fall.
 TEST(EquilibriumCurves, AFlatOrFallingPieceIsPassedWhereTheRestHolds) {
     const double k = 20e3, k_t = 60e3, c = 0.01;
     for (const double after : {0., -15e3}) {
@@ -168,7 +172,7 @@ TEST(EquilibriumCurves, AFlatOrFallingPieceIsPassedWhereTheRestHolds) {
     }
 }
 
-// Alone it ends the branch there, at any number of points.
+// Alone it ends the branch there, for any number of points.
 TEST(EquilibriumCurves, ALawThatFallsEndsTheBranchAtItsKnot) {
     const double k = 60e3, c = 0.01;
     for (const double after : {0., -15e3})
@@ -185,8 +189,8 @@ TEST(EquilibriumCurves, ALawThatFallsEndsTheBranchAtItsKnot) {
         }
 }
 
-// On a strut: a bump stop and a rebound stop on the coil of a McPherson, and a curve by axis in a bushing. The states
-// do not depend on the points, and are in balance.
+// A McPherson strut with a bump stop and a rebound stop on the coil, and a curve by axis in a
+// bushing. The states are independent of the points, and in balance.
 TEST(EquilibriumCurves, AStrutOnItsStopsDoesNotDependOnThePoints) {
     Scene s = scene("mcpherson");
     bool has_coil = false;
@@ -213,8 +217,8 @@ TEST(EquilibriumCurves, AStrutOnItsStopsDoesNotDependOnThePoints) {
             balance.see(std::max({r.length, r.direction, r.force, r.moment}),
                         fmt::format("{}, {}", branch.name, state.load));
         }
-        EXPECT_TRUE(
-            within(balance, 1e-8));  // [N]; 2e-9 without the stops too: round-off of 3 kN over the rates
+        // [N]; 2e-9 without the stops too: round-off of 3 kN over the rates
+        EXPECT_TRUE(within(balance, 1e-8));
         for (const std::size_t stride : {every.size() - 1, std::size_t{50}, std::size_t{7}}) {
             std::vector<double> some;
             for (std::size_t n = 0; n < every.size(); n += stride) some.push_back(every[n]);

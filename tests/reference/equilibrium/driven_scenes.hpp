@@ -1,4 +1,4 @@
-// Mechanisms that are driven, and what their formulas need.
+// Driven mechanisms with their closed-form kinematics.
 #pragma once
 
 #include <utility>
@@ -9,8 +9,8 @@ namespace elastocheck::reference::equilibrium::test {
 
 inline const Direction ground_x{ground, {1, 0, 0}}, ground_y{ground, {0, 1, 0}}, ground_z{ground, {0, 0, 1}};
 
-// In the x-y plane: a crank r about z at the origin, drawn along +x, a rod l, a slider on the line y = e.
-// 12 coordinates, 12 constraints.
+// In the x-y plane: a crank r about z at the origin, along +x in the design position, a rod l, a
+// slider on the line y = e. 12 coordinates, 12 constraints.
 inline Scene slider_crank(double r, double l, double e, double to) {
     Scene s;
     s.name = "slider-crank";
@@ -27,7 +27,7 @@ inline Scene slider_crank(double r, double l, double e, double to) {
     return s;
 }
 
-// The point at the distance b from p and c from q, in the x-y plane, to the left of the way from p to q.
+// Point at distance b from p and c from q in the x-y plane, to the left of the line from p to q.
 inline Vector3d circles_meet(const Vector3d& p, double b, const Vector3d& q, double c) {
     const Vector3d way = q - p;
     const double d = way.norm(), along = (d * d + b * b - c * c) / (2 * d),
@@ -35,8 +35,8 @@ inline Vector3d circles_meet(const Vector3d& p, double b, const Vector3d& q, dou
     return p + along * way / d + across * Vector3d(-way[1], way[0], 0) / d;
 }
 
-// In the x-y plane: crank a at the origin, drawn along +x, coupler b, rocker c about (d, 0). 18 coordinates,
-// 18 constraints.
+// In the x-y plane: crank a at the origin, along +x in the design position, coupler b, rocker c
+// about (d, 0). 18 coordinates, 18 constraints.
 inline Scene four_bar(double a, double b, double c, double d) {
     Scene s;
     s.name = "four-bar";
@@ -63,7 +63,7 @@ inline Vector3d position_in(const Scene& s, const Wheel& wheel) {
     return pose.r + pose.p * wheel.centre_local;
 }
 
-// A jack under the wheel centre, the last joint, which stands only where it is driven.
+// A jack under the wheel centre as the last joint, active only where driven.
 inline Scene with_jack(Scene s) {
     const Wheel& wheel = s.wheels[0];
     s.joints.push_back(
@@ -71,8 +71,8 @@ inline Scene with_jack(Scene s) {
     return s;
 }
 
-// The McPherson strut whose tie rod ends on a rack, the fourth body, which slides along y and is held by the
-// last joint, 'rack'.
+// The McPherson strut whose tie rod ends on a rack, the fourth body, which slides along y and is
+// held by the last joint, 'rack'.
 inline Scene with_rack(Scene s) {
     auto& tie = std::get<Distance>(s.joints[2].kind);
     const Vector3d inner = tie.j.s_local;
@@ -109,7 +109,8 @@ inline double stored_energy(const Model& model, const Equilibrium& state) {
     return U;
 }
 
-// Nodes in (0, 1), ascending, and weights: the roots of the Legendre polynomial P_n by Newton's method.
+// Nodes in (0, 1), ascending, and weights: the roots of the Legendre polynomial P_n by Newton's
+// method.
 inline std::vector<std::pair<double, double>> gauss_legendre(int n) {
     std::vector<std::pair<double, double>> rule;
     for (int k = n; k >= 1; --k) {

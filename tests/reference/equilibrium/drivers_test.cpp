@@ -1,5 +1,5 @@
-// What moves a branch: lengths, offsets, angles, free lengths and preloads, alone and together, against
-// formulas.
+// Branches driven by lengths, offsets, angles, free lengths and preloads, alone and together,
+// against closed forms.
 #include <fmt/format.h>
 
 #include <thread>
@@ -11,7 +11,7 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-// As it stands on its n-th branch, solved at the points.
+// Model on its n-th branch, solved at the points.
 struct Solved {
     Model model;
     EquilibriumPath path;
@@ -69,7 +69,8 @@ TEST(EquilibriumDrivers, ASliderCrankFollowsItsGeometryThroughAFullTurn) {
 }
 
 TEST(EquilibriumDrivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
-    const double a = 0.04, b = 0.11, c = 0.09, d = 0.12;  // crank, coupler, rocker, ground: a + d < b + c
+    // crank, coupler, rocker, ground: a + d < b + c
+    const double a = 0.04, b = 0.11, c = 0.09, d = 0.12;
     for (const int steps : {1, 5, 360}) {
         const auto solved = solved_at(four_bar(a, b, c, d), 0, equally(2 * M_PI, steps));
         ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
@@ -86,7 +87,7 @@ TEST(EquilibriumDrivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
     }
 }
 
-// The crank's drive carries what a force on the slider asks for by virtual work: M dα + F dx = 0.
+// The crank's moment balances a force on the slider by virtual work: M dα + F dx = 0.
 TEST(EquilibriumDrivers, TheCranksMomentIsWhatVirtualWorkSays) {
     const double r = 0.05, l = 0.13, e = 0.012, F = 300;
     Scene s = slider_crank(r, l, e, 2 * M_PI);
@@ -137,7 +138,8 @@ TEST(EquilibriumDrivers, ABarThatGrowsLiftsByItsTriangle) {
     ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
     Worst worst;
     for (const auto& state : solved.path.points) {
-        // l² = 0.5² + 0.3² + 2·0.5·0.3 sin φ, and the strut's force S has the lever 0.5·0.3 cos φ / l
+        // l² = 0.5² + 0.3² + 2·0.5·0.3 sin φ, and the strut's force S has the lever 0.5·0.3 cos
+        // φ / l
         const double l = std::hypot(0.5, 0.3) + state.load;
         const double phi = std::asin((l * l - 0.34) / 0.3);
         const Vector3d tip = position(state, {0, {0.5, 0, 0}});
@@ -148,7 +150,7 @@ TEST(EquilibriumDrivers, ABarThatGrowsLiftsByItsTriangle) {
     EXPECT_TRUE(within(worst, 1e-12));
 }
 
-// ---- Travel and load are two ways to the same states
+// ---- Travel and load reach the same states
 
 TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
     Scene s = with_jack(scene("chrono_mcpherson"));
@@ -191,7 +193,7 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
 
 // ---- Work
 
-// ∫ (driver force) da over the branch is the energy it stores.
+// ∫ (driver effort) da over the branch is the stored energy.
 void expect_work_is_energy(const Scene& s, double to,
                            const std::function<double(const Solved&, const Equilibrium&)>& force,
                            const std::function<void(Scene&, double)>& set) {
@@ -259,7 +261,7 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
 
 // ---- Elements
 
-// A block on a vertical guide between two springs, weighted: k₁ (z - a) + k₂ z = -W.
+// A block on a vertical guide between two springs under its weight: k₁ (z - a) + k₂ z = -W.
 TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     const double k_1 = 30e3, k_2 = 12e3, W = 500;
     Scene s;
@@ -281,7 +283,7 @@ TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     EXPECT_TRUE(within(worst, 1e-14));
 }
 
-// On one bushing nothing but K e = -preload can stand.
+// On one bushing the only equilibrium is K e = -preload.
 TEST(EquilibriumDrivers, APreloadIsAnsweredByItsBushing) {
     std::mt19937 random(5);
     Worst worst;
@@ -323,7 +325,7 @@ TEST(EquilibriumDrivers, AHeldRackIsGround) {
     EXPECT_TRUE(within(worst, 1e-11));
 }
 
-// The rack goes where it is driven, at every height the wheel is held at; its force is the tie rod's, along
+// The rack follows its drive at every held wheel height; its force is the tie rod's component along
 // the rack.
 TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
     for (const double height : {-0.05, 0., 0.05})
@@ -359,7 +361,8 @@ TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
         }
 }
 
-// An equilibrium does not remember which of two drivers came first, nor which one was held from the start.
+// An equilibrium is independent of the order of two drivers, and of which one was held from the
+// start.
 TEST(EquilibriumDrivers, TheOrderOfDriversDoesNotMatter) {
     const Vector3d brake(-1500, 0, 0);
     const auto build = [&](bool steer_last) {
@@ -403,7 +406,7 @@ TEST(EquilibriumDrivers, DriversOfOneJointAddUp) {
     EXPECT_LE((once.path.points[0].poses[1].r - twice.path.points[0].poses[1].r).norm(), 1e-15);
 }
 
-// ---- What is held at a = 0 is settled first
+// ---- Values held at a = 0 are settled first
 
 TEST(EquilibriumDrivers, HeldValuesAreSettledHoweverFarTheyAreFromTheDrawing) {
     const double r = 0.05, l = 0.13, e = 0.012;
@@ -437,7 +440,8 @@ TEST(EquilibriumDrivers, ARodOfAnotherLengthThanDrawnIsSettledToItsOwn) {
     }
 }
 
-// The row of an angle is a sine, which cannot tell a direction from its opposite; the judge can.
+// The row of an angle is a sine and is zero in the opposite direction too; the residuals
+// distinguish it.
 TEST(EquilibriumDrivers, AnOppositeDirectionIsNotTheAngle) {
     Scene s = slider_crank(0.05, 0.13, 0, 1);
     const auto solved = solved_at(s, 0, {0});
@@ -455,7 +459,8 @@ TEST(EquilibriumDrivers, AnOppositeDirectionIsNotTheAngle) {
 
 TEST(EquilibriumDrivers, WhatCannotBeClosedIsNamed) {
     Scene s = slider_crank(0.05, 0.13, 0.012, 2 * M_PI);
-    std::get<Distance>(s.joints[2].kind).length = 0.03;  // closes at first, not all the way round
+    // closes at first, but not over the full turn
+    std::get<Distance>(s.joints[2].kind).length = 0.03;
     s.bodies[1].design.r = {0.08, 0.012, 0};
     std::get<Translational>(s.joints[1].kind).j.s_local = {0.08, 0.012, 0};
     for (const int steps : {5, 20}) {
@@ -498,10 +503,12 @@ TEST(EquilibriumDrivers, MessagesSpeakOfTheParameterInItsUnit) {
 TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
     Scene s = with_jack(scene("chrono_mcpherson"));
     s.branches.push_back(branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, 0.1, 1,
-                                   ParameterUnit::metre));  // else there would be no jack in the model
+                                   // otherwise the model would have no jack
+                                   ParameterUnit::metre));
     const Model model = compile(s);
     const std::vector<double> points = {0, 1};
-    EXPECT_THROW(solve(model, model.branches[0], points), std::invalid_argument);  // the jack is not driven
+    // the jack is not driven
+    EXPECT_THROW(solve(model, model.branches[0], points), std::invalid_argument);
     Equilibrium state;
     state.poses.resize(model.bodies.size());
     state.reactions.resize(model.joints.size());
@@ -514,7 +521,8 @@ TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
     EXPECT_THROW(solve(plain, two_ways, points), std::invalid_argument);
     EXPECT_THROW(solve(plain, with(Motion{0}), points), std::invalid_argument);      // a ball joint
     EXPECT_THROW(solve(plain, with(FreeLength{1}), points), std::invalid_argument);  // a bushing
-    EXPECT_THROW(solve(plain, with(Preload{0, Vector6::Ones()}), points), std::invalid_argument);  // a spring
+    // a spring
+    EXPECT_THROW(solve(plain, with(Preload{0, Vector6::Ones()}), points), std::invalid_argument);
 }
 
 TEST(EquilibriumDrivers, ADriverThatIsNotFiniteNeverConverges) {

@@ -1,5 +1,5 @@
-// The element forces of this leg against the energies of mechanism.hpp, which are written out here once more
-// and differentiated numerically; and the Jacobian against differences of the residual.
+// Element forces of the equilibrium leg against numerical gradients of independently implemented
+// energies of mechanism.hpp; and the Jacobian against differences of the residual.
 #include <fmt/format.h>
 
 #include "reference/equilibrium/equations.hpp"
@@ -24,14 +24,14 @@ double slope(const Move& U, double h) {
 }
 
 OnBoth<double> on_both(const AxialSpring& spring, const Frame<double>& i, const Frame<double>& j) {
-    return interaction(spring, spring.free_length, by_itself, i, j);
+    return interaction(spring, spring.free_length, 0., by_itself, i, j);
 }
 OnBoth<double> on_both(const Bushing& b, const Frame<double>& i, const Frame<double>& j) {
     return interaction(b, b.preload, true, all_by_themselves, i, j);
 }
 
-// The wrench of the element on both bodies, (force; moment about the origin) each, against the gradient,
-// relative to its size.
+// Wrench of the element on both bodies, (force; moment about the origin) each, against the
+// gradient, relative to its size.
 template <class Element>
 double deviation_from_gradient(const Element& element, const Pose& i, const Pose& j) {
     const Frame<double> frame_i{i.r, i.p}, frame_j{j.r, j.p};
@@ -59,7 +59,7 @@ TEST(EquilibriumElements, SpringForceIsTheNegativeGradientOfItsEnergy) {
     EXPECT_TRUE(within(worst, 1e-9));
 }
 
-// Full symmetric 6×6 rates with coupling, preload, any rotation from nothing to 3 rad, any marker axes.
+// Full symmetric 6×6 rates with coupling, preload, rotations from zero to 3 rad, any marker axes.
 TEST(EquilibriumElements, BushingForceIsTheNegativeGradientOfItsEnergy) {
     std::mt19937 random(2);
     Worst worst;
@@ -94,8 +94,7 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfA
     EXPECT_TRUE(within(worst, 2e-15 * 4));
 }
 
-// The logarithm jumps at half a turn. Close to it there
-// is no number at all, rather than one that may be the other.
+// The logarithm jumps at half a turn. Close to it the result is NaN.
 TEST(EquilibriumElements, HalfATurnIsNotANumber) {
     for (const double short_of : {0., 1e-9, 1e-7})
         for (const double sign : {1., -1.}) {
@@ -105,8 +104,8 @@ TEST(EquilibriumElements, HalfATurnIsNotANumber) {
         }
 }
 
-// Automatic differentiation against differences, at design poses (θ = 0, where series stand in for 0/0) and
-// away from them.
+// Automatic differentiation against differences, at design poses (θ = 0, where series replace 0/0)
+// and away from them.
 TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
     std::mt19937 random(4);
     Worst worst;

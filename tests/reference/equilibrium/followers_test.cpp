@@ -1,4 +1,4 @@
-// Loads that turn with their body.
+// Follower loads.
 #include <fmt/format.h>
 
 #include "tests/reference/equilibrium/scenes.hpp"
@@ -8,7 +8,8 @@ namespace {
 
 Branch follow(const LoadKind& load) { return branch_of("follow", {driven_by({"follower", load})}, 1, 1); }
 
-// A force that stays across the bar: θ = F L / k, where a dead one has F L cos θ = k θ.
+// A force that stays perpendicular to the bar: θ = F L / k, whereas a dead force gives F L cos
+// θ = k θ.
 TEST(EquilibriumFollowers, AForceAcrossABarTurnsItByFLOverK) {
     const double k = 150, L = 0.4;
     Scene s = hinged_bar({L, 0, 0}, {0, 1, 0}, k);
@@ -23,7 +24,7 @@ TEST(EquilibriumFollowers, AForceAcrossABarTurnsItByFLOverK) {
         for (const auto& state : path.points) {
             const Quaterniond turned(Eigen::AngleAxisd(-state.load * L / k, Vector3d::UnitY()));
             worst.see(state.poses[0].p.angularDistance(turned), fmt::format("{} N", state.load));
-            // The hinge answers with the force where it points now.
+            // The hinge reaction is opposite to the current force.
             const Vector3d left = state.reactions[0].force + state.load * (turned * Vector3d::UnitZ());
             worst.see(left.norm() / 1150, fmt::format("reaction, {} N", state.load));
         }
@@ -31,7 +32,8 @@ TEST(EquilibriumFollowers, AForceAcrossABarTurnsItByFLOverK) {
     EXPECT_TRUE(within(worst, 1e-12));
 }
 
-// With equal rates about all axes the axis stays, in the body and in ground, and θ = m / k; whatever the body axes.
+// With equal rates about all axes the axis is constant, in the body and in ground, and θ = m / k,
+// for any body axes.
 TEST(EquilibriumFollowers, ACoupleTurnsAnIsotropicBushingByMOverK) {
     std::mt19937 random(31);
     Worst worst;
@@ -59,8 +61,9 @@ TEST(EquilibriumFollowers, ACoupleTurnsAnIsotropicBushingByMOverK) {
 }
 
 // Two bars in a line with torsion springs c, a force along the upper one (Ziegler's column): with
-// M = [2c - P L, -c + P L; -c, c] the determinant is c² at any load, so no other equilibrium passes through the
-// straight one. It flutters from some load on, which depends on its masses; statics goes on.
+// M = [2c - P L, -c + P L; -c, c] the determinant is c² at any load, so no other equilibrium passes
+// through the straight one. It flutters above a load that depends on its masses; the statics branch
+// continues.
 TEST(EquilibriumFollowers, AColumnUnderAFollowerForceNeverDiverges) {
     const double c = 1000, L = 0.5;
     Scene s = hinged_bar({0, 0, L}, {0, 1, 0}, c);
@@ -85,8 +88,8 @@ TEST(EquilibriumFollowers, AColumnUnderAFollowerForceNeverDiverges) {
     }
 }
 
-// Where the force follows one half of its direction only, det M reaches zero and the branch ends there: one bar on a
-// torsion spring under a dead weight D and a follower force P along it, M = k - D L whatever P.
+// Where only part of the force follows, det M reaches zero and the branch ends there: one bar on a
+// torsion spring under a dead weight D and a follower force P along it, M = k - D L for any P.
 TEST(EquilibriumFollowers, DivergenceUnderADeadWeightIsNotHiddenByAFollower) {
     const double k = 1000, L = 0.5;
     Scene s = hinged_bar({0, 0, L}, {0, 1, 0}, k);

@@ -1,5 +1,5 @@
-// What a bushing measures and what its stress does, formulation by formulation: forces against numerical
-// differentiation of energies that are written here once more, and against hand calculation where there is none.
+// Bushing formulations of the equilibrium leg: forces against numerical gradients of independently
+// implemented energies, and against hand calculation where there is no energy.
 #include <fmt/format.h>
 
 #include "models/curve.hpp"
@@ -73,7 +73,7 @@ Vector6 deformation_of(const Bushing& b, const Pose& i, const Pose& j) {
     return e;
 }
 double energy_of(const Bushing& b, const Pose& i, const Pose& j) {
-    // The frame on j is that of the bushing told from its other end.
+    // A frame on j is that of the bushing with exchanged ends.
     if (b.formulation.frame == On::on_j) {
         Bushing other = b;
         std::swap(other.i, other.j);
@@ -123,7 +123,7 @@ Wrenches negative_gradient(const Bushing& b, const Pose& i, const Pose& j) {
 Curve some_curve(std::mt19937& random, double rate) {
     std::uniform_real_distribution<double> in(0.3, 1);
     const double c_1 = rate * in(random), c_2 = 0.3 * rate * in(random), c_3 = rate * in(random), w = 1.5;
-    // about 0: c_1 x + c_2 x² + c_3 x³, told about -w
+    // about 0: c_1 x + c_2 x² + c_3 x³, expanded about -w
     const auto f = [&](double x) { return c_1 * x + c_2 * x * x + c_3 * x * x * x; };
     return {{-w, w},
             {{f(-w), rate, 0, 0},
@@ -150,7 +150,7 @@ Bushing some_bushing(std::mt19937& random, bool per_axis) {
 struct Poses {
     Pose i, j;
 };
-// Marker j turned against marker i by `turn`, and a little off.
+// Marker j rotated against marker i by `turn`, with a small offset.
 Poses some_poses(std::mt19937& random, const Bushing& b, const Quaterniond& turn) {
     const Pose i{random_vector(random, 0.3), random_turn(random)};
     Pose j;
@@ -182,7 +182,7 @@ TEST(EquilibriumFormulations, ForcesAreTheNegativeGradientOfTheEnergyWhereThereI
     EXPECT_TRUE(within(worst, 2e-9));
 }
 
-// turned_round() is how a frame on j comes to this leg.
+// turned_round() converts a frame on j to one on i.
 TEST(EquilibriumFormulations, AFrameOnJIsAFrameOnIOfTheBushingTurnedRound) {
     std::mt19937 random(42);
     Worst worst;
@@ -201,7 +201,7 @@ TEST(EquilibriumFormulations, AFrameOnJIsAFrameOnIOfTheBushingTurnedRound) {
     EXPECT_TRUE(within(worst, 2e-9));
 }
 
-// In the middle neither end is preferred.
+// A frame in the middle is symmetric in both ends.
 TEST(EquilibriumFormulations, InTheMiddleABushingIsItselfTurnedRound) {
     std::mt19937 random(43);
     Worst worst;
@@ -218,7 +218,8 @@ TEST(EquilibriumFormulations, InTheMiddleABushingIsItselfTurnedRound) {
     EXPECT_TRUE(within(worst, 1e-12));
 }
 
-// The three kinds of angles are the same for a turn about one axis, and differ by the square of small ones.
+// The three angle conventions agree for a rotation about one axis, and differ by the square of
+// small angles.
 TEST(EquilibriumFormulations, SmallAnglesAreTheSameInAllFormulations) {
     std::mt19937 random(44);
     for (const double angle : {1e-2, 1e-3, 1e-4}) {
@@ -238,8 +239,9 @@ TEST(EquilibriumFormulations, SmallAnglesAreTheSameInAllFormulations) {
     }
 }
 
-// A commercial code's law, worked by hand: B = R_x(0.2) R_y(0.3), so z of j, seen from i, is
-// (sin 0.3, -sin 0.2 cos 0.3, cos 0.2 cos 0.3) and x of j (cos 0.3, sin 0.2 sin 0.3, -cos 0.2 sin 0.3).
+// The commercial code's law by hand calculation: B = R_x(0.2) R_y(0.3), so z of j in axes of i is
+// (sin 0.3, -sin 0.2 cos 0.3, cos 0.2 cos 0.3) and x of j is
+// (cos 0.3, sin 0.2 sin 0.3, -cos 0.2 sin 0.3).
 TEST(EquilibriumFormulations, TheCommercialLawIsItsFormula) {
     Bushing b{{0, {0.1, 0, 0}, Quaterniond::Identity()},
               {1, {0, 0, 0}, Quaterniond::Identity()},
@@ -257,14 +259,15 @@ TEST(EquilibriumFormulations, TheCommercialLawIsItsFormula) {
         b.formulation = {On::on_i, Kind::projected, false, offset};
         Wrenches by_hand;
         const Vector3d acts_at = offset ? j.r : Vector3d(0.1, 0, 0);
-        by_hand << force, moment + acts_at.cross(force), -force, -moment;  // j's marker is its origin
+        // j's marker is its origin
+        by_hand << force, moment + acts_at.cross(force), -force, -moment;
         const Wrenches w = wrenches(b, i, j);
         EXPECT_LT((w - by_hand).cwiseAbs().maxCoeff(), 1e-10) << w.transpose() << "\n" << by_hand.transpose();
     }
 }
 
-// Whatever the formulation and wherever the frame, both forces are opposed; with the offset moment both moments
-// about any point too, without it they differ by D × F.
+// For any formulation and frame both forces are opposite; with the offset moment both moments about
+// any point too, without it they differ by D × F.
 TEST(EquilibriumFormulations, OnlyWithoutTheOffsetMomentIsThePairOutOfBalance) {
     std::mt19937 random(45);
     Worst worst;
@@ -288,7 +291,7 @@ TEST(EquilibriumFormulations, OnlyWithoutTheOffsetMomentIsThePairOutOfBalance) {
     EXPECT_TRUE(within(worst, 1e-13));
 }
 
-// ---- Where angles end
+// ---- Singularities of the angles
 
 TEST(EquilibriumFormulations, WhereAnAngleHasNoValueThereIsNoNumber) {
     const auto turn = [](double angle, const Vector3d& axis) {
@@ -311,7 +314,8 @@ TEST(EquilibriumFormulations, WhereAnAngleHasNoValueThereIsNoNumber) {
     for (const double angle : {1.5, -1.5, 3., -3.})
         for (const Vector3d& axis : {x, z})
             for (const Kind kind : {Kind::rotation_vector, Kind::projected, Kind::cardan}) {
-                // Seen along y, z of j points backwards after a quarter turn about x: θ_y is half a turn.
+                // In the projection along y, z of j points backwards after a quarter turn about x:
+                // θ_y is half a turn.
                 if (kind == Kind::projected && axis == x && std::abs(angle) > 2) continue;
                 EXPECT_NEAR(angles_of(kind, turn(angle, axis)).theta.dot(axis), angle, 1e-14);
             }
@@ -336,8 +340,8 @@ TEST(EquilibriumFormulations, CardanAnglesEndTheBranchAtAQuarterTurn) {
 
 // ---- In a scene
 
-// A block on six bushings, one of each kind, with a follower and a stop: what automatic differentiation makes of all
-// of them, against differences.
+// A block on six bushings, one of each kind, with a follower and a stop: automatic differentiation
+// of all of them against differences.
 TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
     std::mt19937 random(46);
     Scene s;
@@ -395,7 +399,7 @@ TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
     EXPECT_TRUE(within(worst, 1e-9));
 }
 
-// A formulation that no leg meets is misuse.
+// A formulation that compile() never passes to a leg is misuse.
 TEST(EquilibriumFormulations, AFrameThatThisLegHasNoLawForIsMisuse) {
     Scene s = hinged_bar({0.3, 0, 0}, {0, 1, 0}, 100);
     s.branches = {twist(0, {0, 1, 0})};

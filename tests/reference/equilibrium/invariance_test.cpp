@@ -1,5 +1,5 @@
-// What provably does not matter: unit of length, ground frame,
-// order, body axes, side, number of steps, the run.
+// Invariance of the equilibrium leg: unit of length, ground frame, order, body axes, mirror image,
+// number of steps, repetition.
 #include <fmt/format.h>
 
 #include "models/branch.hpp"
@@ -8,7 +8,7 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-// Back from the other scene's ground axes and units to the original's.
+// Inverse transform from the other scene's ground axes and units.
 struct Back {
     std::function<Vector3d(const Vector3d&)> point = [](const Vector3d& v) { return v; };
     std::function<Vector3d(const Vector3d&)> vector = [](const Vector3d& v) {
@@ -17,8 +17,8 @@ struct Back {
     std::function<Vector3d(const Vector3d&)> moment = [](const Vector3d& v) { return v; };
 };
 
-// Both scenes along both first branches: wheel centre, contact, spin axis and all reactions at every point,
-// relative to the size of the scene (1 m) and of the largest reaction.
+// Compares both scenes along both first branches: wheel centre, contact, spin axis and all
+// reactions at every point, relative to the size of the scene (1 m) and to the largest reaction.
 void expect_same(const Scene& a, const Scene& b, const Back& back, double limit = 1e-9) {
     const Model whole_a = compile(a), whole_b = compile(b);
     Worst worst;
@@ -70,8 +70,8 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
     ::testing::Test::RecordProperty("worst_deviation", fmt::format("{:.1e}", worst.value));
 }
 
-// Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a preload, a
-// free length.
+// Every kind of driver, alone and with others: a rack held off centre under a load, a jack with a
+// preload, a free length.
 Scene driven_scene() {
     Scene s = with_jack(with_rack(scene("chrono_mcpherson")));
     s.name = "driven";
@@ -158,7 +158,7 @@ TEST(EquilibriumInvariance, MirroredSide) {
         expect_same(s, mirrored(s), {mirror, mirror, [S](const Vector3d& v) { return Vector3d(-S * v); }});
 }
 
-// An equilibrium does not remember the steps that led to it.
+// An equilibrium is independent of the preceding steps.
 TEST(EquilibriumInvariance, NumberOfSteps) {
     for (const auto& s : scenes()) {
         const Model whole = compile(s);

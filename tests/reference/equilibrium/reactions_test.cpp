@@ -1,4 +1,4 @@
-// Joint reactions against statics done by hand, and the judge of states: residuals().
+// Joint reactions against statics by hand, and residuals() of states.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -15,8 +15,9 @@ Equilibrium solved(const Model& model, const Branch& branch, double load) {
     return path.points.empty() ? Equilibrium{} : path.points[0];
 }
 
-// A bracket welded to ground carries a force at p and a moment: the weld answers with the opposite of both,
-// about its own place, and the wrench is the one on body i, which may be the bracket or ground.
+// A bracket welded to ground carries a force at p and a moment: the weld exerts the opposite of
+// both, about its own point, and the wrench is the one on body i, which may be the bracket or
+// ground.
 TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
     const Vector3d at(0.1, -0.2, 0.3), p(0.5, 0.4, -0.1), f(3, -2, 7), m(0.5, 0.25, -1);
     for (const bool ground_first : {false, true}) {
@@ -30,14 +31,14 @@ TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
             "both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1, 1)};
         s.probes = {{"p", {0, p}}};
         const Model model = compile(s);
-        const double a = 250, sign = ground_first ? -1 : 1;  // what the joint does to ground is the opposite
+        const double a = 250, sign = ground_first ? -1 : 1;  // the wrench on ground is the opposite
         const auto state = solved(model, model.branches[0], a);
         EXPECT_LE((state.reactions.at(0).force + sign * a * f).norm(), 1e-11);
         EXPECT_LE((state.reactions.at(0).moment + sign * a * (m + (p - at).cross(f))).norm(), 1e-11);
     }
 }
 
-// The same weld on a block that gives way on a bushing: the wrench is about where the weld has gone.
+// The same weld on a block on a bushing: the wrench is about the displaced weld.
 TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
     const Vector3d at(0.2, 0.1, 0), p(0.5, -0.2, 0.3);
     Scene s;
@@ -61,8 +62,9 @@ TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
     EXPECT_LE((state.reactions.at(0).moment + arm.cross(f)).norm(), 1e-10);
 }
 
-// A crane: a horizontal jib hinged at the origin about y, held at 2 m by a stay to a point 1.5 m above the
-// hinge, load at 3 m. Statically determinate: stay force S from Σ M_y = 0, hinge from Σ F = 0.
+// A crane: a horizontal jib hinged at the origin about y, held at 2 m by a stay to a point 1.5 m
+// above the hinge, load at 3 m. Statically determinate: stay force S from Σ M_y = 0, hinge from Σ
+// F = 0.
 TEST(EquilibriumReactions, ACraneIsInBalanceByHand) {
     for (const bool ground_first : {false, true}) {
         const BodyId i = ground_first ? ground : 0, j = ground_first ? 0 : ground;
@@ -88,8 +90,8 @@ TEST(EquilibriumReactions, ACraneIsInBalanceByHand) {
     }
 }
 
-// The pin of the pinned bar carries what the bushing (k times the tip's way) and the load leave, along the
-// whole branch.
+// The pin of the pinned bar carries the sum of the bushing force (k times the tip's displacement)
+// and the load, along the whole branch.
 TEST(EquilibriumReactions, ThePinOfTheBarCarriesTheRest) {
     const Model model = compile(scene("pinned_bar"));
     Worst worst;
@@ -103,8 +105,8 @@ TEST(EquilibriumReactions, ThePinOfTheBarCarriesTheRest) {
     EXPECT_TRUE(within(worst, 1e-9));
 }
 
-// Every kind of joint between two bodies on bushings, either way round: in balance, and only what the joint
-// can transmit.
+// Every kind of joint between two bodies on bushings, in both orders: in balance, and only
+// transmissible wrenches.
 TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
     std::mt19937 random(31);
     const Vector3d at(0.2, 0.1, -0.1), to(0.35, 0.2, 0.15), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -197,7 +199,7 @@ TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffForHardlyMoreThanOneIte
     }
 }
 
-// ---- The judge
+// ---- Residuals
 
 struct Judged : ::testing::Test {
     Model model = compile(rich_scene());
@@ -252,8 +254,8 @@ TEST_F(EquilibriumResiduals, ShowEveryWrongReaction) {
         }
 }
 
-// Two joints on one body and ground can trade a moment without
-// disturbing any balance; a ball joint cannot carry it.
+// Two joints between one body and ground can exchange a moment without an imbalance; a ball joint
+// cannot carry it.
 TEST_F(EquilibriumResiduals, ShowAWrenchThatTheJointCannotTransmit) {
     Scene s = hinged_bar({0.5, 0, 0}, {0, 1, 0}, 100);
     s.joints.push_back({"ball", Spherical{{0, {0, 0.2, 0}}, {ground, {0, 0.2, 0}}}});

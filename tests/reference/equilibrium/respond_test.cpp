@@ -1,4 +1,4 @@
-// What a state answers to small disturbances, by this leg: slopes of its own solutions and closed forms.
+// Forward sensitivity of the equilibrium leg: against slopes of its own solutions and closed forms.
 #include "reference/equilibrium/respond.hpp"
 
 #include <fmt/format.h>
@@ -68,7 +68,8 @@ TEST(EquilibriumRespond, WhatHasNoEnergyAnswersAsItIsSolved) {
     expect_slope(bushing, UnitWrench{{0, {0.1, 0.05, -0.1}}, {0.3, 0.2, 1}, {0.1, 0, 0}}, 50, "small angles");
 }
 
-// tan θ = F/(k L); stiff as V'' = k L² cos θ + F L sin θ = k L² / cos θ. A force answers by its moment about the pin.
+// tan θ = F/(k L); stiffness V'' = k L² cos θ + F L sin θ = k L² / cos θ. A force acts by its
+// moment about the pin.
 TEST(EquilibriumRespond, OfThePinnedBar) {
     const OneWay way = way_of("pinned_bar", "up", 1);
     const double k = 20e3, L = 0.5, theta = std::atan(way.branch.to / (k * L));
@@ -91,7 +92,8 @@ TEST(EquilibriumRespond, OfABushingAtAnOffset) {
     EXPECT_LE(apart(one(way, state, UnitWrench{{0, s}, f, m}), expected), 1e-13);
 }
 
-// Both ends of the coupler are as fast along it: ω c·e = a·e, a and c what unit rates make of B and C.
+// Both ends of the coupler have equal velocity along it: ω c·e = a·e, with a and c the velocities
+// of B and C at unit rates.
 TEST(EquilibriumRespond, OfAFourBarsCrank) {
     const OneWay way = way_of("four_bar", "turn", 1);
     for (const double phi : {0.0, 0.7, 2.0, 4.5}) {

@@ -1,5 +1,5 @@
-// Scenes for the tests of this leg: those of models/scenes, some built in code, and ways to say the same
-// scene differently.
+// Scenes for the tests of the equilibrium leg: those of models/scenes, some built in code, and
+// invariance transforms.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -123,9 +123,9 @@ inline void turn_loads(Scene& s, const Matrix3d& force, const Matrix3d& moment) 
             if (auto* load = std::get_if<Load>(&driver.what)) turn(*load);
 }
 
-// ---- The same scene said differently
+// ---- Invariance transforms
 
-// All of it turned by Q and shifted by t, in the same ground axes.
+// Everything rotated by Q and shifted by t, in the same ground axes.
 inline Scene moved_with_ground(Scene s, const Quaterniond& Q, const Vector3d& t) {
     for (auto& body : s.bodies) body.design = {Q * body.design.r + t, Q * body.design.p};
     visit(s, {[&](Point& p) {
@@ -141,7 +141,7 @@ inline Scene moved_with_ground(Scene s, const Quaterniond& Q, const Vector3d& t)
     return s;
 }
 
-// Other body axes and origins: turned by Q[b], origin moved to c[b] of the old body axes.
+// Other body axes and origins: rotated by Q[b], origin moved to c[b] of the old body axes.
 inline Scene with_body_frames(Scene s, const std::vector<Quaterniond>& Q, const std::vector<Vector3d>& c) {
     const auto n = [](BodyId body) { return static_cast<std::size_t>(body); };
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -186,8 +186,8 @@ inline Scene reversed(Scene s) {
     return s;
 }
 
-// y -> -y. With S = diag(1, -1, 1): vectors S v,
-// rotations and axes S A S, turning quantities (moments, θ) -S v.
+// y -> -y. With S = diag(1, -1, 1): vectors S v, rotations and axes S A S, axial vectors (moments,
+// θ) -S v.
 inline Scene mirrored(Scene s) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     const auto mirror = [&](const Quaterniond& p) { return Quaterniond(p.w(), -p.x(), p.y(), -p.z()); };
@@ -209,7 +209,7 @@ inline Scene mirrored(Scene s) {
     return s;
 }
 
-// Numbers as they are when lengths are counted in a unit of 1/c m, forces still in N.
+// Numbers for a unit of length of 1/c m, forces still in N.
 inline Scene with_length_unit(Scene s, double c) {
     for (auto& body : s.bodies) body.design.r *= c;
     visit(s, {[&](Point& p) { p.s_local *= c; }, [](Direction&) {}, [&](Marker& m) { m.s_local *= c; }});
@@ -238,7 +238,7 @@ inline Scene with_length_unit(Scene s, double c) {
         if (length) branch.to *= c;
         for (auto& driver : branch.drivers) {
             if (length) driver.rate /= c;
-            double of_length = 1;  // what the driven quantity becomes
+            double of_length = 1;  // factor of the driven quantity
             if (const auto* motion = std::get_if<Motion>(&driver.what))
                 of_length =
                     std::holds_alternative<Angle>(s.joints[static_cast<std::size_t>(motion->joint)].kind) ? 1
@@ -255,9 +255,9 @@ inline Scene with_length_unit(Scene s, double c) {
 
 // ---- Built in code
 
-// An axle corner with nothing simple about it: eight kinds of joints, bushings with full 6×6 rates and
-// preload, preloaded springs, a static load, a load of force and moment together, body axes that are not
-// those of ground.
+// A general axle corner: eight kinds of joints, bushings with full 6×6 rates and preload, preloaded
+// springs, a static load, a load of force and moment together, body axes different from ground
+// axes.
 inline Scene rich_scene() {
     std::mt19937 random(7);
     Scene s;
@@ -328,8 +328,8 @@ inline Scene rich_scene() {
     return s;
 }
 
-// A bar from the origin along `u`, hinged at the origin about `axis`, with a rotational bushing there. Its
-// probe is its tip.
+// A bar from the origin along `u`, hinged at the origin about `axis`, with a rotational bushing
+// there. Its probe is its tip.
 inline Scene hinged_bar(const Vector3d& u, const Vector3d& axis, double k_R) {
     Scene s;
     s.name = "hinged bar";
@@ -350,7 +350,7 @@ inline Branch twist(BodyId body, const Vector3d& m) {
     return branch_of("twist", {driven_by({"twist", DeadMoment{body, m}})}, 1, 1);
 }
 
-// ---- The energies of mechanism.hpp, written out once more
+// ---- The energies of mechanism.hpp, implemented independently
 
 inline double energy(const AxialSpring& spring, const Pose& i, const Pose& j) {
     const double length = (j.r + j.p * spring.j.s_local - i.r - i.p * spring.i.s_local).norm();
@@ -366,7 +366,7 @@ inline double energy(const Bushing& b, const Pose& i, const Pose& j) {
     return 0.5 * e.dot(std::get<LinearStiffness>(b.law).K * e) + b.preload.dot(e);
 }
 
-// Keeps the worst of many comparisons and where it was, to be judged and printed once.
+// Keeps the worst of many comparisons and its place, to be judged and printed once.
 struct Worst {
     double value = 0;
     std::string where = "nowhere";

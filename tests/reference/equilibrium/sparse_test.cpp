@@ -1,4 +1,5 @@
-// What is sparse says what the dense does, on every built-in scene; and large scenes cost in proportion to their size.
+// Sparse linear algebra against dense on every built-in scene; and cost proportional to the size of
+// large scenes.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -15,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The settled state and a third of the way along every way of every branch of every built-in scene.
+// The settled state and a third of every branch side of every built-in scene.
 template <class See>
 void at_stations(const See& see) {
     std::vector<std::string> files;
@@ -78,7 +79,7 @@ TEST(EquilibriumSparse, NullSpacesAreTheDenseOnesFoundOrTracked) {
     EXPECT_GT(with_modes, 0);
 }
 
-// ---- The pattern
+// ---- Sparsity pattern
 
 TEST(EquilibriumSparse, APatternThatIsKeptHoldsWhatANewOneDoes) {
     at_stations([&](const Walk& walk, const std::string& what) {
@@ -103,7 +104,7 @@ MatrixXd null_space(const MatrixXd& A) {
     return Q.rightCols(Q.cols() - qr.rank());
 }
 
-// By M itself, whose idle modes are held.
+// By M itself, with its idle modes fixed.
 double dense_least(const System& system, const Linearisation& at) {
     const Index n = 6 * system.bodies;
     const MatrixXd J = at.J, A = J.topLeftCorner(n, n);
@@ -133,8 +134,8 @@ TEST(EquilibriumSparse, TheLeastStiffnessIsThatOfTheDenseMatrix) {
     EXPECT_TRUE(within(worst, 1e-6));
 }
 
-// Forty bodies, each a thousand times as stiff as its neighbour at first, beside a column far beyond its buckling load:
-// its negative eigenvalue is the farthest from zero of all.
+// Forty bodies, each a thousand times as stiff as its neighbour at first, beside a column far
+// beyond its buckling load: its negative eigenvalue is the farthest from zero.
 TEST(EquilibriumSparse, ANegativeEigenvalueFarFromZeroIsSeen) {
     for (const bool stable : {true, false}) {
         Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
@@ -161,7 +162,7 @@ TEST(EquilibriumSparse, ANegativeEigenvalueFarFromZeroIsSeen) {
     }
 }
 
-// ---- Whether the constraints divide
+// ---- Bifurcation of the constraints
 
 TEST(EquilibriumSparse, TheConstraintsSideIsThatOfTheDenseDeterminant) {
     std::mt19937 random(5);
@@ -215,9 +216,9 @@ TEST(EquilibriumSparse, LeastSquaresAreShortestToo) {
     }
 }
 
-// ---- Large
+// ---- Large scenes
 
-// Blocks in a row, each on the one before by a spring of rate k: under P, the n-th moves by n P / k.
+// Blocks in a row, connected by springs of rate k: under P, the n-th moves by n P / k.
 TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
     constexpr int n = 1000;
     constexpr double k = 1e5, P = 300, h = 1e-2;
@@ -246,8 +247,8 @@ TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
     EXPECT_TRUE(within(worst, 1e-10));
 }
 
-// Hinges about z with torsion springs, each of n times the rate that one alone would have: whatever n, a moment at the end
-// turns them alike, and by the same steps.
+// Hinges about z with torsion springs of n times the single rate: for any n, a moment at the end
+// gives the same rotation in the same number of steps.
 TEST(EquilibriumSparse, AThousandHingesTurnAlikeByAsManyStepsAsTen) {
     constexpr double c = 100, M = 80, L = 1;
     std::vector<long> factorisations;
@@ -284,7 +285,7 @@ TEST(EquilibriumSparse, AThousandHingesTurnAlikeByAsManyStepsAsTen) {
     EXPECT_LE(factorisations[1], factorisations[0] + factorisations[0] / 2);
 }
 
-// Rods between two balls each on the ground: every one spins about itself and is stressed by itself, which no other knows.
+// Rods between two balls, each on ground: every one has its own idle spin and its own self-stress.
 TEST(EquilibriumSparse, HundredsOfModesAreAsManySparseColumns) {
     for (const int n : {3, 150}) {
         Scene s;

@@ -1,4 +1,4 @@
-// A branch ends where it divides or loses its stability, wherever the points fall.
+// Ends of branches at bifurcations and loss of stability, independent of the points.
 #include <fmt/format.h>
 
 #include "models/branch.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr int point_counts[] = {1, 2, 3, 4, 5, 7, 10, 20, 33, 100, 1001};
 
-// Whatever the number of points, the branch divides at `at`, and all points before it are there.
+// For any number of points, the branch bifurcates at `at`, and all points before it are present.
 void expect_dividing_at(const Scene& s, double to, double at) {
     const Model whole = compile(s);
     const Model model = on_branch(whole, whole.branches[0]);
@@ -21,7 +21,8 @@ void expect_dividing_at(const Scene& s, double to, double at) {
             before += std::abs(points.back()) < std::abs(at);
         }
         const auto path = solve(model, model.branches[0], points);
-        // A stretch narrower than the smallest step is stable on both sides of it: that is not told apart.
+        // A stretch narrower than the smallest step is stable on both sides; the outcome does not
+        // distinguish this case.
         EXPECT_TRUE(
             path.outcome == Outcome::dividing_point ||
             (path.outcome == Outcome::singular && path.detail.find("may divide") != std::string::npos))
@@ -31,8 +32,9 @@ void expect_dividing_at(const Scene& s, double to, double at) {
     }
 }
 
-// An arch whose apex may leave sideways against a rate of k_y, and is pushed through by a jack, or by a load
-// against a rate of k_z that is stiff enough to leave no limit point. Straight through, at the height z,
+// An arch whose apex may leave sideways against a rate of k_y, and is pushed through by a jack, or
+// by a load against a rate of k_z that is large enough to exclude a limit point. In the plane, at
+// the height z,
 //
 //   sideways stiffness  k_y + 2 k (1 - ℓ₀ / ℓ)
 //
@@ -96,11 +98,11 @@ TEST(EquilibriumStability, AStraightColumnEndsAtItsBucklingLoad) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
     expect_dividing_at(s, 3929.4, 1000 / 0.5);
-    expect_dividing_at(s, 4000, 1000 / 0.5);  // with points that hit it
+    expect_dividing_at(s, 4000, 1000 / 0.5);  // with points at the bifurcation itself
 }
 
-// Two bars in a line, torsion springs c in both hinges: c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L θ₂, whence
-// P L / c = (3 - √5) / 2.
+// Two bars in a line, torsion springs c in both hinges: c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L
+// θ₂, hence P L / c = (3 - √5) / 2.
 TEST(EquilibriumStability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.bodies.push_back({"upper", {{0, 0, 0.5}, Quaterniond::Identity()}});
@@ -113,11 +115,12 @@ TEST(EquilibriumStability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
     s.branches = {pull({1, {0, 0, 0.5}}, {0, 0, -1})};
     s.probes.push_back({"top", {1, {0, 0, 0.5}}});
     expect_dividing_at(s, 1969.1, 2000 * (3 - std::sqrt(5)) / 2);
-    expect_dividing_at(s, 8000, 2000 * (3 - std::sqrt(5)) / 2);  // past the second one too, at 5236 N
+    // past the second buckling load too, 5236 N
+    expect_dividing_at(s, 8000, 2000 * (3 - std::sqrt(5)) / 2);
 }
 
-// Free to lean in two planes with the same stiffness: both eigenvalues pass at once and the determinant keeps
-// its sign.
+// Free to lean in two planes with equal stiffness: both eigenvalues cross zero together and the
+// determinant keeps its sign.
 TEST(EquilibriumStability, AColumnThatBucklesInTwoPlanesAtOnceIsNoticed) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.joints = {{"ball", Spherical{{0, {0, 0, 0}}, {ground, {0, 0, 0}}}}};
@@ -125,7 +128,7 @@ TEST(EquilibriumStability, AColumnThatBucklesInTwoPlanesAtOnceIsNoticed) {
     expect_dividing_at(s, 3929.4, 1000 / 0.5);
 }
 
-// Upright under a weight beyond its buckling load, standing there from the start.
+// Upright under a weight beyond its buckling load from the start.
 TEST(EquilibriumStability, AnUnstableStartIsNamed) {
     Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
     s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, -1})};
@@ -140,7 +143,7 @@ TEST(EquilibriumStability, AnUnstableStartIsNamed) {
     }
 }
 
-// A parallelogram lies flat at half a turn, where it may go on as one or cross over.
+// A parallelogram is flat at half a turn, where it may continue in either of two configurations.
 TEST(EquilibriumStability, AMechanismEndsWhereItsMotionDivides) {
     Scene s = four_bar(0.04, 0.1, 0.04 * (1 + 1e-15), 0.1);
     s.bodies[1].design = {{0, 0.04, 0}, Quaterniond::Identity()};

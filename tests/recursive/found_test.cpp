@@ -1,0 +1,155 @@
+// Regression scenes: solvable scenes that were rejected, and branches that were accepted although
+// they lose their stability.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "recursive/series/path.hpp"
+#include "recursive/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+Model found(const std::string& name) {
+    return compile(
+        read_scene(fmt::format("{}/../../tests/recursive/found/{}.yaml", ELASTOCHECK_SCENES, name)));
+}
+Method named(const char* name) { return find_method(name).value(); }
+
+// Without its stop the arch has a limit point at 204 N; the stop closes a fraction of a newton
+// before. The result must not depend on the length of the branch.
+TEST(Series, ALimitPointBehindAKnotIsNone) {
+    const Model model = found("limit-behind-a-stop");
+    for (const double to : {204.2, 300., 2000., 1e4, 1e5, 1e6}) {
+        Branch branch = model.branches[0];
+        branch.to = to;
+        const auto path = solve(model, branch, {.method = named("series")});
+        EXPECT_EQ(path.outcome, Outcome::converged) << to << ": " << path.detail;
+    }
+}
+TEST(Series, ALimitPointBeforeAKnotIsOne) {
+    Model model = found("limit-behind-a-stop");
+    for (auto& elastic : model.elastics)
+        if (auto* spring = std::get_if<AxialSpring>(&elastic.kind))
+            if (auto* curve = std::get_if<Curve>(&spring->law))
+                for (double& knot : curve->knots) knot *= 1.2;
+    for (const double to : {300., 1e4, 1e6}) {
+        Branch branch = model.branches[0];
+        branch.to = to;
+        const auto path = series::follow(model, branch);
+        ASSERT_EQ(path.outcome, Outcome::limit_point) << to << ": " << path.detail;
+        EXPECT_NEAR(path.limits.back(), 204.08, 0.02) << to;
+    }
+}
+
+// In a driven mechanism without loads the joint reactions consist of rounding only.
+TEST(Adaptive, FollowsWhatHasNoForcesAtAll) {
+    const Model model = found("adaptive-lost-without-forces");
+    const auto path = solve(model, model.branches[0], {.method = named("adaptive")});
+    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+    EXPECT_EQ(path.points.size(), 21u);
+}
+
+// A column whose load has a small offset from its axis has no limit point, however sharp the bend
+// of its path.
+TEST(Found, NoLimitPointOfAnImperfectColumn) {
+    for (const double off : {1e-3, 1e-6, 1e-9, 1e-10, 1e-11})
+        for (const double to : {2500., 1e4}) {
+            const Model model = compile(parse_scene(
+                fmt::format(
+                    "elastocheck: 1\nname: column\nunits: {{length: m, angle: rad, force: N}}\n"
+                    "points: {{foot: [0, 0, 0], head: [{}, 0, 0.5]}}\nbodies: {{b: {{origin: foot}}}}\n"
+                    "joints: {{s: {{type: revolute, bodies: [b, ground], at: foot, axis: y}}}}\n"
+                    "bushings: {{k: {{bodies: [b, ground], at: foot, rates: [0, 0, 0], "
+                    "rotational_rates: [1000, 1000, 1000]}}}}\n"
+                    "loads: {{p: {{on: b, at: head, force: [0, 0, -1]}}}}\n"
+                    "branches: {{r: {{load: p, to: {}, steps: 20}}}}\nprobes: {{h: {{on: b, at: head}}}}\n",
+                    off, to),
+                "column.yaml"));
+            for (const char* method : {"series", "adaptive"}) {
+                const auto path = solve(model, model.branches[0], {.method = named(method)});
+                EXPECT_EQ(path.outcome, Outcome::converged)
+                    << off << " " << to << " " << method << ": " << path.detail;
+            }
+        }
+}
+
+// The arch is unstable sideways near its shortest spring length, 2.7 mm to either side, and stable
+// at both ends of the branch.
+TEST(Series, SeesStabilityLostAndRegainedInsideAnExpansion) {
+    const Model model = found("unstable-inside-an-expansion");
+    for (const int order : {8, 16, 24}) {
+        const auto path = series::follow(model, model.branches[0], {.order = order});
+        EXPECT_EQ(path.outcome, Outcome::dividing_point) << order << ": " << path.detail;
+        ASSERT_FALSE(path.expansions.empty());
+        const auto place = series::Place{path.expansions.size() - 1, path.expansions.back().reach};
+        const auto last = series::evaluate(model, model.branches[0], path, place);
+        EXPECT_NEAR(last.poses[0].r.z(), 2.7e-3, 0.2e-3) << order;
+    }
+}
+
+// The position of the origin changes poses by rounding only.
+TEST(Recursion, IsTheSameFarFromTheOrigin) {
+    const Scene scene = support::scene("chrono_mcpherson");
+    const Model here = compile(scene);
+    for (const double far : {1e5, 1e6, 1e7}) {
+        const Eigen::Vector3d c = far * Eigen::Vector3d(1, -0.7, 0.3);
+        Model there = here;
+        for (auto& body : there.bodies) body.design.r += c;
+        const auto move = [&](auto& at) {
+            if (at.body == ground) at.s_local += c;
+        };
+        const auto ends = [&](auto& kind) {
+            if constexpr (requires { kind.i.s_local; }) move(kind.i), move(kind.j);
+        };
+        for (auto& constraint : there.constraints) std::visit(ends, constraint.kind);
+        for (auto& elastic : there.elastics) std::visit(ends, elastic.kind);
+        for (auto& joint : there.joints) move(joint.at);
+        const Branch& branch = here.branches[0];
+        for (const char* method : {"published", "tangent", "adaptive", "series"}) {
+            const Options options{.method = named(method), .steps = 40, .record = 4};
+            const auto near = solve(here, branch, options), path = solve(there, branch, options);
+            ASSERT_EQ(path.outcome, Outcome::converged) << far << " " << method << ": " << path.detail;
+            ASSERT_EQ(path.points.size(), near.points.size());
+            const double digits = 1e-15 * far;
+            for (std::size_t k = 0; k < near.points.size(); ++k) {
+                for (std::size_t b = 0; b < near.points[k].poses.size(); ++b) {
+                    const Eigen::Vector3d off = path.points[k].poses[b].r - c - near.points[k].poses[b].r;
+                    EXPECT_LE(off.norm(), 20 * digits) << far << " " << method;
+                }
+                for (std::size_t j = 0; j < near.points[k].reactions.size(); ++j)
+                    EXPECT_LE((path.points[k].reactions[j].force - near.points[k].reactions[j].force).norm(),
+                              1e7 * digits + 1e-6)
+                        << far << " " << method;
+            }
+        }
+    }
+}
+
+// A table with 1000 rows needs an expansion for nearly every row.
+TEST(Series, CountsItsExpansionsForEachKnot) {
+    constexpr int rows = 1000;
+    std::string table;
+    for (int k = 0; k <= rows; ++k) {
+        const double x = 0.1 * k / rows;
+        table += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", x, 1e4 * x * (1 + 10 * x));
+    }
+    const Model model = compile(parse_scene(
+        fmt::format("elastocheck: 1\nname: rows\nunits: {{length: m, angle: rad, force: N}}\n"
+                    "points: {{a: [0, 0, 0], b: [0, 0, 0.5]}}\nbodies: {{m: {{origin: a}}}}\n"
+                    "joints: {{g: {{type: translational, bodies: [m, ground], at: a, axis: z}}}}\n"
+                    "springs: {{s: {{bodies: [m, ground], from: a, to: b, curve: {{table: [{}], symmetric: "
+                    "true}}}}}}\n"
+                    "loads: {{f: {{on: m, at: a, force: [0, 0, 1]}}}}\n"
+                    "branches: {{d: {{load: f, to: 1900, steps: 10}}}}\nprobes: {{a: {{on: m, at: a}}}}\n",
+                    table),
+        "rows.yaml"));
+    const auto path = series::follow(model, model.branches[0], {.expansions = 5});
+    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+    EXPECT_GT(path.expansions.size(), 900u);
+}
+
+}  // namespace
+}  // namespace elastocheck::recursive

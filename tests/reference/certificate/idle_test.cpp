@@ -1,0 +1,209 @@
+// Certificates of soft, idle and nearly redundant models: only structurally idle motions and
+// redundant rows are held, never soft motions, however stiff their neighbours are.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "models/branch.hpp"
+#include "models/compile.hpp"
+#include "models/reader/scene_file.hpp"
+#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/system.hpp"
+#include "reference/energy/solve.hpp"
+#include "reference/equilibrium/solve.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+struct On {
+    Model model;
+    Branch branch;
+};
+On on(const std::string& scene) {
+    const Model model = compile(parse_scene(scene, "test.yaml"));
+    const Branch way = ways(model.branches.front()).front();
+    return {on_branch(model, way), way};
+}
+Equilibrium solved(const On& way, double a) {
+    const auto path = equilibrium::solve(way.model, way.branch, std::span(&a, 1));
+    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+    return path.points.empty() ? Equilibrium{} : path.points[0];
+}
+
+// A body on one bushing in a turned frame, pulled along the frame's z.
+const Vector3d along = Vector3d(1, 2, 3).normalized();
+On hung(double stiff, double soft, double load) {
+    return on(fmt::format(
+        "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, 0, 0]}}\n"
+        "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: [1, 2, 3], "
+        "x: "
+        "[3, 0, -1]}}, rates: [{}, {}, {}], rotational_rates: [50, 50, 50]}}}}\n"
+        "loads: {{f: {{on: b, at: o, force: [0.2672612419124244, 0.5345224838248488, "
+        "0.8017837257372732]}}}}\n"
+        "branches: {{pull: {{load: f, to: {}, steps: 10}}}}\nprobes: {{tip: {{on: b, at: o}}}}\n",
+        stiff, stiff, soft, load));
+}
+Certificate at(const On& way, double load, double distance) {
+    Equilibrium state;
+    state.load = load;
+    state.poses = {{distance * along, Eigen::Quaterniond::Identity()}};
+    return certify(way.model, way.branch, state);
+}
+
+TEST(CertificateIdle, ASoftMotionIsNotIdleHoweverStiffItsNeighboursAre) {
+    for (const double soft : {1e-4, 1e-3, 1., 1e3})
+        for (const double stiff : {1e5, 1e9}) {
+            const On way = hung(stiff, soft, 1e-2 * soft);
+            EXPECT_EQ(at(way, 0, 0).detail.find("idle"), std::string::npos);
+            for (const double share : {1., 0.5}) {
+                const double load = share * 1e-2 * soft;
+                const auto where = fmt::format("{} {} {}", stiff, soft, share);
+                // off by 10 mm along the soft axis
+                EXPECT_EQ(at(way, load, share * 1e-2 + 1e-2).answer, Answer::excluded) << where;
+                EXPECT_EQ(at(way, load, 0).answer, Answer::excluded) << where;
+                const Certificate right = at(way, load, share * 1e-2);
+                EXPECT_NE(right.answer, Answer::excluded) << where << ": " << right.detail;
+                EXPECT_EQ(right.held, 0) << where;
+                if (stiff <= 1e7 * soft) {
+                    EXPECT_EQ(right.answer, Answer::proved) << where << ": " << right.detail;
+                }
+            }
+        }
+}
+
+// Without rate and load every position along the motion is an equilibrium.
+TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
+    const On way = hung(1e9, 0, 1e-6);
+    for (const double distance : {0., 0.3}) {
+        const Certificate c = at(way, 0, distance);
+        EXPECT_EQ(c.answer, Answer::proved) << c.detail;
+        EXPECT_NE(c.detail.find("idle motion of 'b'"), std::string::npos) << c.detail;
+    }
+    // A load of 1e-6 N acts on the idle motion.
+    const Certificate pushed = at(way, 1e-6, 0);
+    EXPECT_EQ(pushed.answer, Answer::excluded) << pushed.detail;
+    EXPECT_NE(pushed.detail.find("is pushed by"), std::string::npos) << pushed.detail;
+}
+
+// A pendulum on a point: its spin about the vertical is idle, its swing is resisted by the load
+// alone.
+TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
+    const On way =
+        on("elastocheck: 1\nname: pendulum\nunits: {length: m, angle: rad, force: N}\n"
+           "points: {o: [0, 0, 0], p: [0, 0, -1]}\nbodies: {b: {origin: o}}\n"
+           "bushings: {k: {bodies: [ground, b], at: o, rates: [1e9, 1e9, 1e9]}}\n"
+           "loads: {f: {on: b, at: p, force: [0, 0, -1]}}\n"
+           "branches: {pull: {load: f, to: 1, steps: 2}}\nprobes: {tip: {on: b, at: p}}\n");
+    for (const double tilt : {0., 1e-8, 1e-6}) {
+        Equilibrium state;
+        state.load = 1;
+        state.poses = {
+            {Vector3d(0, 0, -1e-9), Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3d::UnitX()))}};
+        const Certificate c = certify(way.model, way.branch, state);
+        EXPECT_EQ(c.answer, tilt > 1e-7 ? Answer::excluded : Answer::proved) << tilt << ": " << c.detail;
+        EXPECT_GE(c.error.angle, 0.99 * tilt);  // the distance from the vertical
+    }
+}
+
+// Upright column on a ball joint with a torsion spring. Its load is 1e-9 m off its axis, which
+// determines the direction of buckling.
+TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGivesIt) {
+    const On way =
+        on("elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n"
+           "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: {origin: "
+           "middle}}\n"
+           "joints: {j: {type: spherical, bodies: [b, ground], at: foot}}\n"
+           "bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: [1000, 1000, "
+           "1000]}}\n"
+           "loads: {f: {on: b, at: head, force: [0, 0, -1]}}\n"
+           "branches: {press: {load: f, to: 6000, steps: 20}}\nprobes: {tip: {on: b, at: head}}\n");
+    const Equilibrium state = solved(way, 6000);
+    const Certificate right = certify(way.model, way.branch, state);
+    ASSERT_EQ(right.answer, Answer::proved) << right.detail;
+    for (const double turn : {1e-4, 1e-6}) {
+        Equilibrium turned = state;
+        const Eigen::Quaterniond by(Eigen::AngleAxisd(turn, Vector3d::UnitZ()));
+        turned.poses[0] = {by * state.poses[0].r, by * state.poses[0].p * by.conjugate()};
+        for (auto& reaction : turned.reactions) reaction = {by * reaction.force, by * reaction.moment};
+        EXPECT_NE(certify(way.model, way.branch, turned).answer, Answer::proved) << turn;
+    }
+}
+
+// The frame of the mount is fixed to the strut: its spin is idle with equal rates across the axis,
+// and not with unequal ones.
+TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly) {
+    for (const double more : {0., 1e-9, 1e-3}) {
+        Model model = compile(support::scene("mcpherson"));
+        for (auto& elastic : model.elastics)
+            if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
+                if (auto* law = std::get_if<LinearStiffness>(&bushing->law); law && law->K(3, 3) == 0)
+                    law->K(0, 0) *= 1 + more;
+        const Branch way = ways(model.branches.front()).front();
+        const On of{on_branch(model, way), way};
+        // The state of the isotropic law is also that of the other, except for the load on its
+        // spin.
+        Model round = compile(support::scene("mcpherson"));
+        const Equilibrium state = solved({on_branch(round, way), way}, 1000);
+        const Certificate c = certify(of.model, of.branch, state, {1e-3, 1e-3, 1e3, 1e3});
+        EXPECT_EQ(c.detail.find("idle motion") != std::string::npos, more == 0) << more << ": " << c.detail;
+        EXPECT_EQ(c.answer == Answer::proved && c.held > 0, more == 0) << more << ": " << c.detail;
+    }
+}
+
+// Two hinges on one axis are redundant; tilted against each other by 1e-10 rad they lock the arm.
+TEST(CertificateIdle, RowsThatAreNearlyTheSameAreNotRedundant) {
+    On way =
+        on("elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
+           "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
+           "bodies: {arm: {origin: p}}\n"
+           "joints: {a: {type: revolute, bodies: [arm, ground], at: o, axis: y},\n"
+           "         b: {type: revolute, bodies: [arm, ground], at: q, axis: y}}\n"
+           "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}\n"
+           "loads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
+           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
+    const Equilibrium state = solved(way, 500);
+    ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
+    for (auto& constraint : way.model.constraints)
+        if (auto* row = std::get_if<PerpendicularDirections>(&constraint.kind); row && constraint.joint == 1)
+            row->i.u_local += 1e-10 * Vector3d(1, 0, 0.5);
+    const Certificate locked = certify(way.model, way.branch, state);
+    EXPECT_NE(locked.answer, Answer::proved) << locked.detail;
+}
+
+TEST(CertificateIdle, AModelThatIsTooLargeIsNotTriedAndSaysSo) {
+    std::string points, bodies, bushings;
+    constexpr int n = 2000;
+    for (int k = 0; k < n; ++k) {
+        points += fmt::format(", p{}: [{}, 0, 0]", k, 0.1 * (k + 1));
+        bodies += fmt::format("  b{}: {{origin: p{}}}\n", k, k);
+        bushings += fmt::format(
+            "  k{}: {{bodies: [{}, b{}], at: p{}, rates: [1e6, 1e6, 1e6], "
+            "rotational_rates: [1e5, 1e5, 1e5]}}\n",
+            k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
+    }
+    const On way =
+        on("elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
+           "0]" +
+           points + "}\nbodies:\n" + bodies + "bushings:\n" + bushings +
+           fmt::format(
+               "loads: {{f: {{on: b{0}, at: p{0}, force: [0, 0, 1]}}}}\n"
+               "branches: {{up: {{load: f, to: 1, steps: 1}}}}\nprobes: {{tip: {{on: b{0}, at: p{0}}}}}\n",
+               n - 1));
+    Equilibrium drawn, next;
+    for (const auto& body : way.model.bodies) drawn.poses.push_back(body.design);
+    next = drawn;
+    next.load = 1;
+    const std::string why =
+        fmt::format("not tried: {} unknowns, proofs are tried up to {}", 7 * n, most_unknowns);
+    const Certificate c = certify(way.model, way.branch, drawn);
+    EXPECT_EQ(c.answer, Answer::open);
+    EXPECT_EQ(c.detail, why);
+    const std::vector<Equilibrium> states{drawn, next};
+    EXPECT_EQ(certify_branch(way.model, way.branch, states).detail, why);
+    EXPECT_EQ(certify_limit_point(way.model, way.branch, drawn).detail, why);
+}
+
+}  // namespace
+}  // namespace elastocheck::reference::certificate
